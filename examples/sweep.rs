@@ -19,6 +19,6 @@ fn main() -> Result<(), Error> {
     let has_line = || std::io::stdin().read_line(&mut String::new()).is_ok_and(|bytes| bytes > 0);
     std::thread::spawn(move || STOP.store(has_line(), Ordering::Relaxed));
     let shown = |done: u64, all: Option<u64>| eprint!("\r{done} of {} cells", all.unwrap_or(0));
-    print!("{}", map(&Progress::none().told_to(&shown).stopped_by(&STOP))?);
+    print!("{}", map(&Progress::none().reporting_to(&shown).stopped_by(&STOP))?);
     Ok(())
 }

@@ -55,7 +55,7 @@ pub fn work<T: Send>(
         thread::scope(|scope| {
             let (sender, receiver) = sync_channel(1);
             let job = move || {
-                let progress = Progress::none().told_to(watch).stopped_by(stopped);
+                let progress = Progress::none().reporting_to(watch).stopped_by(stopped);
                 let progress = threads.map_or(progress, |count| progress.threads(count));
                 let answer = catch_unwind(AssertUnwindSafe(|| question(&progress)));
                 drop(sender.send(answer));

@@ -1,8 +1,8 @@
-//! Studies of scenes, their tables, and the files and pictures that these become: what the command line and
-//! the window of interwell show.
+//! Studies of scenes, their result tables, and the output of these tables as files and pictures: the base of
+//! the command line and the window of interwell.
 //!
-//! It is a crate of its own so that a change of the window compiles no study. Programs use it by the crate
-//! `interwell`, which shows its modules as its own.
+//! It is a separate crate so that a change in the window does not recompile the studies. Programs use the
+//! crate `interwell`, which re-exports these modules.
 
 pub(crate) use interwell_kernel::{dynamics, mechanics, numeric, scene, system};
 

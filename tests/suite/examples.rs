@@ -37,7 +37,7 @@ fn the_map_is_that_of_the_command_line() {
         assert_eq!(all, Some(15));
         last.fetch_max(done, Ordering::Relaxed);
     };
-    let text = sweep::map(&Progress::none().told_to(&shown)).unwrap();
+    let text = sweep::map(&Progress::none().reporting_to(&shown)).unwrap();
     let over = "--over stops.travel_limit_mm=2:6:1 --over excitation.amplitude_g=0.5,1,1.5";
     assert_eq!(text, stdout(&format!("sweep nominal-cubic --tolerance 1e-6 {over}")));
     assert_eq!((last.into_inner(), text.lines().count()), (15, 16));

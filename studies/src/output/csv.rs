@@ -1,6 +1,7 @@
 //! Tables as CSV: a header line, then one line for each row, separated by commas and ended by `\n`.
 //!
-//! Words come from fixed lists and field paths, and names have no comma or quote, so no cell is ever quoted.
+//! Words come from fixed lists and field paths, and names contain no comma or quote, so cells are never
+//! quoted.
 
 use std::fmt::Write;
 use std::ops::Range;
@@ -43,7 +44,7 @@ pub fn rows(table: &Table, range: Range<usize>) -> String {
     text
 }
 
-/// Reads what [`header`] and [`rows`] wrote, into a table with the columns of `empty`; the columns of the
+/// Reads the output of [`header`] and [`rows`] into a table with the columns of `empty`; the columns of the
 /// text may be in any order. The error is a clause of a sentence.
 pub fn csv_table(text: &str, empty: &Table) -> Result<Table, String> {
     let mut reader = csv::Reader::from_reader(text.as_bytes());

@@ -1,4 +1,4 @@
-//! Manifests of a sweep, of exponents over a grid and of a map of basins, and the origin of a result.
+//! Manifests of a sweep, of exponents over a grid and of a map of basins, and the provenance of a result.
 
 use serde_json::{Map, Value, json};
 
@@ -7,12 +7,12 @@ use super::plan::plan_checksum;
 use crate::scene::{Document, Excitation, PROGRAM, Scene};
 use crate::study::{Answer, Basins, Grid, Shard, Tally};
 
-/// Origin of a result, besides its scene.
+/// Provenance of a result, apart from its scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Provenance {
     /// Version of the program.
     pub version: String,
-    /// The arguments that it was called with.
+    /// Its arguments.
     pub arguments: Vec<String>,
     /// Wall-clock time in s.
     pub wall_s: f64,
@@ -33,24 +33,24 @@ pub struct Made<'a> {
     pub sha256: &'a str,
 }
 
-/// What manifests have in common.
+/// Data that all manifests contain.
 #[derive(Debug, Clone, Copy)]
 pub struct Manifest<'a> {
     /// The document that was run, which holds its files.
     pub document: &'a Document,
-    /// Where the rows come from.
+    /// The provenance of the rows.
     pub origin: &'a Provenance,
     /// The name of the file with the rows.
     pub data: &'a str,
 }
 
 impl Manifest<'_> {
-    /// The manifest of the grid that `command` swept, as text. Sweeping the manifest, or a scene file with
-    /// the text `scene_ron` beside the `files`, gives the same rows again. `scene_ron` has every argument
-    /// applied, the swept fields at their unswept values, and the grid that ran as its `sweep`. `files` are
-    /// the texts of the tables and records that the scene reads, by their paths in it.
+    /// The manifest of the grid that `command` swept, as text. A sweep of the manifest, or of a scene file
+    /// with the text `scene_ron` beside the `files`, gives the same rows. In `scene_ron` all arguments are
+    /// applied, swept fields have their values from the scene, and `sweep` is the grid that was run. `files`
+    /// are the texts of the tables and records that the scene reads, by their paths in it.
     ///
-    /// `made` describes the file with the rows if it may be a shard.
+    /// `made` describes the file with the rows, if it may be a shard.
     pub fn of_rows(&self, command: &str, grid: &Grid, tally: &Tally, made: Option<Made>) -> String {
         let mut more = json!({
             "cells": tally.cells,
@@ -127,7 +127,7 @@ impl Manifest<'_> {
             "wall_s": origin.wall_s,
             "cpu_s": origin.cpu_s,
             "scene": scene_value(scene),
-            // null if it cannot be written, never an empty scene
+            // null if it cannot be written, rather than an empty scene
             "scene_ron": crate::scene::write(scene).ok(),
             "files": document.files.cached,
         });

@@ -15,7 +15,7 @@ const MAX_LISTED: usize = 4;
 /// and must hold its files, whose checksums are part of the plan.
 pub fn plan(document: &Document, sweep: &Sweep, columns: &[String], version: &str) -> Value {
     let mut scene = document.scene.clone();
-    // The scene's value of a swept field is never run, so it is no part of the plan.
+    // the scene's own value of a swept field is never run, so it is not part of the plan
     sweep.grid().apply(0, &mut scene);
     let mut scene = serde_json::to_value(&scene).unwrap_or(Value::Null);
     if let Value::Object(scene) = &mut scene {
@@ -83,13 +83,13 @@ fn differences(path: &str, there: &Value, here: &Value, found: &mut Vec<String>)
 
 /// A value as text, truncated if it is long.
 fn short(value: &Value) -> String {
-    const LONGEST: usize = 100;
+    const MAX_LENGTH: usize = 100;
     let text = match value {
         Value::Null => "none".to_owned(),
         Value::String(text) => text.clone(),
         other => other.to_string(),
     };
-    match text.char_indices().nth(LONGEST) {
+    match text.char_indices().nth(MAX_LENGTH) {
         Some((end, _)) => format!("{}..", &text[..end]),
         None => text,
     }

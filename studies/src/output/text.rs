@@ -20,7 +20,7 @@ fn brief(value: f64) -> String {
 }
 
 /// The table as lines of text: a heading with readable names of the columns, then one line for each row.
-/// Words are aligned to the left, numbers to the right; nothing is cut off.
+/// Words are aligned to the left, numbers to the right; nothing is truncated.
 pub fn aligned(table: &Table) -> String {
     let cells: Vec<(bool, Vec<String>)> = table
         .columns()

@@ -1,4 +1,4 @@
-//! Questions about designs: scenes side by side, and the best design for an environment.
+//! Questions about designs: comparison of scenes, and the best design for an environment.
 
 use super::grid::drive_alone;
 use super::{Error, Progress, Simulation, check_until_settled};
@@ -11,28 +11,28 @@ use crate::study::{
 };
 use crate::system::files::{canonical, is_file};
 
-/// Scenes side by side under the sine and with the run of the one that asks.
+/// Comparison of scenes under the sine and with the run settings of the first one.
 #[derive(Debug, Clone, Default)]
 pub struct Compare {
-    /// The other scenes, each with its name.
+    /// The other scenes, with their names.
     pub with: Vec<(String, Simulation)>,
-    /// The name of the scene that asks.
+    /// The name of the first scene, which is passed to `run`.
     pub name: String,
-    /// Each run goes on until its motion repeats, or up to this time in s.
+    /// Each run continues until its motion repeats, at most up to this time in s.
     pub until_settled: Option<f64>,
 }
 
 impl Compare {
-    /// Rates all scenes; a row each.
+    /// Rates all scenes, the first one first.
     pub fn run(&self, simulation: &Simulation, progress: &Progress) -> Result<Vec<Rated>, Error> {
         needs_a_sine(simulation.document())?;
         let first = (self.name.clone(), simulation);
         let others = self.with.iter().map(|(name, other)| (name.clone(), other));
         let mut all = Vec::new();
         for (name, other) in std::iter::once(first).chain(others) {
-            let lent = Simulation::new(&lend(other.document(), simulation.document()))?;
-            lent.check_until_settled(self.until_settled)?;
-            let (document, mechanism) = (lent.document().clone(), lent.mechanism().clone());
+            let other = Simulation::new(&in_environment(other.document(), simulation.document()))?;
+            other.check_until_settled(self.until_settled)?;
+            let (document, mechanism) = (other.document().clone(), other.mechanism().clone());
             all.push(Alternative { name, scene: document.scene, files: document.files, mechanism });
         }
         let rated = progress.pool(|pool| {
@@ -42,13 +42,13 @@ impl Compare {
         rated.ok_or(Error::Cancelled)
     }
 
-    /// The table of an answer.
+    /// The rated scenes as a table, one row per scene.
     pub fn table(rated: &[Rated]) -> Table {
         comparison_table(rated)
     }
 }
 
-/// Refuses an excitation whose amplitude and frequency cannot be searched.
+/// Returns frequency in Hz and amplitude in g of a sine; other excitations are refused.
 pub fn needs_a_sine(environment: &Document) -> Result<(f64, f64), Error> {
     let Excitation::Sine { frequency_hz, amplitude_g, .. } = environment.scene.excitation else {
         let problem = "its excitation is no Sine; amplitude and frequency of one are searched: name a scene \
@@ -58,35 +58,35 @@ pub fn needs_a_sine(environment: &Document) -> Result<(f64, f64), Error> {
     Ok((frequency_hz, amplitude_g))
 }
 
-/// A scene at rest under the excitation and with the run of another.
-pub fn lend(document: &Document, environment: &Document) -> Document {
-    let mut lent = document.clone();
-    lent.scene.excitation = environment.scene.excitation.clone();
-    lent.scene.run = environment.scene.run;
-    lent.scene.start = Start::Rest;
-    lent.scene.sweep.clear(); // the other excitation may not have its fields
-    lent
+/// A scene at rest, with the excitation and the run settings of another one.
+pub fn in_environment(document: &Document, environment: &Document) -> Document {
+    let mut changed = document.clone();
+    changed.scene.excitation = environment.scene.excitation.clone();
+    changed.scene.run = environment.scene.run;
+    changed.scene.start = Start::Rest;
+    changed.scene.sweep.clear(); // the other excitation may not have its fields
+    changed
 }
 
 /// The best design for an environment.
 ///
-/// Its texts are those of the command `best`.
+/// Fields and constraints are written as in the arguments of the command `best`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Best {
-    /// Fields of the design and their ranges, `FIELD=A:B[:STEP]`; at most four.
+    /// Fields of the design with their ranges, `FIELD=A:B[:STEP]`; one to four.
     pub over: Vec<String>,
-    /// The number of the summary that is to be largest.
+    /// The summary field to maximise.
     pub maximise: String,
-    /// What every environment must keep to, such as `max_abs_x_m<=0.003`.
+    /// Constraints that hold in every environment, such as `max_abs_x_m<=0.003`.
     pub subject_to: Vec<String>,
     /// Environments in place of the scene's own excitation: another scene, a record (CSV), or values of a
-    /// field, `FIELD=a,b,c`; `*WEIGHT` after one is its weight.
+    /// field, `FIELD=a,b,c`. A suffix `*WEIGHT` sets the weight of one, which is 1 by default.
     pub environment: Vec<String>,
-    /// Fields that vary and their tolerances, `FIELD=+-1%` or `FIELD=+-0.05`.
+    /// Fields with manufacturing tolerances, `FIELD=+-1%` or `FIELD=+-0.05`.
     pub vary: Vec<String>,
-    /// Seed of the samples of what varies.
+    /// Seed of the random samples of these fields.
     pub seed: u64,
-    /// Each run goes on until its motion repeats, or up to this time in s.
+    /// Each run continues until its motion repeats, at most up to this time in s.
     pub until_settled: Option<f64>,
 }
 
@@ -104,17 +104,17 @@ impl Default for Best {
     }
 }
 
-/// The best design, with the question in numbers.
+/// The best design, with the parsed question.
 #[derive(Debug, Clone)]
 pub struct BestAnswer {
-    /// What was searched.
+    /// The parsed question.
     pub question: BestQuestion,
-    /// What was found.
+    /// The best design.
     pub design: BestDesign,
 }
 
 impl BestAnswer {
-    /// One row: the design, its value and its margins.
+    /// One row: the design, the value of the maximised field, and the margins.
     pub fn table(&self) -> Table {
         self.design.table(&self.question)
     }
@@ -126,12 +126,12 @@ impl BestAnswer {
 }
 
 impl Best {
-    /// Over a field between two values, in the unit of the field.
+    /// The best design over one field between two values, in the unit of the field.
     pub fn over(field: &str, low: f64, high: f64) -> Self {
         Self { over: vec![format!("{field}={low}:{high}")], ..Self::default() }
     }
 
-    /// Searches the design.
+    /// Searches for the best design.
     pub fn run(&self, simulation: &Simulation, progress: &Progress) -> Result<BestAnswer, Error> {
         let question = self.question(simulation.document())?;
         let found = progress.pool(|pool| {
@@ -143,7 +143,7 @@ impl Best {
         }
     }
 
-    /// The question in numbers.
+    /// Parses and checks the texts of the question.
     pub fn question(&self, document: &Document) -> Result<BestQuestion, Error> {
         let mut question = BestQuestion {
             over: ranges(&self.over, document)?,
@@ -154,7 +154,7 @@ impl Best {
             seed: self.seed,
             until_settled: None,
         };
-        has_fields(&question)?;
+        check_fields(&question)?;
         if let (Some(until), [first, ..]) = (self.until_settled, &question.environments[..]) {
             let model = drive_alone(document, first.scene.clone())?;
             check_until_settled(until, &number_text(until), document, &model)?;
@@ -163,7 +163,7 @@ impl Best {
         Ok(question)
     }
 
-    /// Why there is no best design.
+    /// The error for a search without a result.
     pub fn no_best(&self, why: NoBest, question: &BestQuestion, document: &Document) -> Error {
         match why {
             NoBest::Cancelled => Error::Cancelled,
@@ -172,7 +172,8 @@ impl Best {
                 let without = |environment: &Environment| environment.scene.transducer == Transducer::None;
                 let columns = std::iter::once(question.maximise)
                     .chain(question.subject_to.iter().map(|constraint| constraint.of));
-                let electrical = columns.map(|field| field.name).find(|name| OF_TRANSDUCER.contains(name));
+                let electrical =
+                    columns.map(|field| field.name).find(|name| TRANSDUCER_COLUMNS.contains(name));
                 let missing = electrical.filter(|_| question.environments.iter().any(without));
                 match missing {
                     Some(name) => Error::unfit(
@@ -209,8 +210,8 @@ impl Best {
     }
 }
 
-/// Checks that every field that is changed exists in every environment: a record has no amplitude.
-fn has_fields(question: &BestQuestion) -> Result<(), Error> {
+/// Checks that every changed field exists in every environment; a record, for example, has no amplitude.
+fn check_fields(question: &BestQuestion) -> Result<(), Error> {
     let over = question.over.iter().map(|range| ("over", &range.field));
     let vary = question.vary.iter().map(|variation| ("vary", &variation.field));
     for (name, field) in over.chain(vary) {
@@ -278,21 +279,21 @@ fn ranges(over: &[String], document: &Document) -> Result<Vec<DesignRange>, Erro
     Ok(ranges)
 }
 
-/// Columns that only a scene with a transducer has.
-const OF_TRANSDUCER: [&str; 3] = ["mean_load_power_w", "mean_coil_power_w", "voltage_rms_v"];
+/// Columns that exist only with a transducer.
+const TRANSDUCER_COLUMNS: [&str; 3] = ["mean_load_power_w", "mean_coil_power_w", "voltage_rms_v"];
 
-/// A shorter name for the column of the power into the load, and the column.
-const POWER: (&str, &str) = ("mean_power_w", "mean_load_power_w");
+/// Alias for the column of the power into the load, and the name of that column.
+const POWER_ALIAS: (&str, &str) = ("mean_power_w", "mean_load_power_w");
 
-/// The column called `name`; an error of the argument `of` with its value if it is not a number.
-fn number(of: &str, value: &str, name: &str) -> Result<&'static SummaryField, Error> {
+/// The numeric summary field called `name`. `argument` and `value` are those that an error names.
+fn number(argument: &str, value: &str, name: &str) -> Result<&'static SummaryField, Error> {
     let is_number = |field: &&SummaryField| matches!(field.read, Read::Number(_) | Read::Count(_));
-    let column = if name == POWER.0 { POWER.1 } else { name };
+    let column = if name == POWER_ALIAS.0 { POWER_ALIAS.1 } else { name };
     let found = SummaryField::find(column).filter(is_number);
     found.ok_or_else(|| {
         let known: Vec<&str> = SUMMARY_FIELDS.iter().filter(is_number).map(|field| field.name).collect();
         let which = if value == name { String::new() } else { format!("{name}: ") };
-        Error::argument(of, value, format!("{which}no such number; there are {}", known.join(", ")))
+        Error::argument(argument, value, format!("{which}no such number; there are {}", known.join(", ")))
     })
 }
 
@@ -316,7 +317,7 @@ fn variation(text: &str, document: &Document) -> Result<Variation, Error> {
     let (field, by) = text.split_once('=').ok_or_else(|| wrong(form))?;
     let field = field.trim();
     let Some(value) = FieldPath::new(field).get(&document.scene) else {
-        // this error lists the fields
+        // the error of `parse` lists the fields
         Axis::parse(&format!("{field}=1"), &document.scene).map_err(|problem| wrong(&problem))?;
         return Err(wrong("the scene leaves this field out; give it a value with --set"));
     };
@@ -336,7 +337,8 @@ fn variation(text: &str, document: &Document) -> Result<Variation, Error> {
     Ok(Variation { field: field.to_owned(), by, relative })
 }
 
-/// Splits a text from the weight after its last `*`, which is 1 if left out.
+/// Splits off the weight after the last `*` of a text; without one the weight is 1. `whole` is the argument
+/// that an error names.
 fn weighted<'a>(text: &'a str, whole: &str) -> Result<(&'a str, f64), Error> {
     let Some((text, weight)) = text.rsplit_once('*') else { return Ok((text.trim(), 1.0)) };
     let weight = weight.trim().parse().ok().filter(|weight: &f64| *weight > 0.0 && weight.is_finite());
@@ -346,16 +348,16 @@ fn weighted<'a>(text: &'a str, whole: &str) -> Result<(&'a str, f64), Error> {
 
 const MAX_ENVIRONMENTS: usize = 1000;
 
-/// The environments of the design; if none are given, that of the scene.
+/// The environments of the design; if none are given, the scene itself is the only one.
 fn environments(given: &[String], document: &Document) -> Result<Vec<Environment>, Error> {
-    let of = |name: String, weight: f64, document: &Document| Environment {
+    let environment = |name: String, weight: f64, document: &Document| Environment {
         name,
         weight,
         scene: document.scene.clone(),
         files: document.files.clone(),
     };
     if given.is_empty() {
-        return Ok(vec![of(document.name.clone(), 1.0, document)]);
+        return Ok(vec![environment(document.name.clone(), 1.0, document)]);
     }
     let mut all = Vec::new();
     for text in given {
@@ -368,12 +370,12 @@ fn environments(given: &[String], document: &Document) -> Result<Vec<Environment
                 let axis = Axis::parse(&format!("{field}={value}"), &document.scene).map_err(wrong)?;
                 axis.apply(&mut changed.scene, 0);
                 changed.check()?;
-                all.push(of(format!("{} = {value}", axis.field), weight, &changed));
+                all.push(environment(format!("{} = {value}", axis.field), weight, &changed));
             }
         } else {
             let (name, weight) = weighted(text, text)?;
             if name.to_ascii_lowercase().ends_with(".csv") {
-                // a name that is no file may be that of a built-in table
+                // a name that is not a file may be that of a built-in table
                 let path = canonical(name.as_ref()).unwrap_or_else(|| name.into());
                 let set =
                     changed.set(&format!("excitation=Recorded(path: {:?})", path.display().to_string()));
@@ -391,7 +393,7 @@ fn environments(given: &[String], document: &Document) -> Result<Vec<Environment
                 changed.scene.run = RunSettings { tolerance, recurrence, ..other.scene.run };
             }
             changed.check()?;
-            all.push(of(name.to_owned(), weight, &changed));
+            all.push(environment(name.to_owned(), weight, &changed));
         }
     }
     if all.len() > MAX_ENVIRONMENTS {

@@ -1,4 +1,4 @@
-//! The one error of questions.
+//! The error type of all questions.
 
 use std::fmt;
 
@@ -10,14 +10,14 @@ use crate::study::{CellFaults, GridError};
 
 /// Why a question has no answer.
 ///
-/// [`faults`](Self::faults) lists what is wrong, each with file, field, value and remedy; the message has the
-/// same, a line each.
+/// [`faults`](Self::faults) lists what is wrong, with file, field, value and remedy. The message contains the
+/// same, one fault per line.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Error {
     /// The scene cannot be read or has faults.
     Scene(SceneError),
-    /// Cells of a grid over the scene have faults: each cell in words, and its error.
+    /// Cells of a grid over the scene have faults: a description of each cell, and its error.
     Cells(Vec<(String, SceneError)>),
     /// An argument of the question is wrong.
     Argument {
@@ -35,14 +35,14 @@ pub enum Error {
         /// What is missing, and the remedy.
         problem: String,
     },
-    /// The computation did not come to an answer.
+    /// The computation gave no answer.
     Failed {
         /// Name of the scene.
         scene: String,
         /// The reason.
         problem: String,
     },
-    /// It was told to stop.
+    /// The question was cancelled.
     Cancelled,
 }
 
@@ -52,9 +52,9 @@ pub enum Error {
 pub struct FaultAt {
     /// The scene file, or `built-in NAME`; empty for an argument.
     pub file: String,
-    /// Line in the file, where the value is written there.
+    /// Line in the file, if the value is written there.
     pub line: Option<usize>,
-    /// Dotted path of the field, or name of the argument.
+    /// Dotted path of the field, or name of the argument; empty if neither is at fault.
     pub field: String,
     /// The value as written.
     pub value: String,
@@ -62,8 +62,8 @@ pub struct FaultAt {
     pub problem: String,
 }
 
-/// The most cells whose faults a message lists.
-const MAX_NAMED: usize = 8;
+/// Largest number of cells whose faults a message lists.
+const MAX_LISTED_CELLS: usize = 8;
 
 impl Error {
     /// A wrong argument.
@@ -97,8 +97,8 @@ impl Error {
         Self::Cells(cells.into_iter().map(error).collect())
     }
 
-    /// A mechanism that cannot be built: wrong fields are a wrong scene, valid flexures without a solution a
-    /// failed computation.
+    /// A mechanism that cannot be built. Wrong fields are a fault of the scene; valid flexures without a
+    /// solution are a failed computation.
     pub fn unbuilt(document: &Document, error: BuildError) -> Self {
         match error {
             BuildError::Wrong(fault) => Self::faults_of(document, vec![fault]),
@@ -106,11 +106,11 @@ impl Error {
         }
     }
 
-    /// All that is wrong; empty where the computation failed or was told to stop.
+    /// All faults of the input; empty if the computation failed or was cancelled.
     pub fn faults(&self) -> Vec<FaultAt> {
         match self {
-            Self::Scene(error) => of_scene(error),
-            Self::Cells(cells) => cells.iter().flat_map(|(_, error)| of_scene(error)).collect(),
+            Self::Scene(error) => scene_faults(error),
+            Self::Cells(cells) => cells.iter().flat_map(|(_, error)| scene_faults(error)).collect(),
             Self::Argument { name, value, problem } => {
                 vec![FaultAt { field: name.clone(), value: value.clone(), ..FaultAt::new("", problem) }]
             }
@@ -119,16 +119,16 @@ impl Error {
         }
     }
 
-    /// The message with the options of the command line in its remedies.
+    /// The message for users of the command line: its remedies name options such as `--until-settled`.
     pub fn message(&self) -> String {
         match self {
             Self::Scene(error) => error.to_string(),
             Self::Cells(cells) => {
-                let lines = cells.iter().take(MAX_NAMED).map(|(cell, error)| match cell.as_str() {
+                let lines = cells.iter().take(MAX_LISTED_CELLS).map(|(cell, error)| match cell.as_str() {
                     "" => error.to_string(),
                     cell => format!("in the cell {cell}:\n{error}"),
                 });
-                let more = cells.len().saturating_sub(MAX_NAMED);
+                let more = cells.len().saturating_sub(MAX_LISTED_CELLS);
                 let more = (more > 0).then(|| format!("and {more} more cells are wrong"));
                 lines.chain(more).collect::<Vec<_>>().join("\n")
             }
@@ -139,7 +139,7 @@ impl Error {
         }
     }
 
-    /// Whether scene or arguments are wrong; else the computation failed or was told to stop.
+    /// Whether the scene or an argument is wrong. Otherwise the computation failed or was cancelled.
     pub fn is_wrong_input(&self) -> bool {
         !matches!(self, Self::Failed { .. } | Self::Cancelled)
     }
@@ -147,12 +147,12 @@ impl Error {
 
 impl FaultAt {
     fn new(file: &str, problem: &str) -> Self {
-        let (file, problem) = (file.to_owned(), plain(problem));
+        let (file, problem) = (file.to_owned(), with_argument_names(problem));
         Self { file, line: None, field: String::new(), value: String::new(), problem }
     }
 }
 
-fn of_scene(error: &SceneError) -> Vec<FaultAt> {
+fn scene_faults(error: &SceneError) -> Vec<FaultAt> {
     match error {
         SceneError::NoSuchScene { spec, .. } => vec![FaultAt::new(spec, &error.to_string())],
         SceneError::Unreadable { name, problem } => vec![FaultAt::new(name, problem)],
@@ -174,21 +174,21 @@ fn of_scene(error: &SceneError) -> Vec<FaultAt> {
     }
 }
 
-/// A text with the names of arguments in place of the options of the command line: `until_settled` for
-/// `--until-settled`.
-fn plain(text: &str) -> String {
-    let word = |word: &str| match word.find("--").map(|at| word.split_at(at)) {
+/// Replaces options of the command line in a text by names of arguments: `--until-settled` by
+/// `until_settled`.
+fn with_argument_names(text: &str) -> String {
+    let renamed = |word: &str| match word.find("--").map(|at| word.split_at(at)) {
         Some((before, option)) if option[2..].starts_with(|c: char| c.is_ascii_lowercase()) => {
             format!("{before}{}", option[2..].replace('-', "_"))
         }
         _ => word.to_owned(),
     };
-    text.split(' ').map(word).collect::<Vec<_>>().join(" ")
+    text.split(' ').map(renamed).collect::<Vec<_>>().join(" ")
 }
 
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&plain(&self.message()))
+        f.write_str(&with_argument_names(&self.message()))
     }
 }
 
@@ -213,9 +213,9 @@ impl From<GridError> for Error {
 }
 
 /// Longest `until_settled` in s, which is the longest duration of a run.
-const LONGEST_WAIT: f64 = 1e9;
+const MAX_UNTIL_SETTLED: f64 = 1e9;
 
-/// Whether runs of `model` can go on up to `until` s, given as `text`; an error with the reason if not.
+/// Checks that runs of `model` can continue up to `until` s; `text` is this time as it was given.
 pub fn check_until_settled(until: f64, text: &str, document: &Document, model: &Model) -> Result<(), Error> {
     let duration = model.duration();
     let wrong = |problem: String| {
@@ -240,8 +240,8 @@ pub fn check_until_settled(until: f64, text: &str, document: &Document, model: &
             "its run already lasts {duration} s; give at least that, or shorten run.duration_s"
         ));
     }
-    if until > LONGEST_WAIT {
-        return Err(Error::argument("until_settled", text, format!("at most {LONGEST_WAIT:e} s")));
+    if until > MAX_UNTIL_SETTLED {
+        return Err(Error::argument("until_settled", text, format!("at most {MAX_UNTIL_SETTLED:e} s")));
     }
     Ok(())
 }

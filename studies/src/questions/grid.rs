@@ -1,4 +1,4 @@
-//! Questions that are asked of every cell of a grid: sweeps, sections, exponents and thresholds.
+//! Questions that can be asked for every cell of a grid: sweeps, sections, exponents and thresholds.
 
 use std::ops::RangeInclusive;
 use std::sync::Arc;
@@ -16,11 +16,11 @@ use crate::study::{
     section, threshold_table,
 };
 
-/// Fields and the values that each takes.
+/// Fields, each with its values.
 type Over = Vec<(String, Vec<f64>)>;
 
-/// `count` values over a range, evenly spaced, each the double nearest to its decimal of 15 digits: 0.58 is
-/// 0.58.
+/// `count` evenly spaced values over a range, each rounded to 15 significant digits, so that 0.58 is 0.58 and
+/// not 0.5800000000000001.
 fn even(range: RangeInclusive<f64>, count: usize) -> Vec<f64> {
     let (from, to) = (*range.start(), *range.end());
     let last = count.saturating_sub(1).max(1) as f64;
@@ -31,27 +31,28 @@ fn even(range: RangeInclusive<f64>, count: usize) -> Vec<f64> {
     (0..count).map(value).collect()
 }
 
-/// Methods that name the fields of a grid.
+/// Methods that set the fields of a grid.
 macro_rules! over_fields {
     ($($question:ident)*) => {$(
         impl $question {
-            /// Over a field, with `count` values from one end of the range to the other.
+            /// A grid over a field, with `count` even values including both ends of the range.
             pub fn over(field: impl Into<String>, range: RangeInclusive<f64>, count: usize) -> Self {
                 Self::default().and(field, range, count)
             }
 
-            /// Over these values of a field.
+            /// A grid over these values of a field.
             pub fn over_values(field: impl Into<String>, values: impl Into<Vec<f64>>) -> Self {
                 Self::default().and_values(field, values)
             }
 
-            /// And over a further field, whose values change faster.
+            /// Adds a field to the grid, whose values change faster than those of the fields before it.
             #[must_use]
             pub fn and(self, field: impl Into<String>, range: RangeInclusive<f64>, count: usize) -> Self {
                 self.and_values(field, even(range, count))
             }
 
-            /// And over these values of a further field, which change faster.
+            /// Adds a field with these values to the grid, which change faster than those of the fields
+            /// before it.
             #[must_use]
             pub fn and_values(mut self, field: impl Into<String>, values: impl Into<Vec<f64>>) -> Self {
                 self.over.push((field.into(), values.into()));
@@ -63,7 +64,7 @@ macro_rules! over_fields {
 
 over_fields!(Sweep Section Exponents Threshold);
 
-/// A run for each cell of a grid, a row a cell: the map of a study.
+/// A run for each cell of a grid, with one row per cell.
 ///
 /// ```
 /// use interwell_studies::questions::{Progress, Simulation, Sweep};
@@ -78,13 +79,13 @@ over_fields!(Sweep Section Exponents Threshold);
 /// ```
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Sweep {
-    /// The fields, the slowest first; without one the scene is run once.
+    /// The fields, the slowest first; if there are none, those of the scene's `sweep`.
     pub over: Over,
-    /// Columns after those of the fields: names of the summary, or `all`; none are the standard ones.
+    /// Columns after those of the fields: names of summary fields, or `all`; empty for the standard ones.
     pub columns: Vec<String>,
-    /// Each run goes on until its motion repeats, or up to this time in s.
+    /// Each run continues until its motion repeats, at most up to this time in s.
     pub until_settled: Option<f64>,
-    /// The last field is walked, each run begins in the state of the one before.
+    /// Directions in which the last field is walked: each run starts from the final state of the run before.
     pub carry: Option<Carry>,
 }
 
@@ -104,8 +105,7 @@ impl Sweep {
     }
 }
 
-/// The names of all columns of a sweep: those of the swept fields, the direction of a walk, and the chosen
-/// ones.
+/// The names of all columns of a sweep: the swept fields, the direction of a walk, and the chosen columns.
 pub fn column_names(chosen: &[String], grid: &Grid, carry: Option<Carry>) -> Result<Vec<String>, Error> {
     let mut names = grid.columns().to_vec();
     names.extend(carry.map(|_| DIRECTION.to_owned()));
@@ -133,17 +133,18 @@ pub fn column_names(chosen: &[String], grid: &Grid, carry: Option<Carry>) -> Res
     Ok(names)
 }
 
-/// The state once a forcing period or at every impact, of one motion or over a grid: a bifurcation diagram.
+/// Stroboscopic section or section at impacts of one motion, or of every cell of a grid, which gives a
+/// bifurcation diagram.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Section {
-    /// The fields, the slowest first; without one the section is that of the scene.
+    /// The fields, the slowest first; if there are none, the section is that of the scene.
     pub over: Over,
-    /// Where it is taken, forcing periods, and how runs go on.
+    /// Where the section is taken, over which forcing periods, and how runs continue.
     pub options: SectionOptions,
 }
 
 impl Section {
-    /// Takes the section, or one for each cell.
+    /// Computes the section, or that of each cell.
     pub fn run(&self, simulation: &Simulation, progress: &Progress) -> Result<Table, Error> {
         let document = simulation.document();
         if self.over.is_empty() {
@@ -164,12 +165,12 @@ impl Section {
     }
 }
 
-/// Lyapunov exponents of a settled motion, or of every cell of a grid.
+/// Lyapunov exponents of the settled motion of the scene, or of every cell of a grid.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Exponents {
-    /// The fields, the slowest first; without one the exponents are those of the scene.
+    /// The fields, the slowest first; if there are none, the exponents are those of the scene.
     pub over: Over,
-    /// Forcing periods of an average, and the time that a motion may take to settle.
+    /// Number of forcing periods of the averages, and the time that a motion may take to settle.
     pub options: ExponentOptions,
 }
 
@@ -199,33 +200,34 @@ impl Exponents {
     }
 }
 
-/// The least value of a field at which something begins, of one scene or in every cell of a grid.
+/// The smallest value of a field at which the mass is released, or its settled motion crosses or is
+/// interwell: for one scene, or in every cell of a grid.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Threshold {
-    /// The fields of the grid, the slowest first; without one there is one row.
+    /// The fields of the grid, the slowest first; if there are none, the table has one row.
     pub over: Over,
     /// The field that is searched and its range: `FIELD=FROM:TO` or `FIELD=FROM:TO:STEP`.
     pub field: String,
-    /// What begins.
+    /// What begins at the threshold.
     pub of: Onset,
-    /// How closely the threshold is located, in the unit of the field; by default a 1000th of the step.
+    /// Resolution of the threshold in the unit of the field; by default a 1000th of the step.
     pub resolution: Option<f64>,
-    /// Each run goes on until its motion repeats, or up to this time in s.
+    /// Each run continues until its motion repeats, at most up to this time in s.
     pub until_settled: Option<f64>,
 }
 
 impl Default for Threshold {
     fn default() -> Self {
-        let field = AMPLITUDES.to_owned();
+        let field = DEFAULT_FIELD.to_owned();
         Self { over: Vec::new(), field, of: Onset::Crossing, resolution: None, until_settled: None }
     }
 }
 
-/// The range that is searched where none is named.
-const AMPLITUDES: &str = "excitation.amplitude_g=0:2";
+/// The field and range of the default question.
+const DEFAULT_FIELD: &str = "excitation.amplitude_g=0:2";
 
-/// Steps of a range without a step of its own.
-const STEPS: f64 = 200.0;
+/// Number of steps of a range that is given without a step.
+const DEFAULT_STEPS: f64 = 200.0;
 
 impl Threshold {
     /// Searches the thresholds.
@@ -258,10 +260,10 @@ impl Threshold {
         })
     }
 
-    /// The values that are tried first, and how closely a threshold is located.
+    /// The values of the scan, and the resolution of the threshold.
     pub fn scan(&self, document: &Document) -> Result<Scan, Error> {
         let argument = self.field.trim();
-        let default = if argument == AMPLITUDES { " (the default; give another)" } else { "" };
+        let default = if argument == DEFAULT_FIELD { " (the default; give another)" } else { "" };
         let wrong = |problem: String| Error::argument("field", format!("{argument}{default}"), problem);
         let parsed = |text: &str| -> Result<Axis, Error> {
             let axis = Axis::parse(text, &document.scene).map_err(wrong)?;
@@ -284,7 +286,7 @@ impl Threshold {
             if low > high {
                 return Err(wrong(format!("TO must be above FROM; write {high}:{low}")));
             }
-            let step = (high - low) / STEPS;
+            let step = (high - low) / DEFAULT_STEPS;
             let step = if is_whole(&document.scene, &ends.field) { step.ceil() } else { step };
             (full, end) = (format!("{argument}:{step}"), Some(high));
         }
@@ -298,7 +300,7 @@ impl Threshold {
         }
         let step = (values[values.len() - 1] - values[0]) / (values.len() - 1) as f64;
         if let Some(high) = end {
-            // rounding may place the last of the steps just below the end of the range
+            // rounding may put the last step just below the end of the range
             values.retain(|value| *value < high - 1e-6 * step);
             values.push(high);
         }
@@ -317,18 +319,18 @@ impl Threshold {
     }
 }
 
-/// Refuses a scene whose transducer has an electrical state, in the scene or in a cell of the swept fields.
-/// Used by studies whose state is displacement and velocity alone.
+/// Refuses a transducer with an electrical state, in the scene or in a cell over `axes`, for studies whose
+/// state consists of displacement and velocity only. `what` names the study in the error.
 pub fn refuse_electrical_state(document: &Document, axes: &[Axis], what: &str) -> Result<(), Error> {
     let swept = |name: &str| axes.iter().any(|axis| axis.field == format!("transducer.{name}"));
-    let may_have = match document.scene.transducer {
+    let cells_may_have = match document.scene.transducer {
         Transducer::None => false,
         Transducer::Electromagnetic { inductance_mh, .. } => {
             swept("inductance_mh") || inductance_mh > 0.0 && swept("load_ohm")
         }
         Transducer::Piezoelectric { .. } => swept("load_kohm"),
     };
-    match may_have || document.scene.transducer.has_state() {
+    match cells_may_have || document.scene.transducer.has_state() {
         true => Err(Error::unfit(document, format!("{what}: {ELECTRICAL_STATE}"))),
         false => Ok(()),
     }
@@ -338,8 +340,8 @@ fn check_until(until: Option<f64>, document: &Document, model: &Model) -> Result
     until.map_or(Ok(()), |until| check_until_settled(until, &number_text(until), document, model))
 }
 
-/// The time up to which runs of a grid go on, checked by its first cell. A fault of that cell is reported
-/// when the cells are checked, with its place.
+/// Checks the time up to which runs of a grid may continue, with the model of the first cell. `None` if that
+/// cell has no model; its faults are reported later, when all cells are checked.
 fn until_settled<Q: Question>(
     until: Option<f64>,
     study: &GridStudy<Q>,
@@ -353,7 +355,7 @@ fn until_settled<Q: Question>(
     }
 }
 
-/// Checks all cells, then runs them.
+/// Checks all cells, then runs them and returns all rows.
 fn all_rows<Q: Question>(
     study: &GridStudy<Q>,
     document: &Document,
@@ -384,8 +386,8 @@ fn unless_stopped<T>(progress: &Progress, answer: T) -> Result<T, Error> {
     }
 }
 
-/// A model for the check of `until_settled`: a mass on a linear spring with the drive and the run of `scene`,
-/// on which alone the check depends. The mechanism may be replaced by a grid or a design.
+/// A model for the check of `until_settled`, which depends only on the drive and the run of `scene`: a mass
+/// on a linear spring with these. So the check needs no mechanism, which a grid or a design may replace.
 pub fn drive_alone(document: &Document, scene: Scene) -> Result<Model, Error> {
     let alone = Scene {
         mass_g: 1.0,

@@ -1,8 +1,8 @@
-//! Questions about a scene, as a program asks them.
+//! The studies as an API for programs.
 //!
-//! A [`Simulation`] is a scene that has been checked, with its model. Each question is a struct with a method
-//! `run`, which takes the simulation and a [`Progress`], and answers with tables in SI units or with an
-//! [`Error`] that lists all faults.
+//! A [`Simulation`] is a checked scene with its model. Each question is a struct of options with a method
+//! `run`, which takes a simulation and, unless it is short, a [`Progress`]. It returns tables in SI units, or
+//! an [`Error`] that lists all faults.
 
 mod design;
 mod error;

@@ -14,7 +14,7 @@ use crate::study::{
 /// Force, potential and stiffness of the mechanism.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Curve {
-    /// Positions in m; by default 401 that show equilibria and stops.
+    /// Positions in m; by default 401 over a range that includes equilibria and stops.
     pub positions: Option<Vec<f64>>,
 }
 
@@ -27,17 +27,17 @@ impl Curve {
     }
 }
 
-/// The periodic motion near the settled motion of a run.
+/// The periodic orbit near the settled motion of a run.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Orbit {
-    /// Forcing periods after which it repeats; by default those of the settled motion.
+    /// Its period in forcing periods, at least 1; by default that of the settled motion.
     pub period: Option<u32>,
-    /// Phase of the drive at which the state is taken, in degrees.
+    /// Phase of the drive in degrees at which the state is given.
     pub phase_deg: f64,
 }
 
 impl Orbit {
-    /// Finds the motion by Newton's method.
+    /// Finds the orbit by Newton's method.
     pub fn run(&self, simulation: &Simulation, progress: &Progress) -> Result<study::Orbit, Error> {
         can_have_orbits(simulation.document(), simulation.model())?;
         let found = orbit(simulation.model(), phase(self.phase_deg)?, self.period, progress.stop());
@@ -52,26 +52,26 @@ impl study::Orbit {
     }
 }
 
-/// A branch of periodic motions over a field, through folds.
+/// A branch of periodic orbits, continued in a field and followed around folds.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Branch {
     /// The field.
     pub field: String,
-    /// Its value at the first motion, and that towards which it goes.
+    /// Its value at the first orbit, and the value towards which the branch is continued.
     pub range: (f64, f64),
-    /// Forcing periods after which the first motion repeats; by default those of the settled motion.
+    /// Period of the first orbit in forcing periods, at least 1; by default that of the settled motion.
     pub period: Option<u32>,
-    /// Phase of the drive at which states are taken, in degrees.
+    /// Phase of the drive in degrees at which states are given.
     pub phase_deg: f64,
 }
 
 impl Branch {
-    /// Over a field, from one value towards another.
+    /// A branch over a field, from one value towards another.
     pub fn over(field: impl Into<String>, from: f64, to: f64) -> Self {
         Self { field: field.into(), range: (from, to), period: None, phase_deg: 0.0 }
     }
 
-    /// Follows the branch; the field of the scene begins at the first value of the range.
+    /// Follows the branch. The value of the field in the scene is replaced by the first value of the range.
     pub fn run(&self, simulation: &Simulation, progress: &Progress) -> Result<study::Branch, Error> {
         let (from, to) = self.range;
         let shown = format!("{}={from}:{to}", self.field);
@@ -99,8 +99,8 @@ impl Branch {
 }
 
 impl study::Branch {
-    /// Remarks that the table cannot hold: events that were not located, and where and why the branch ended,
-    /// unless it reached the end of its range.
+    /// Remarks that have no column in the table: events that were not located and, unless the branch reached
+    /// the end of its range, where and why it ended.
     pub fn remarks(&self, (from, to): (f64, f64)) -> Vec<String> {
         let field = &self.field;
         let unlocated = |(before, after): &(f64, f64)| {
@@ -129,7 +129,7 @@ fn phase(degrees: f64) -> Result<f64, Error> {
     }
 }
 
-/// Refuses a scene without periodic motions whose state is displacement and velocity.
+/// Refuses a scene whose drive does not repeat, or whose transducer has an electrical state.
 pub fn can_have_orbits(document: &Document, model: &Model) -> Result<(), Error> {
     if !model.repeats() || !model.is_shaken() {
         let problem = "excitation: a periodic motion needs a drive that repeats and is not 0; take a Sine, \
@@ -139,7 +139,8 @@ pub fn can_have_orbits(document: &Document, model: &Model) -> Result<(), Error> 
     refuse_electrical_state(document, &[], "orbit")
 }
 
-/// The error for a motion that was not found at a place in words, such as `at FIELD = VALUE: `.
+/// The error for an orbit that was not found; `at` is a prefix that names the place, such as `at FIELD =
+/// VALUE: `.
 pub fn no_orbit(document: &Document, error: NoOrbit, at: &str) -> Error {
     match error {
         NoOrbit::Cancelled => Error::Cancelled,
@@ -152,11 +153,11 @@ pub fn no_orbit(document: &Document, error: NoOrbit, at: &str) -> Error {
 pub struct Spectrum {
     /// The signal.
     pub of: Signal,
-    /// How the samples are weighted; by default not if the motion repeats, else by the window of von Hann.
+    /// Window function; by default none if the motion repeats, else that of von Hann.
     pub taper: Option<Taper>,
-    /// Samples a second, raised until a whole number falls into a forcing period.
+    /// Samples per second, raised until a forcing period has a whole number of them.
     pub rate_hz: Option<f64>,
-    /// The run goes on until its motion repeats, or up to this time in s.
+    /// The run continues until its motion repeats, at most up to this time in s.
     pub until_settled: Option<f64>,
 }
 
@@ -193,16 +194,16 @@ pub struct Basins {
     pub x_mm: EvenRange,
     /// Smallest and largest velocity in m/s, and how many.
     pub v: EvenRange,
-    /// Draws so many starts from both ranges with this seed, in place of a grid.
+    /// Number and seed of random starts in both ranges, in place of the grid.
     pub random: Option<(u64, u64)>,
 }
 
 /// Basins of attraction.
 #[derive(Debug)]
 pub struct BasinsAnswer {
-    /// The starts and how they were followed.
+    /// The starts, and what is known of each.
     pub basins: study::Basins,
-    /// The attractors, and where each start goes.
+    /// The attractors, and the attractor of each start.
     pub answer: Answer,
 }
 
@@ -236,7 +237,8 @@ impl Basins {
         }
     }
 
-    /// Follows the starts, and repeats those whose answer may be uncertain.
+    /// Follows the starts, then once more those whose answer may be uncertain. Progress counts the two phases
+    /// separately.
     pub fn run(&self, simulation: &Simulation, progress: &Progress) -> Result<BasinsAnswer, Error> {
         let (document, starts) = (simulation.document(), self.starts()?);
         let count = starts.count() as u64;
@@ -256,7 +258,7 @@ impl Basins {
     }
 }
 
-/// The error of a scene without basins.
+/// The error for a scene that has no basins.
 fn no_basins(document: &Document, problem: NoBasins, x_mm: EvenRange) -> Error {
     match problem {
         NoBasins::Faults(faults) => Error::faults_of(document, faults),
@@ -268,12 +270,12 @@ fn no_basins(document: &Document, problem: NoBasins, x_mm: EvenRange) -> Error {
 }
 
 impl BasinsAnswer {
-    /// A row a start.
+    /// One row per start.
     pub fn table(&self) -> Table {
         self.answer.table(&self.basins, 0, self.answer.rows.len())
     }
 
-    /// A row an attractor.
+    /// One row per attractor.
     pub fn attractors(&self) -> Table {
         self.answer.attractors_table()
     }

@@ -1,4 +1,4 @@
-//! Progress, cancellation and threads of a question.
+//! Progress reports, cancellation and the number of threads of a question.
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
@@ -7,10 +7,11 @@ use super::Error;
 use crate::study::Task;
 use crate::system::threads::{Pool, processors};
 
-/// Called with the number of parts that are done, and of all parts where it is known; from any thread.
-type Watch<'a> = &'a (dyn Fn(u64, Option<u64>) + Sync);
+/// A callback for progress: it gets the number of finished parts and, if it is known, that of all parts. Any
+/// thread may call it.
+type Report<'a> = &'a (dyn Fn(u64, Option<u64>) + Sync);
 
-/// How a question is worked on: who is told of its progress, who may stop it, and how many threads it has.
+/// How a question is run: a callback for its progress, a flag that cancels it, and its number of threads.
 ///
 /// ```
 /// use std::sync::atomic::AtomicBool;
@@ -18,36 +19,38 @@ type Watch<'a> = &'a (dyn Fn(u64, Option<u64>) + Sync);
 ///
 /// let stop = AtomicBool::new(false);
 /// let shown = |done: u64, all: Option<u64>| eprintln!("{done} of {all:?}");
-/// let progress = Progress::none().told_to(&shown).stopped_by(&stop).threads(2);
+/// let progress = Progress::none().reporting_to(&shown).stopped_by(&stop).threads(2);
 /// ```
 #[derive(Clone, Copy)]
 pub struct Progress<'a> {
-    watch: Option<Watch<'a>>,
+    report: Option<Report<'a>>,
     stop: &'a AtomicBool,
     threads: Option<usize>,
 }
 
-/// A flag that nobody sets.
+/// The flag of questions that cannot be cancelled; it is never set.
 static NEVER: AtomicBool = AtomicBool::new(false);
 
-/// The pool of the last question, kept since threads take longer to start than a short question to answer.
+/// The thread pool of the last question, kept because starting threads takes longer than answering a short
+/// question.
 static POOL: Mutex<Option<Pool>> = Mutex::new(None);
 
 impl Progress<'static> {
-    /// Nobody is told, nobody stops it, and all processors work on it.
+    /// No reports, no cancellation, and one thread per processor.
     pub fn none() -> Self {
-        Self { watch: None, stop: &NEVER, threads: None }
+        Self { report: None, stop: &NEVER, threads: None }
     }
 }
 
 impl<'a> Progress<'a> {
-    /// Tells `watch` of each part that is done.
+    /// Calls `report` after each finished part. A question with several phases, such as
+    /// [`Basins`](super::Basins), counts each phase from 1.
     #[must_use]
-    pub fn told_to<'b>(self, watch: Watch<'b>) -> Progress<'b>
+    pub fn reporting_to<'b>(self, report: Report<'b>) -> Progress<'b>
     where
         'a: 'b,
     {
-        Progress { watch: Some(watch), ..self }
+        Progress { report: Some(report), ..self }
     }
 
     /// The question ends with [`Error::Cancelled`] soon after another thread sets `stop`.
@@ -59,7 +62,7 @@ impl<'a> Progress<'a> {
         Progress { stop, ..self }
     }
 
-    /// Works on this many threads. The answer has the same bits for any number.
+    /// Sets the number of threads, at least 1. The answer is the same to the last bit for any number.
     #[must_use]
     pub fn threads(self, count: usize) -> Self {
         Self { threads: Some(count), ..self }
@@ -69,26 +72,26 @@ impl<'a> Progress<'a> {
         self.stop
     }
 
-    /// Works on a task whose parts are counted; `all` is their number, if it is known.
+    /// Runs `work` with a task that counts its parts; `all` is their number, if it is known.
     pub(super) fn task<R>(&self, all: Option<u64>, work: impl FnOnce(&Task) -> R) -> R {
         let done = AtomicU64::new(0);
         let tick = || {
-            if let Some(watch) = self.watch {
-                watch(done.fetch_add(1, Ordering::Relaxed) + 1, all);
+            if let Some(report) = self.report {
+                report(done.fetch_add(1, Ordering::Relaxed) + 1, all);
             }
         };
         work(&Task { tick: &tick, cancel: self.stop })
     }
 
-    /// Works with a pool of threads.
+    /// Runs `work` with a thread pool.
     pub(super) fn pool<R>(&self, work: impl FnOnce(&Pool) -> R) -> Result<R, Error> {
         let count = self.threads.unwrap_or_else(processors).max(1);
-        let kept = POOL.lock().unwrap_or_else(PoisonError::into_inner).take();
-        let pool = match kept {
+        let last = POOL.lock().unwrap_or_else(PoisonError::into_inner).take();
+        let pool = match last {
             Some(pool) if pool.is_alive() && pool.count() == count => pool,
-            kept => {
-                // threads that are not there cannot be ended
-                std::mem::forget(kept.filter(|pool| !pool.is_alive()));
+            last => {
+                // dropping a pool would wait for its threads, which a forked process does not have
+                std::mem::forget(last.filter(|pool| !pool.is_alive()));
                 Pool::new(count).map_err(|error| Error::argument("threads", count, error))?
             }
         };

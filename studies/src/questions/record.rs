@@ -21,52 +21,53 @@ words! {
     }
 }
 
-/// Identifies a quantity from a record: CSV with a header.
+/// Identifies a quantity from a record, a CSV file with a header.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Identify {
-    /// What.
+    /// The quantity.
     pub of: WhatToIdentify,
-    /// Column of the times and its unit; by default the one whose name ends with a unit of time.
+    /// Column of the times and its unit; by default the column whose name ends with a unit of time.
     pub time: [Option<String>; 2],
-    /// Column of the values and its unit; by default the one whose name ends with such a unit.
+    /// Column of the values and its unit; by default the column whose name ends with a unit of the measured
+    /// quantity.
     pub column: [Option<String>; 2],
-    /// Of a force: column of the positions and its unit.
+    /// For a force: column of the positions and its unit.
     pub position: [Option<String>; 2],
-    /// Of restitution: column of the acceleration of the base and its unit.
+    /// For restitution: column of the acceleration of the base and its unit.
     pub base: [Option<String>; 2],
-    /// Leaves out what was recorded before and after these times in s.
+    /// Uses only the samples between these times in s.
     pub between: [Option<f64>; 2],
-    /// Of restitution: the rows are impacts, and their times are all that is known.
+    /// For restitution: the record contains only the times of impacts, one per row.
     pub impact_times: bool,
-    /// Of restitution: about where the left and the right stop are, in mm.
+    /// For restitution: approximate positions of the left and the right stop in mm.
     pub stops_mm: [Option<f64>; 2],
-    /// Of a force: points of the curve, 4 to 100000; by default 101.
+    /// For a force: number of points of the curve, 4 to 100000; by default 101.
     pub points: Option<u32>,
 }
 
-/// The identified quantity, and the record that it is identified from.
+/// The identified quantity, and the record from which it was identified.
 #[derive(Debug, Clone)]
 pub struct IdentifyAnswer {
-    /// What was identified.
+    /// The result.
     pub found: Identified,
     /// The sampling of a record over time.
     pub timing: Option<Timing>,
-    /// Times or positions.
+    /// Times in s or positions in m; empty for impact times.
     pub across: Vec<f64>,
-    /// What was measured; empty for impact times.
+    /// The measured values; empty for impact times.
     pub values: Channel,
-    /// The columns that were read, in words.
+    /// A description of the columns that were read.
     pub columns: String,
 }
 
 impl IdentifyAnswer {
-    /// The rows: over amplitude, impact or position.
+    /// One row per range of amplitude, impact or position.
     pub fn table(&self) -> &Table {
         &self.found.rows
     }
 }
 
-/// The columns that a record was read from, in words.
+/// A description of the columns from which a record was read.
 pub fn columns_read<const N: usize>(record: &Measured<N>) -> String {
     let from = |channel: &Channel| format!("{} from `{}`", channel.quantity.name(), channel.column);
     let commas = if record.decimal_commas { ", with decimal commas" } else { "" };
@@ -74,7 +75,7 @@ pub fn columns_read<const N: usize>(record: &Measured<N>) -> String {
 }
 
 impl Identify {
-    /// Of a record whose columns are found by the units in their names.
+    /// The question about a record whose columns are found by the units in their names.
     pub fn of(of: WhatToIdentify) -> Self {
         let none = || [None, None];
         Self {
@@ -96,7 +97,7 @@ impl Identify {
         Record { question: self, file: path.to_owned() }.answer()
     }
 
-    /// Refuses what does not belong to the question, and impossible values.
+    /// Refuses options that do not belong to the quantity, and impossible values.
     pub fn check(&self) -> Result<(), Error> {
         use WhatToIdentify::{Force, Restitution};
         let of = self.of;
@@ -133,7 +134,7 @@ impl Identify {
         self.check_restitution()
     }
 
-    /// Refuses impossible positions of stops, and what does not go with impact times.
+    /// Refuses impossible positions of stops, and options that contradict `impact_times`.
     fn check_restitution(&self) -> Result<(), Error> {
         for (name, place) in ["left_mm", "right_mm"].into_iter().zip(self.stops_mm) {
             if let Some(place) = place.filter(|place| !place.is_finite()) {
@@ -164,7 +165,7 @@ impl Identify {
     }
 }
 
-/// A record and what is asked of it.
+/// The file of a record and the question about it.
 struct Record<'a> {
     question: &'a Identify,
     file: PathBuf,
@@ -173,43 +174,44 @@ struct Record<'a> {
 impl Record<'_> {
     fn answer(&self) -> Result<IdentifyAnswer, Error> {
         let question = self.question;
-        let ask = |quantities: &[Quantity], [column, unit]: &[Option<String>; 2], names| {
+        let request = |quantities: &[Quantity], [column, unit]: &[Option<String>; 2], names| {
             ColumnRequest::by_options(quantities, column, unit, names)
         };
-        let times = ask(&[Quantity::Time], &question.time, ["--time", "--time-unit"]);
-        let of_values = |asked: &[_]| ask(asked, &question.column, ["--column", "--unit"]);
-        let done = |found: Result<Identified, Unidentified>, timing, across, values, columns| {
+        let times = request(&[Quantity::Time], &question.time, ["--time", "--time-unit"]);
+        let values_request = |quantities: &[_]| request(quantities, &question.column, ["--column", "--unit"]);
+        let answer = |found: Result<Identified, Unidentified>, timing, across, values, columns| {
             let found = found.map_err(|problem| self.about(problem))?;
             Ok(IdentifyAnswer { found, timing, across, values, columns })
         };
         match question.of {
             WhatToIdentify::Force => {
                 let positions = &question.position;
-                let positions = ask(&[Quantity::Displacement], positions, ["--position", "--position-unit"]);
-                let (record, columns) = self.read(&[positions, of_values(&[Quantity::Force])])?;
+                let positions =
+                    request(&[Quantity::Displacement], positions, ["--position", "--position-unit"]);
+                let (record, columns) = self.read(&[positions, values_request(&[Quantity::Force])])?;
                 let [x, values] = record.channels;
                 let points = question.points.map_or(FORCE_POINTS, |points| points as usize);
                 let found = force(&x.values, &values.values, points);
-                done(found, None, x.values, values, columns)
+                answer(found, None, x.values, values, columns)
             }
             WhatToIdentify::Damping => {
                 let any = [Quantity::Displacement, Quantity::Velocity, Quantity::Acceleration];
-                let (record, columns) = self.read(&[times, of_values(&any)])?;
+                let (record, columns) = self.read(&[times, values_request(&any)])?;
                 let [times, values] = self.cut(record)?.channels;
                 let found = damping(&times.values, &values);
-                done(found, Some(Timing::of(&times.values)), times.values, values, columns)
+                answer(found, Some(Timing::of(&times.values)), times.values, values, columns)
             }
             WhatToIdentify::Restitution if question.impact_times => {
                 let (record, columns) = self.read(&[times])?;
                 let [times] = self.cut(record)?.channels;
                 let found = restitution_of_times(&times.values);
                 let values = Channel { quantity: Quantity::Displacement, values: Vec::new(), ..times };
-                done(found, None, Vec::new(), values, columns)
+                answer(found, None, Vec::new(), values, columns)
             }
             WhatToIdentify::Restitution => {
-                let values = of_values(&[Quantity::Displacement]);
+                let values = values_request(&[Quantity::Displacement]);
                 let ([times, values], base, columns) = if question.base[0].is_some() {
-                    let base = ask(&[Quantity::Acceleration], &question.base, ["--base", "--base-unit"]);
+                    let base = request(&[Quantity::Acceleration], &question.base, ["--base", "--base-unit"]);
                     let (record, columns) = self.read(&[times, values, base])?;
                     let [times, values, base] = self.cut(record)?.channels;
                     ([times, values], Some(base.values), columns)
@@ -219,18 +221,18 @@ impl Record<'_> {
                 };
                 let places = question.stops_mm.map(|place| place.map(|mm| mm * 1e-3));
                 let found = restitution(&times.values, &values.values, base.as_deref(), places);
-                done(found, Some(Timing::of(&times.values)), times.values, values, columns)
+                answer(found, Some(Timing::of(&times.values)), times.values, values, columns)
             }
         }
     }
 
-    fn read<const N: usize>(&self, asks: &[ColumnRequest; N]) -> Result<(Measured<N>, String), Error> {
-        let record = read_measured(&self.file, asks).map_err(|problem| self.about(problem))?;
+    fn read<const N: usize>(&self, requests: &[ColumnRequest; N]) -> Result<(Measured<N>, String), Error> {
+        let record = read_measured(&self.file, requests).map_err(|problem| self.about(problem))?;
         let columns = columns_read(&record);
         Ok((record, columns))
     }
 
-    /// Keeps only the rows between two times; the first channel is the time.
+    /// Keeps only the rows in the time range of the question; the first channel is the time.
     fn cut<const N: usize>(&self, mut record: Measured<N>) -> Result<Measured<N>, Error> {
         let times = &record.channels[0].values;
         let [from, to] = self.question.between;

@@ -11,7 +11,7 @@ use crate::numeric::number_text;
 use crate::scene::{Axis, Document, Files, Scene};
 use crate::study::{Grid, Keep, Sampling, Table, sample_times, simulate};
 
-/// A scene that has been checked, with its model.
+/// A checked scene with its model.
 ///
 /// ```
 /// use interwell_kernel::dynamics::Request;
@@ -52,8 +52,8 @@ impl Simulation {
         Self::of(Document::from_file(path.as_ref())?)
     }
 
-    /// The simulation of a scene in RON. `name` stands for it in messages; the files that it names have
-    /// absolute paths, or are built-in tables.
+    /// The simulation of a scene in RON. Messages call it `name`. Files in it must have absolute paths or be
+    /// built-in tables.
     pub fn from_text(name: &str, text: &str) -> Result<Self, Error> {
         Self::of(Document::from_text(name, text, Files::default())?)
     }
@@ -64,8 +64,8 @@ impl Simulation {
     }
 
     fn of(mut document: Document) -> Result<Self, Error> {
-        let moved = document.settle_within();
-        let warnings = moved.into_iter().chain(document.check()?).collect();
+        let start_moved = document.settle_within();
+        let warnings = start_moved.into_iter().chain(document.check()?).collect();
         let built = Mechanism::build(&document.scene.mechanism, &document.files);
         let mechanism = built.map_err(|error| Error::unbuilt(&document, error))?;
         Self::with_mechanism(document, Arc::new(mechanism), warnings)
@@ -82,28 +82,29 @@ impl Simulation {
         }
     }
 
-    /// The same with one field changed. The value is a number, or any value as a scene file has it.
+    /// The simulation with one field changed. The value is a number, or text as in a scene file.
     pub fn with(&self, field: &str, value: impl Display) -> Result<Self, Error> {
         self.with_all(&[(field.to_owned(), value.to_string())])
     }
 
-    /// The same with several fields changed, in this order; the scene is checked once, after all changes.
+    /// The simulation with several fields changed in this order. The scene is checked once, after all
+    /// changes.
     pub fn with_all(&self, changes: &[(String, String)]) -> Result<Self, Error> {
         let mut document = self.document.clone();
         for (field, value) in changes {
             document.set(&format!("{field}={value}"))?;
         }
-        let same = document.scene.mechanism == self.document.scene.mechanism;
-        if !same || document.files != self.document.files {
+        let same_mechanism = document.scene.mechanism == self.document.scene.mechanism;
+        if !same_mechanism || document.files != self.document.files {
             return Self::of(document);
         }
-        let moved = document.settle_within();
-        let warnings = moved.into_iter().chain(document.check()?).collect();
+        let start_moved = document.settle_within();
+        let warnings = start_moved.into_iter().chain(document.check()?).collect();
         Self::with_mechanism(document, Arc::clone(self.mechanism()), warnings)
     }
 
-    /// The same with this force in place of that of its mechanism. Fields of the mechanism are then those of
-    /// [`Pieces`](crate::scene::Mechanism::Pieces).
+    /// The simulation with this force curve in place of its mechanism. The fields of the mechanism are then
+    /// those of [`Pieces`](crate::scene::Mechanism::Pieces).
     pub fn with_force(&self, curve: &ForceCurve) -> Result<Self, Error> {
         let mut document = self.document.clone();
         document.scene.mechanism = curve.to_scene();
@@ -116,8 +117,8 @@ impl Simulation {
         self.model.run(request)
     }
 
-    /// Runs the scene once and keeps samples and events. With `until_settled` in s the run goes on, window
-    /// after window, until the motion repeats, or up to that time.
+    /// Runs the scene once and keeps samples and events. With `until_settled` in s, the run continues window
+    /// by window until the motion repeats, at most up to that time.
     pub fn record(
         &self,
         sampling: &Sampling,
@@ -135,7 +136,7 @@ impl Simulation {
         }
     }
 
-    /// The scene with its text and the changes to it.
+    /// The scene with its source text and the changes to it.
     pub fn document(&self) -> &Document {
         &self.document
     }
@@ -155,7 +156,7 @@ impl Simulation {
         self.model.mechanism()
     }
 
-    /// Warnings about values that are valid but probably not meant, and about tables, each a sentence.
+    /// Warnings about values that are valid but probably unintended, and about tables, each one sentence.
     pub fn warnings(&self) -> impl Iterator<Item = String> {
         let name = &self.document.name;
         let of_tables = self.mechanism().warnings().map(move |warning| format!("{name}: {warning}"));
@@ -167,7 +168,7 @@ impl Simulation {
         until.map_or(Ok(()), check)
     }
 
-    /// The grid over these fields; without any that of the scene's own sweep.
+    /// The grid over these fields; if there are none, the grid of the scene's `sweep`.
     pub fn grid(&self, over: &[(String, Vec<f64>)]) -> Result<Grid, Error> {
         if over.is_empty() {
             return Ok(Grid::new(self.document.axes::<&str>(&[])?)?);

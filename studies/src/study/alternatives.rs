@@ -14,10 +14,10 @@ use crate::numeric::round::decade;
 use crate::scene::{Excitation, FieldPath, Files, Scene, Start, numeric_fields};
 use crate::system::threads::Pool;
 
-/// A scene of a comparison, under the excitation that all of them have.
+/// A scene of a comparison, with the common excitation.
 #[derive(Debug, Clone)]
 pub struct Alternative {
-    /// What it is called.
+    /// Its name.
     pub name: String,
     /// The scene; its excitation is a sine.
     pub scene: Scene,
@@ -30,7 +30,7 @@ pub struct Alternative {
 /// Relative change of each size.
 const SIZE_CHANGE: f64 = 0.01;
 
-/// Crossings are searched from the drive's frequency divided by this to its multiple by this.
+/// Crossings are searched from the frequency of the drive divided by this factor to the frequency times it.
 pub const SEARCHED_SPAN: f64 = 10.0;
 
 /// Number of frequencies tried on each side of that of the drive.
@@ -39,7 +39,7 @@ const STEPS: i32 = 40;
 /// Relative resolution of the ends of the band.
 const BAND_RESOLUTION: f64 = 1e-3;
 
-/// Names of sizes: lengths and thicknesses, the gap between magnets among them.
+/// Names of the fields that are sizes: lengths, thicknesses, and the gap between magnets.
 const SIZES: [&str; 3] = ["length_mm", "thickness_mm", "gap_mm"];
 
 const FREQUENCY: &str = "excitation.frequency_hz";
@@ -49,27 +49,28 @@ const FREQUENCY: &str = "excitation.frequency_hz";
 pub struct Rated {
     /// The scene.
     pub name: String,
-    /// The least amplitude in g that frees the mass from the stop it rests on; `None` if it rests on no stop.
+    /// Smallest amplitude in g that releases the mass from the stop on which it rests; `None` if it rests on
+    /// no stop.
     pub release_g: Option<f64>,
-    /// The least amplitude in g whose settled motion from rest crosses; `None` if there is no barrier.
+    /// Smallest amplitude in g whose settled motion from rest crosses; `None` if there is no barrier.
     pub crossing: Option<Found>,
     /// The settled motion of the scene itself.
     pub summary: Summary,
     /// Ends of the band of frequencies in Hz, at the scene's amplitude, whose settled motion from rest
-    /// crosses: the band that holds the drive's frequency, else the widest.
+    /// crosses: the band that contains the frequency of the drive, otherwise the widest band.
     pub crosses_hz: Option<(f64, f64)>,
-    /// The largest change of the crossing threshold, as a share of it, when one size is 1 % larger or
-    /// smaller, and that size. Infinite if the changed scene has no barrier or does not cross.
+    /// The largest relative change of the crossing threshold for a change of one size by 1 % up or down, and
+    /// that size. Infinite if the changed scene has no barrier or does not cross.
     pub sensitivity: Option<(f64, String)>,
 }
 
-/// A part of the work: to rate a scene, or to find its crossing threshold with a share added to one size.
+/// A part of the work: rating a scene, or finding its crossing threshold with one size changed.
 struct Part {
     scene: usize,
     change: Option<(String, f64)>,
 }
 
-/// How many parts the work has.
+/// Number of parts of the work.
 pub fn comparison_parts(scenes: &[Alternative]) -> u64 {
     parts(scenes).len() as u64
 }
@@ -84,15 +85,15 @@ fn parts(scenes: &[Alternative]) -> Vec<Part> {
     unchanged.chain(changed).collect()
 }
 
-/// The sizes of a scene's mechanism that are not 0.
+/// The fields of sizes of the mechanism that are not 0.
 fn sizes(scene: &Scene) -> Vec<String> {
     let is_size = |path: &String| is_of_mechanism(path) && SIZES.contains(&name_of(path));
     numeric_fields(scene).into_iter().filter(is_size).collect()
 }
 
-/// Rates the scenes on `pool`, the same for any number of threads. Each run begins at rest and is followed
-/// until its motion repeats, or up to `until_settled` in s (by default 1000 forcing periods beyond the run).
-/// `None` if cancelled.
+/// Rates the scenes on `pool`; the result is the same for any number of threads. Each run begins at rest and
+/// continues until its motion repeats, at most up to `until_settled` in s (by default 1000 forcing periods
+/// beyond the run). `None` if cancelled.
 pub fn alternatives(
     scenes: &[Alternative],
     until_settled: Option<f64>,
@@ -110,7 +111,7 @@ pub fn alternatives(
             Some((field, by)) => rating.changed(&scenes[*scene], field, *by).map(|found| (None, found)),
         };
         (task.tick)();
-        task.go_on().and(done)
+        task.check_cancelled().and(done)
     };
     let done = pool.map(parts.len(), || (), work).ok()?;
     let mut rated: Vec<Rated> = Vec::new();
@@ -134,7 +135,7 @@ struct Rating<'a> {
 }
 
 impl Rated {
-    /// The least amplitude in g whose settled motion crosses; `None` if none does.
+    /// Smallest amplitude in g whose settled motion crosses, if any does.
     pub fn crossing_g(&self) -> Option<f64> {
         self.crossing?.value
     }
@@ -166,7 +167,7 @@ impl Rating<'_> {
         Ok(found.map(|(found, _)| found))
     }
 
-    /// The crossing threshold with the share `by` added to one size.
+    /// The crossing threshold with one size changed by the share `by`.
     fn changed(&self, scene: &Alternative, field: &str, by: f64) -> Result<Option<f64>, Cancelled> {
         let mut trial = Scene { start: Start::Rest, ..scene.scene.clone() };
         let path = FieldPath::new(field);
@@ -178,8 +179,8 @@ impl Rating<'_> {
         Ok(found.and_then(|found| found.value))
     }
 
-    /// The band of frequencies that cross, by a scan whose ends alone are bisected: a gap or a band narrower
-    /// than a step of the scan may be missed.
+    /// The band of frequencies that cross, by a scan and bisection of its ends; a gap or a band narrower than
+    /// a step of the scan may be missed.
     fn band(&self, scene: &Alternative, trial: &Scene) -> Result<Option<(f64, f64)>, Cancelled> {
         let Excitation::Sine { frequency_hz, .. } = trial.excitation else { return Ok(None) };
         let family = Family::new(trial, &scene.files, &scene.mechanism, FREQUENCY);

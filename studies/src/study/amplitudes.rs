@@ -1,4 +1,4 @@
-//! Thresholds of the amplitude of a sine, and the stops that make a motion cross.
+//! Amplitude thresholds of a sine, and stops with which the motion crosses.
 
 use std::sync::Arc;
 
@@ -15,7 +15,7 @@ use crate::system::threads::Pool;
 /// The field of the amplitude of a sine.
 pub(super) const AMPLITUDE: &str = "excitation.amplitude_g";
 
-/// The unit of the third significant digit of a value.
+/// The place value of the third significant digit.
 fn third_digit(value: f64) -> f64 {
     10_f64.powi(decade(value) - 2)
 }
@@ -23,32 +23,33 @@ fn third_digit(value: f64) -> f64 {
 /// Threshold amplitudes in g of motions from rest at the frequency of the scene.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Thresholds {
-    /// The least amplitude that frees the mass from the stop it rests on, in closed form.
+    /// Smallest amplitude that releases the mass from the stop on which it rests, in closed form.
     pub frees_at: Option<f64>,
-    /// The least amplitude whose settled motion crosses, up to [`searched_to`](Self::searched_to); windows,
-    /// gaps and the first amplitude known to cross are searched up to 1.5 times it.
+    /// Smallest amplitude whose settled motion crosses, up to [`searched_to`](Self::searched_to). Windows,
+    /// gaps and the first amplitude that is known to cross are searched up to 1.5 times this amplitude.
     pub crossing: Found,
     /// The largest amplitude searched.
     pub searched_to: f64,
 }
 
-/// Steps of the scan up to the push that holds the mass against the mechanism's largest force, and above it.
+/// Number of steps of the scan up to the amplitude whose inertial force equals the largest force of the
+/// mechanism, and again up to twice that amplitude.
 const FINE_STEPS: u32 = 50;
-/// Ratio of each further step to the one before.
+/// Ratio of consecutive amplitudes above that range.
 const GROWTH: f64 = 1.02;
 
-/// Steps run together before checking whether one of them crosses.
+/// Number of steps that are run together before checking whether one of them crosses.
 const TOGETHER: usize = 32;
 
-/// The search ends at this many times the push that holds the mass.
-const MOST_PUSHES: f64 = 30.0;
+/// Multiple of that amplitude at which the search ends.
+const MAX_PUSHES: f64 = 30.0;
 
-/// Steps above the least amplitude that crosses in which changes are searched.
+/// Number of steps above the crossing threshold in which changes are searched.
 const GAP_STEPS: u32 = 50;
-/// Length of such a step, as a share of that amplitude.
+/// Length of such a step, as a share of the threshold.
 const GAP_STEP: f64 = 0.01;
 
-/// Searches the amplitudes of a sine. `None` if the drive is no sine, without a barrier, or if cancelled.
+/// The thresholds of the amplitude. `None` if the drive is not a sine, without a barrier, or if cancelled.
 pub fn thresholds(scene: &Scene, mechanism: &Arc<Mechanism>, task: &Task) -> Option<Thresholds> {
     let found = crossing(scene, mechanism, None, None, Above::Searched, task);
     let (crossing, searched_to) = found.ok().flatten()?;
@@ -62,8 +63,8 @@ pub(super) enum Above {
     Skipped,
 }
 
-/// The least amplitude of a sine whose settled motion from rest crosses, each run followed up to
-/// `until_settled` in s if given, and the largest amplitude searched. `None` without a sine or a barrier.
+/// The smallest amplitude of a sine whose settled motion from rest crosses, and the largest amplitude
+/// searched. Runs continue up to `until_settled` in s, if given. `None` without a sine or a barrier.
 pub(super) fn crossing(
     scene: &Scene,
     mechanism: &Arc<Mechanism>,
@@ -76,10 +77,10 @@ pub(super) fn crossing(
     let Some(push) = holding_push(scene, mechanism) else { return Ok(None) };
     let step = push / f64::from(FINE_STEPS);
     let mut values: Vec<f64> = (1..=2 * FINE_STEPS).map(|i| step * f64::from(i)).collect();
-    while let Some(last) = values.last().filter(|last| **last < MOST_PUSHES * push) {
+    while let Some(last) = values.last().filter(|last| **last < MAX_PUSHES * push) {
         values.push(last * GROWTH);
     }
-    // rounded as reported, so that the reported value has been run
+    // rounded as in the report, so that the reported value is one that was run
     values.iter_mut().for_each(|value| *value = multiple(*value, third_digit(*value)));
     values.dedup();
     let searched_to = values.last().copied().unwrap_or(push);
@@ -91,8 +92,8 @@ pub(super) fn crossing(
     for part in values.chunks(TOGETHER) {
         resolution = third_digit(answers.scan.last().map_or(part[0], |last| last.0));
         search.scan(&mut answers, part, resolution)?;
-        if let Some(first) = answers.first_that_does() {
-            // the number of values run beyond it depends on where a part ends
+        if let Some(first) = answers.first_with_motion() {
+            // values beyond the threshold are dropped, since their number depends on where a part ends
             answers.scan.truncate(first + 1);
             break;
         }
@@ -111,7 +112,8 @@ pub(super) fn crossing(
     Ok(Some((found, searched_to)))
 }
 
-/// The amplitude in g whose push equals the largest force between where the mass rests and the barrier.
+/// The amplitude in g whose inertial force equals the largest force between the rest position and the
+/// barrier.
 fn holding_push(scene: &Scene, mechanism: &Mechanism) -> Option<f64> {
     let Landscape { barrier, extrema, .. } = &mechanism.landscape;
     let barrier = barrier.as_ref()?;
@@ -129,7 +131,7 @@ fn right_stop(scene: &Scene) -> Option<f64> {
     scene.stops.limits_mm()[1].map(|mm| mm / 1e3)
 }
 
-/// The amplitude in g whose push equals the force that presses a resting mass on its stop.
+/// The amplitude in g whose inertial force equals the force that presses a resting mass on its stop.
 pub(super) fn frees_at(scene: &Scene, mechanism: &Mechanism) -> Option<f64> {
     let Excitation::Sine { .. } = scene.excitation else { return None };
     let right = right_stop(scene)?;
@@ -138,14 +140,15 @@ pub(super) fn frees_at(scene: &Scene, mechanism: &Mechanism) -> Option<f64> {
     (right < well && press > 0.0).then(|| press / (scene.mass_g / 1e3) / STANDARD_GRAVITY)
 }
 
-/// Least number of steps from the well to the middle in the search for stops; at most 2.5 times as many.
-const FEWEST_STOPS: f64 = 50.0;
+/// Smallest number of steps from the well to the middle in the search for stops; the largest is 2.5 times as
+/// many.
+const MIN_STEPS: f64 = 50.0;
 
 /// The largest travel limit in mm inside the wells, the same on both sides, whose motion from rest is
 /// known to be interwell under the scene's excitation; `None` if there is none.
 ///
-/// The limits that cross form no interval, so every step is run: 1, 2 or 5 of a decimal place, a tenth of a
-/// millimetre if the wells are some 7 mm away. The stops that are tried have this `restitution`.
+/// The limits that cross need not form an interval, so every step is run: 1, 2 or 5 times a power of ten, 0.1
+/// mm if the wells are about 7 mm away. All stops have this `restitution`.
 pub fn stops_that_cross(
     scene: &Scene,
     mechanism: &Arc<Mechanism>,
@@ -157,7 +160,7 @@ pub fn stops_that_cross(
         return Ok(None);
     };
     let well_mm = well.x.abs() * 1e3;
-    let step = round_down(well_mm / FEWEST_STOPS, &ONE_TWO_FIVE);
+    let step = round_down(well_mm / MIN_STEPS, &ONE_TWO_FIVE);
     let mut trial = Scene { start: Start::Rest, ..scene.clone() };
     for i in (1..=(well_mm / step).floor() as u32).rev() {
         let travel_limit_mm = multiple(f64::from(i) * step, step);
@@ -166,7 +169,7 @@ pub fn stops_that_cross(
         let (model, request) = followed(model, None);
         let run = model.run(&Request { cancel: Some(task.cancel), ..request });
         (task.tick)();
-        task.go_on()?;
+        task.check_cancelled()?;
         if Onset::Interwell.verdict(&run.summary) == (Verdict { does: true, known: true }) {
             return Ok(Some(travel_limit_mm));
         }

@@ -2,18 +2,17 @@
 
 use std::collections::VecDeque;
 
-/// What is known of a value of a bisection.
+/// State of a value of a bisection.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Trial {
     NotBegun,
-    /// It is being evaluated.
     UnderWay,
     /// The answer: yes or no.
     Known(bool),
 }
 
 /// The next value of a bisection to evaluate: the one that follows from the known answers or, while that is
-/// under way, one that may follow it. `None` if `ahead` values are under way or nothing is left.
+/// under way, one that may be needed after it. `None` if `ahead` values are under way or no value is left.
 pub(super) fn next_between(
     trial: impl Fn(f64) -> Trial,
     span: (f64, f64),
@@ -57,7 +56,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_asked_ahead_changes_nothing() {
+    fn evaluation_ahead_does_not_change_the_result() {
         for (ahead, at) in [1, 2, 3, 7].into_iter().flat_map(|ahead| [0.51, 0.77, 1.0].map(|at| (ahead, at)))
         {
             let mut trials: Vec<(f64, Trial)> = Vec::new();

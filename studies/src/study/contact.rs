@@ -12,7 +12,7 @@ use crate::numeric::{bisect, short};
 use crate::scene::{Scene, Stops};
 use crate::system::threads;
 
-/// Positions of the speed on a table: more than a picture needs.
+/// Number of speeds in a table: more than a picture needs.
 const SPEEDS: usize = 401;
 
 /// A single impact on the model's compliant stop over the impact speed, in even steps up to twice the speed
@@ -40,7 +40,7 @@ pub fn contact(model: &Model, rigid: f64) -> Option<Table> {
     Some(table)
 }
 
-/// The impact speed in m/s from which on the contact yields; `None` if its material is not known.
+/// The impact speed in m/s above which the contact yields; `None` if its material is not known.
 ///
 /// By halving: the force grows with the speed, and the speed scale is within a factor of 1e30.
 pub fn yield_speed(stop: &Hertz, mass: f64) -> Option<f64> {
@@ -67,7 +67,7 @@ pub fn yield_warning(model: &Model, summary: &Summary) -> Option<String> {
 pub struct Strikes {
     /// Median speed in m/s of the first impacts.
     pub speed: f64,
-    /// How many first impacts there are.
+    /// Number of first impacts.
     pub count: usize,
     /// Whether they are those of the settled window; of the whole run, where it has none.
     pub settled: bool,
@@ -100,10 +100,10 @@ pub fn strikes(model: &Model, cancel: &AtomicBool) -> Option<Strikes> {
     Some(Strikes { count: speeds.len(), speed: median(speeds)?, settled })
 }
 
-/// How long `check` runs a scene to see how fast its stops are struck.
+/// Longest computing time for which `check` runs a scene to find the speeds of impacts.
 const PATIENCE: Duration = Duration::from_secs(1);
 
-/// Restitutions for which `check` says what loss a compliant stop needs.
+/// Restitutions for which `check` gives the loss of a compliant stop.
 const WANTED: [f64; 4] = [0.8, 0.5, 0.36, 0.2];
 
 /// One sentence on the impact speed of `model` and compliant stops: their restitution at that speed and the

@@ -1,5 +1,5 @@
-//! Force, potential and stiffness of a mechanism over the displacement, and shapes, compression and stress of
-//! its flexures. Unlike the force curve, which is a polynomial, each state of these is solved separately.
+//! Force, potential and stiffness of a mechanism over displacement, and shapes, axial force and stress of its
+//! flexures. The force curve is a piecewise polynomial; the states of flexures are solved at each position.
 
 use super::{Table, Task};
 use crate::mechanics::flexure::{FlexureError, Flexures, State};
@@ -11,10 +11,10 @@ use crate::scene::Scene;
 /// Default number of positions of a force curve.
 pub const CURVE_POINTS: u32 = 401;
 
-/// Positions of its picture: more than the picture has columns.
+/// Number of positions in a picture of the curve: more than it has pixel columns.
 pub const CURVE_PICTURE_POINTS: usize = 3001;
 
-/// A position at which the curve is not known.
+/// A position outside the force curve.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[error(
     "{} mm is not on the force curve, which reaches from {} to {} mm",
@@ -38,7 +38,7 @@ pub fn curve(mechanism: &Mechanism, positions: Vec<f64>) -> Result<Table, Outsid
         .each("stiffness_n_per_m", &positions, |x| curve.stiffness(*x)))
 }
 
-/// Whether the curve is known at all of these positions in m.
+/// Checks that these positions in m are on the curve.
 fn check_positions(mechanism: &Mechanism, positions: &[f64]) -> Result<(), OutsideCurve> {
     let domain = mechanism.curve.domain();
     match positions.iter().find(|x| !(x.is_finite() && **x >= domain.0 && **x <= domain.1)) {
@@ -47,14 +47,14 @@ fn check_positions(mechanism: &Mechanism, positions: &[f64]) -> Result<(), Outsi
     }
 }
 
-/// `points` positions in m over the range that shows what matters: 1.15 times as far as the outermost
-/// equilibrium or stop (10 mm without one), rounded up to two digits, cut to where the curve is known.
+/// `points` positions in m that show all equilibria and stops: up to 1.15 times the distance of the outermost
+/// one (10 mm without one), rounded up to two digits and cut to the domain of the curve.
 pub fn default_positions(scene: &Scene, mechanism: &Mechanism, points: usize) -> Vec<f64> {
     const MARGIN: f64 = 1.15;
-    const PLAIN: f64 = 10.0;
+    const DEFAULT_REACH_MM: f64 = 10.0;
     let equilibria = mechanism.landscape.equilibria.iter().map(|equilibrium| equilibrium.x.abs() * 1e3);
     let farthest = equilibria.chain(scene.stops.limits_mm().into_iter().flatten()).fold(0.0, f64::max);
-    let reach = if farthest > 0.0 { two_digits_up(MARGIN * farthest) } else { PLAIN };
+    let reach = if farthest > 0.0 { two_digits_up(MARGIN * farthest) } else { DEFAULT_REACH_MM };
     let (left, right) = mechanism.curve.domain();
     let range_mm = ((-reach).max(left * 1e3), reach.min(right * 1e3));
     even_positions(range_mm, points).into_iter().map(|mm| metres(mm).clamp(left, right)).collect()
@@ -79,17 +79,17 @@ pub fn stop_positions(scene: &Scene) -> (f64, f64) {
     (-left, right)
 }
 
-/// `points` positions evenly from `range.0` to `range.1`, both ends exact and the middle exactly
-/// 0 where the range is symmetric and `points` odd; one point is the left end.
+/// `points` even positions from `range.0` to `range.1`. Both ends are exact, and the middle is exactly 0 if
+/// the range is symmetric and `points` is odd. A single point is the left end.
 pub fn even_positions(range: (f64, f64), points: usize) -> Vec<f64> {
     let last = points.saturating_sub(1).max(1) as f64;
-    // Weighted ends, not left + i*step: exact at both and mirrored about the middle.
+    // a weighted mean of the ends is exact at both and symmetric, unlike left + i*step
     (0..points).map(|i| (range.0 * (last - i as f64) + range.1 * i as f64) / last).collect()
 }
 
 /// Frequency in Hz of small free oscillations of `mass` in kg about an equilibrium; `None` if it is not
-/// stable to first order. On a corner of the curve the half swings differ in stiffness: 1/f = pi
-/// sqrt(m/k_left) + pi sqrt(m/k_right), which without a corner is the usual formula.
+/// stable to first order. At a kink of the force the two half swings differ in stiffness: 1/f = pi
+/// sqrt(m/k_left) + pi sqrt(m/k_right).
 pub fn small_amplitude_frequency(mass: f64, equilibrium: &Equilibrium) -> Option<f64> {
     let Equilibrium { stable, stiffness_left, stiffness_right, .. } = *equilibrium;
     let half = |stiffness: f64| std::f64::consts::PI * (mass / stiffness).sqrt();
@@ -97,7 +97,7 @@ pub fn small_amplitude_frequency(mass: f64, equilibrium: &Equilibrium) -> Option
         .then(|| 1.0 / (half(stiffness_left) + half(stiffness_right)))
 }
 
-/// Why the flexures are not known at some position.
+/// Why the states of flexures cannot be computed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum StatesError {
     /// The mechanism is not made of flexures.
@@ -112,23 +112,23 @@ pub enum StatesError {
     /// No solution at a position.
     #[error(transparent)]
     Unsolved(#[from] FlexureError),
-    /// It was told to stop.
+    /// It was cancelled.
     #[error("told to stop")]
     Cancelled,
 }
 
-/// The flexures of a mechanism, after a check that the positions in m are on its curve.
+/// The flexures of a mechanism, if the positions in m are on its curve.
 pub fn flexures_at<'a>(mechanism: &'a Mechanism, positions: &[f64]) -> Result<&'a Flexures, StatesError> {
     let flexures = mechanism.flexures.as_deref().ok_or(StatesError::NoFlexures)?;
     check_positions(mechanism, positions)?;
     Ok(flexures)
 }
 
-/// The flexures at these positions in m, in their order, each solved afresh.
+/// The states of the flexures at these positions in m, in this order; each is solved anew.
 pub fn states(mechanism: &Mechanism, positions: &[f64], task: &Task) -> Result<Vec<State>, StatesError> {
     let flexures = flexures_at(mechanism, positions)?;
     let state = |x: &f64| {
-        task.go_on().map_err(|_| StatesError::Cancelled)?;
+        task.check_cancelled().map_err(|_| StatesError::Cancelled)?;
         let state = flexures.state(*x)?;
         (task.tick)();
         Ok(state)
@@ -136,26 +136,27 @@ pub fn states(mechanism: &Mechanism, positions: &[f64], task: &Task) -> Result<V
     positions.iter().map(state).collect()
 }
 
-/// The table of [`curve`] at the positions of `states`, with `axial_n,bump_m,max_stress_pa`: the compression
-/// of all buckling flexures, the height of their bump, the largest bending stress of any flexure.
+/// The table of [`curve`] at the positions of `states`, with `axial_n,bump_m,max_stress_pa`: the axial force
+/// of all buckling flexures, the height of their buckled shape, and the largest bending stress of any
+/// flexure.
 pub fn full_curve(mechanism: &Mechanism, states: &[State]) -> Result<Table, OutsideCurve> {
     let table = curve(mechanism, states.iter().map(|state| state.x).collect())?;
     let table = table.each("axial_n", states, |state| state.axial).each("bump_m", states, |state| state.bump);
     Ok(table.each("max_stress_pa", states, |state| state.max_stress))
 }
 
-/// The table `x_m,flexure,s_m,px_m,py_m`: the centre lines of each state, point after point; `flexure` is
-/// `parallel` or `buckling`, one of each standing for its group.
+/// The table `x_m,flexure,s_m,px_m,py_m`: the centre lines of each state, point by point; `flexure` is
+/// `parallel` or `buckling`, each of which represents its group.
 ///
-/// px and py are coordinates of the frame, drawn with a shuttle of no width: the parallel flexures are
-/// clamped at (0, 0) and reach the shuttle at (L_p - u, x), u being their shortening; the buckling ones are
-/// clamped at (L_p + L_b - preload, 0) and reach the same point of the shuttle. So px runs along the flexures
-/// and py with x. s is the length along a flexure from its clamp in the frame.
+/// px and py are coordinates in the frame, for a shuttle without width: the parallel flexures are clamped at
+/// (0, 0) and reach the shuttle at (L_p - u, x), u being their shortening; the buckling ones are clamped at
+/// (L_p + L_b - preload, 0) and reach the same point of the shuttle. So px runs along the flexures and py
+/// with x. s is the length along a flexure from its clamp in the frame.
 pub fn shapes(states: &[State]) -> Table {
     let mut rows = Vec::new();
     for state in states {
         for line in &state.lines {
-            // Adding 0 makes -0 a plain 0.
+            // adding 0 turns -0 into 0
             let row =
                 |[s, px, py]: &[f64; 3]| (line.flexure, [state.x, *s, *px, *py].map(|value| value + 0.0));
             rows.extend(line.points.iter().map(row));
@@ -169,8 +170,8 @@ pub fn shapes(states: &[State]) -> Table {
         .each("py_m", &rows, |row| row.1[3])
 }
 
-/// A warning, one sentence, if the bending stress of some `states` exceeds the limit of the scene: the range
-/// of |x|, the largest stress and the limit.
+/// A warning in one sentence if the bending stress of some `states` exceeds the limit of the scene. It gives
+/// the range of |x|, the largest stress and the limit.
 pub fn stress_warning(flexures: &Flexures, states: &[State]) -> Option<String> {
     let limit = flexures.geometry().yield_stress;
     let farthest = states.iter().fold(0.0_f64, |largest, state| largest.max(state.x.abs()));

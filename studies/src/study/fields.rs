@@ -18,7 +18,7 @@ pub enum Read {
     Flag(fn(&Summary) -> Option<bool>),
 }
 
-/// Where the JSON of a run has a field.
+/// Place of a field in the JSON of a run.
 #[derive(Debug, Clone, Copy)]
 pub enum InJson {
     /// Among the values of the summary, if the run has such a quantity.
@@ -38,11 +38,11 @@ pub struct SummaryField {
     pub label: &'static str,
     /// Its explanation on the screen.
     pub about: &'static str,
-    /// The words that it can be; empty for a number.
+    /// Its possible words; empty for a number.
     pub words: &'static [&'static str],
     /// Whether it needs the energy ledger.
     pub needs_ledger: bool,
-    /// Where JSON has it.
+    /// Its place in JSON.
     pub in_json: InJson,
 }
 
@@ -73,7 +73,7 @@ impl SummaryField {
     }
 }
 
-/// The root mean square of the velocity, which maps show where nothing else is chosen.
+/// The root mean square of the velocity, which maps show by default.
 pub const RMS_VELOCITY: SummaryField = field(
     "rms_velocity_m_per_s",
     Number(|s| s.rms_velocity),
@@ -91,8 +91,8 @@ const REGIMES: &[&str] = &[
     Regime::Crossing.name(),
 ];
 
-/// All of them, in the order in which a summary has them. Counts of the settled window are missing where the
-/// run ended before it: 0 would say that nothing happened in it.
+/// All fields in the order of a summary. Counts of the settled window are missing if the run ended before it;
+/// 0 would mean that nothing happened in it.
 #[rustfmt::skip]
 pub const SUMMARY_FIELDS: &[SummaryField] = &[
     field("final_x_m", Number(|s| Some(s.final_x)), "displacement at the end", "Where the run ended."),

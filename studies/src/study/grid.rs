@@ -1,9 +1,10 @@
-//! Cells of a sweep: the product of its axes, the first one slowest; and their order in a map, coarse first.
+//! Cells of a sweep: the product of its axes, of which the first changes slowest; and their order in a map,
+//! from coarse to fine.
 
 use super::Table;
 use crate::scene::{Axis, Scene, column_names};
 
-/// The largest number of cells of one sweep: at a thousandth of a second each, a day of one core.
+/// Largest number of cells of one sweep: a day on one core at 1 ms per cell.
 pub const MAX_CELLS: u64 = 100_000_000;
 
 /// Why a sweep has no cells to run.
@@ -19,7 +20,7 @@ pub enum GridError {
     TooMany(String),
 }
 
-/// The axes and how a cell's index divides among them.
+/// The axes of a sweep; a cell has an index, from which its place on each axis follows.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Grid {
     axes: Vec<Axis>,
@@ -64,7 +65,7 @@ impl Grid {
         self.cells
     }
 
-    /// Where cell `index` stands on each axis.
+    /// The place of cell `index` on each axis.
     fn places(&self, index: u64) -> impl Iterator<Item = usize> {
         places(self.axes.iter().map(|axis| axis.values.len()), index)
     }
@@ -82,7 +83,7 @@ impl Grid {
             .fold(Table::new(), |table, (place, name)| table.with(name, cells().map(value(place)).collect()))
     }
 
-    /// Puts the values of cell `index` into a scene that has the fields; allocates nothing.
+    /// Sets the fields of a scene to the values of cell `index`, without allocation.
     pub fn apply(&self, index: u64, scene: &mut Scene) {
         self.axes.iter().zip(self.places(index)).for_each(|(axis, place)| axis.apply(scene, place));
     }
@@ -105,7 +106,7 @@ impl Grid {
         places.fold(0, |number, (axis, place)| number * axis.values.len() as u64 + place as u64)
     }
 
-    /// Cell `index` in words: `travel_limit_mm = 0.5, amplitude_g = 0.02`.
+    /// Description of cell `index`: `travel_limit_mm = 0.5, amplitude_g = 0.02`.
     pub fn describe(&self, index: u64) -> String {
         let parts = self.columns.iter().zip(self.values(index));
         let parts: Vec<String> = parts.map(|(column, value)| format!("{column} = {value}")).collect();
@@ -113,7 +114,7 @@ impl Grid {
     }
 }
 
-/// Where cell `index` of a grid with axes of these lengths stands on each, the slowest first.
+/// The place of cell `index` on each axis of a grid with axes of these lengths, the slowest first.
 pub(super) fn places<L>(lengths: L, index: u64) -> impl Iterator<Item = usize>
 where
     L: Iterator<Item = usize> + Clone,
@@ -139,7 +140,7 @@ fn count(lengths: impl Iterator<Item = u64> + Clone) -> Result<u64, GridError> {
     }
 }
 
-/// The strides of the levels, coarse first: powers of two, 1 at last.
+/// The strides of the levels, from coarse to fine: powers of two, the last one 1.
 pub const STRIDES: [usize; 4] = [8, 4, 2, 1];
 
 /// The cells of a grid, coarse first: every eighth value of each axis, then every fourth, every second, every
@@ -148,7 +149,7 @@ pub const STRIDES: [usize; 4] = [8, 4, 2, 1];
 pub struct Levels {
     /// Every cell once, those of a coarser level before those that a finer one adds.
     pub order: Vec<u64>,
-    /// How many cells of the order make up each level.
+    /// Number of cells of the order that make up each level.
     pub ends: [usize; STRIDES.len()],
     lengths: Vec<usize>,
 }
@@ -164,7 +165,7 @@ impl Levels {
         let cells: u64 = lengths.iter().map(|length| *length as u64).product();
         let mut new: [Vec<u64>; STRIDES.len()] = Default::default();
         for index in 0..cells {
-            // a power of two divides all places where it divides their bits together
+            // a power of two divides all places if it divides their bitwise or
             let bits = places(lengths.iter().copied(), index).fold(0, |bits, place| bits | place);
             new[STRIDES.partition_point(|stride| !bits.is_multiple_of(*stride))].push(index);
         }

@@ -1,7 +1,8 @@
-//! One question asked of every cell of a grid, in parallel, many runs at once where the processor can.
+//! A study of every cell of a grid, on several threads and with several runs per thread in vector lanes.
 //!
-//! Rows leave in order, and few cells are begun ahead of them, so that memory does not grow with the cells.
-//! An answer depends on the scene of its cell alone, so the bytes are the same for any number of threads.
+//! Rows are delivered in order, and a bounded number of cells is begun ahead of them, so that memory does not
+//! grow with the number of cells. The result of a cell depends only on its scene, so it has the same bits for
+//! any number of threads.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -18,23 +19,23 @@ use crate::system::threads::{Pool, Queue, UnderWay};
 /// The answer of one cell.
 #[derive(Debug, Clone)]
 pub struct Row<A> {
-    /// The number of the cell.
+    /// Index of the cell.
     pub index: u64,
-    /// The direction of the walk, if each cell goes on from the one before.
+    /// The direction of the walk, if each cell continues from the one before.
     pub direction: Option<Direction>,
-    /// What is known of the cell.
+    /// The result of the cell.
     pub answer: A,
 }
 
-/// A question asked of each cell.
+/// What is computed for each cell.
 pub trait Question: Default + Sync {
-    /// What is known of a cell.
+    /// The result of a cell.
     type Answer: Send;
 
-    /// What a run keeps, and when it ends; `None` if the answer takes no run of the model as it is.
+    /// The request for the run of a cell; `None` if the answer is computed from the model without a run.
     fn request(&self) -> Option<Request<'_>>;
 
-    /// The model to run, made from that of the cell.
+    /// The model to run, derived from that of the cell.
     fn model(&self, model: Model) -> Model {
         model
     }
@@ -42,30 +43,30 @@ pub trait Question: Default + Sync {
     /// Why the question does not apply to this model; `scene` is that of its cell.
     fn fault(&self, model: &Model, scene: &Scene) -> Option<Fault>;
 
-    /// The answer by the model and the run that was [requested](Self::request).
+    /// The answer from the model and the run that was [requested](Self::request).
     fn answer(&self, model: &Model, run: Option<Run>, cancel: &AtomicBool) -> Self::Answer;
 
     /// The answer for a cell without a model.
     fn without_model(cell: Cell) -> Self::Answer;
 
-    /// Counts an answer.
+    /// Adds an answer to the tally.
     fn count(tally: &mut Tally, answer: &Self::Answer);
 
-    /// The rows of some cells.
+    /// The table of some rows.
     fn table(&self, grid: &Grid, rows: &[Row<Self::Answer>]) -> Table;
 
-    /// How the last field is walked, if each cell goes on from the one before.
+    /// The directions in which the last field is walked, if each cell continues from the one before.
     fn carry(&self) -> Option<Carry> {
         None
     }
 
-    /// Cells that `threads` may have begun before the first of them has left.
+    /// Number of cells that `threads` together may begin ahead of the first one that has not been delivered.
     fn ahead(&self, threads: u64) -> u64 {
         AHEAD * threads
     }
 }
 
-/// Cells that a thread may have begun, where they are small.
+/// Number of cells with small results that a thread may begin ahead.
 pub(super) const AHEAD: u64 = 4096;
 
 /// The mechanism of a cell, or why it has none.
@@ -89,24 +90,25 @@ pub struct GridStudy<Q> {
     question: Q,
 }
 
-/// Walks that may be begun however long they are: those that a thread has under way.
-const WALKS: u64 = 64;
+/// Number of walks of any length that a thread may begin ahead: about as many as it runs at a time.
+const MIN_WALKS_AHEAD: u64 = 64;
 
-/// Mechanisms kept for the whole study; with more of them each cell builds its own.
-const KEPT_MECHANISMS: u64 = 4096;
-/// About the bytes of a large one (flexures with their states).
-const LARGEST_MECHANISM: u64 = 50_000;
+/// Largest number of mechanisms that are kept for the whole study; if the grid has more, each cell builds its
+/// own.
+const MAX_KEPT_MECHANISMS: u64 = 4096;
+/// Approximate size of a large mechanism in bytes (flexures with their states).
+const MECHANISM_BYTES: u64 = 50_000;
 
 impl Cells {
     pub fn new(base: &Scene, files: &Files, grid: Grid) -> Self {
-        // left out, so that it is not copied for each cell
+        // fields without influence on a run are dropped, so that they are not copied for each cell
         let base = Scene { notes: String::new(), sweep: Vec::new(), app: None, ..base.clone() };
-        let kept = Some(grid.mechanisms()).filter(|n| *n <= KEPT_MECHANISMS).unwrap_or(0);
+        let kept = Some(grid.mechanisms()).filter(|n| *n <= MAX_KEPT_MECHANISMS).unwrap_or(0);
         let mechanisms = (0..kept).map(|_| Mutex::new(None)).collect();
         Self { base, files: files.clone(), grid, mechanisms, built: AtomicU64::new(0) }
     }
 
-    /// Makes `scene` that of a cell and returns its mechanism; `None` if cancelled before it was built.
+    /// Turns `scene` into that of a cell and returns its mechanism; `None` if cancelled before it was built.
     pub fn mechanism(&self, index: u64, scene: &mut Scene, cancel: &AtomicBool) -> Option<Built> {
         self.grid.apply(index, scene);
         let build = || {
@@ -133,12 +135,13 @@ impl Cells {
 }
 
 impl<Q: Question> GridStudy<Q> {
-    /// A study of `grid` over `base`, which has passed its check, as have the grid's corners.
+    /// A study of `grid` over `base`. Precondition: `base` and the corners of the grid have passed the check
+    /// of scenes.
     pub fn new(base: &Scene, files: &Files, grid: Grid) -> Self {
         Self { cells: Cells::new(base, files, grid), question: Q::default() }
     }
 
-    /// The same with this question.
+    /// The study with this question.
     #[must_use]
     pub fn with(mut self, question: Q) -> Self {
         self.question = question;
@@ -155,17 +158,17 @@ impl<Q: Question> GridStudy<Q> {
         &self.cells.grid
     }
 
-    /// The number of runs, each of which is a row of a sweep.
+    /// The number of runs; each is a row of a sweep.
     pub fn rows(&self) -> u64 {
-        self.grid().cells() * self.ways()
+        self.grid().cells() * self.runs_per_cell()
     }
 
-    /// How often each cell is run.
-    fn ways(&self) -> u64 {
+    /// Number of runs per cell.
+    fn runs_per_cell(&self) -> u64 {
         self.question.carry().map_or(1, |carry| carry.directions().len() as u64)
     }
 
-    /// Rows that are computed one after the other: those of a walk, else one.
+    /// Number of rows that must be computed one after the other: the length of a walk, or 1.
     fn unit(&self) -> u64 {
         let walk = self.grid().axes().last().map_or(1, |axis| axis.values.len() as u64);
         self.question.carry().map_or(1, |_| walk)
@@ -177,27 +180,27 @@ impl<Q: Question> GridStudy<Q> {
     }
 
     fn walk(&self, row: u64) -> Walk {
-        let number = (row / self.unit() % self.ways()) as usize;
+        let number = (row / self.unit() % self.runs_per_cell()) as usize;
         let direction = self.question.carry().map(|carry| carry.directions()[number]);
         Walk::new(self.cell(row), self.unit(), direction)
     }
 
-    /// The cell of a row, where walks in both directions have their cells in the order of the grid.
+    /// The cell of a row. In walks of both directions cells are counted in the order of the grid.
     pub fn cell(&self, row: u64) -> u64 {
-        row / self.unit() / self.ways() * self.unit() + row % self.unit()
+        row / self.unit() / self.runs_per_cell() * self.unit() + row % self.unit()
     }
 
-    /// Approximate upper bound of the bytes that a run keeps; walks are kept while they go on.
+    /// Approximate upper bound of the memory of a run in bytes; walks are kept until they end.
     pub fn memory(&self, threads: usize) -> u64 {
         let kept = self.cells.mechanisms.len() as u64;
         let mechanisms = if self.grid().changes_mechanism() { kept } else { 1 };
         let ahead = self.question.carry().map_or(AHEAD, |_| self.walks_ahead() * self.unit());
-        ahead * threads as u64 * size_of::<Row<Q::Answer>>() as u64 + mechanisms * LARGEST_MECHANISM
+        ahead * threads as u64 * size_of::<Row<Q::Answer>>() as u64 + mechanisms * MECHANISM_BYTES
     }
 
-    /// Walks that may be begun, for each thread, before the first of them has left.
+    /// Number of walks per thread that may be begun ahead of the first one that has not been delivered.
     fn walks_ahead(&self) -> u64 {
-        (AHEAD / self.unit()).max(WALKS)
+        (AHEAD / self.unit()).max(MIN_WALKS_AHEAD)
     }
 
     /// The table without rows.
@@ -205,14 +208,14 @@ impl<Q: Question> GridStudy<Q> {
         self.table(0, [])
     }
 
-    /// The rows of the cells from `begin` on, none of them carried.
+    /// The rows of consecutive cells from `begin` on, without walks.
     pub fn table(&self, begin: u64, answers: impl IntoIterator<Item = Q::Answer>) -> Table {
         let row = |(index, answer)| Row { index, direction: None, answer };
         let rows: Vec<Row<Q::Answer>> = (begin..).zip(answers).map(row).collect();
         self.question.table(self.grid(), &rows)
     }
 
-    /// The mechanism of the first cell, or why it has none; that of all cells if no axis changes it.
+    /// The mechanism of the first cell, or why it has none. It is that of all cells if no axis changes it.
     pub fn first_mechanism(&self) -> Result<Arc<Mechanism>, BuildError> {
         let (mut scene, never) = (self.cells.base.clone(), AtomicBool::new(false));
         let built = self.cells.mechanism(0, &mut scene, &never);
@@ -225,13 +228,13 @@ impl<Q: Question> GridStudy<Q> {
         Some(self.question.model(model))
     }
 
-    /// Builds every cell without running it; the error is the first invalid one, with all its faults. A
-    /// mechanism that is not solved is an outcome and no fault. A cancelled check finds nothing.
+    /// Builds the model of every cell without running it. The error is the first invalid cell, with all its
+    /// faults. An unsolved mechanism is an outcome, not a fault. A cancelled check returns `Ok`.
     pub fn validate(&self, pool: &Pool, task: &Task) -> Result<(), CellFaults> {
         self.validate_rows(&self.slice(Shard::WHOLE), 0, pool, task)
     }
 
-    /// The same for the cells of a slice from its row `from` on.
+    /// Like [`validate`](Self::validate), for the cells of a slice from its row `from` on.
     pub fn validate_rows(
         &self,
         slice: &Slice,
@@ -240,7 +243,7 @@ impl<Q: Question> GridStudy<Q> {
         task: &Task,
     ) -> Result<(), CellFaults> {
         let faults = |scene: &mut Scene, place: u64| {
-            task.go_on().ok()?;
+            task.check_cancelled().ok()?;
             let index = self.cell(slice.row(from + place));
             let faults = match self.cells.model(index, scene, task)? {
                 Ok(model) => vec![self.question.fault(&self.question.model(model), scene)?],
@@ -251,14 +254,14 @@ impl<Q: Question> GridStudy<Q> {
         pool.find_first(slice.rows() - from, || self.cells.base.clone(), faults).map_or(Ok(()), Err)
     }
 
-    /// Puts a mechanism in the place of one that would be built.
+    /// Replaces a mechanism that would be built.
     #[cfg(test)]
     pub fn set_mechanism(&self, number: usize, mechanism: Built) {
         *self.cells.mechanisms[number].lock().unwrap() = Some(mechanism);
     }
 
-    /// Answers every cell on `pool` and hands the rows to `write`, some at a time, in order. `write` answers
-    /// whether more rows are wanted. Precondition: [`validate`](Self::validate) found nothing.
+    /// Runs every cell on `pool` and passes the rows in order to `write`, several at a time. `write` returns
+    /// whether more rows are wanted. Precondition: [`validate`](Self::validate) found no fault.
     pub fn run<E>(
         &self,
         pool: &Pool,
@@ -268,7 +271,8 @@ impl<Q: Question> GridStudy<Q> {
         self.run_rows(&self.slice(Shard::WHOLE), 0, pool, task, |table, _| write(table))
     }
 
-    /// The same for the rows of a slice from `from` on, which begins a unit; `write` also gets their tally.
+    /// Like [`run`](Self::run), for the rows of a slice from `from` on, which must be the first row of a
+    /// unit. `write` also gets the tally of its rows.
     pub fn run_rows<E>(
         &self,
         slice: &Slice,
@@ -284,10 +288,10 @@ impl<Q: Question> GridStudy<Q> {
         };
         let walk = |number: usize| self.walk(slice.row(from + number as u64 * unit));
         let work = |take: &dyn Fn(UnderWay) -> Option<usize>, done: &dyn Fn(usize, Row<Q::Answer>)| {
-            self.go(&walk, task, take, done);
+            self.run_walks(&walk, task, take, done);
         };
         let (mut tally, mut end) = (Tally::default(), None);
-        let leave = |rows: Vec<Row<Q::Answer>>| {
+        let receive = |rows: Vec<Row<Q::Answer>>| {
             let mut part = Tally::default();
             rows.iter().for_each(|row| Q::count(&mut part, &row.answer));
             tally.add(&part);
@@ -299,13 +303,13 @@ impl<Q: Question> GridStudy<Q> {
             })
         };
         let rows = slice.rows() - from;
-        pool.in_order((rows / unit) as usize, unit as usize, ahead as usize, work, leave);
+        pool.in_order((rows / unit) as usize, unit as usize, ahead as usize, work, receive);
         let cancelled = task.is_cancelled() && tally.cells < rows;
         end.or(cancelled.then_some(SweepEnd::Cancelled)).map_or(Ok(tally), Err)
     }
 
-    /// Answers these cells on `pool`, none of them carried, begun in their order, and hands each over from
-    /// its thread as soon as it is there. False if cancelled before all were answered.
+    /// Runs these cells on `pool` in this order, without walks, and calls `each` with every result on the
+    /// thread that computed it. False if cancelled before all were run.
     pub fn run_cells(
         &self,
         pool: &Pool,
@@ -316,13 +320,13 @@ impl<Q: Question> GridStudy<Q> {
         let queue = Queue::new(cells.len(), pool.count());
         let walk = |number: usize| Walk::new(cells[number], 1, None);
         let done = |_, row: Row<Q::Answer>| each(row.index, row.answer);
-        pool.everywhere(|| self.go(&walk, task, &|under_way| queue.take(under_way), &done));
+        pool.everywhere(|| self.run_walks(&walk, task, &|under_way| queue.take(under_way), &done));
         !task.is_cancelled()
     }
 
-    /// Goes through walks on this thread, many at once where the processor can. `take` gets how many are
-    /// under way here and gives the number of a further one; each row goes to `done` with its number.
-    fn go(
+    /// Runs walks on this thread, several at a time in vector lanes. `take` gets the number of runs under way
+    /// on this thread and returns the index of the next walk; `done` gets each row with its index.
+    fn run_walks(
         &self,
         walk: &dyn Fn(usize) -> Walk,
         task: &Task,
@@ -330,7 +334,7 @@ impl<Q: Question> GridStudy<Q> {
         done: &dyn Fn(usize, Row<Q::Answer>),
     ) {
         let (request, mut scene) = (self.question.request(), self.cells.base.clone());
-        // those that are to go on here, and those under way, by number
+        // walks whose next cell can be run, and those with a run under way, by index
         let (ready, walking) = (RefCell::new(Vec::new()), RefCell::new(BTreeMap::new()));
         let answered = |number: usize, mut walk: Walk, answer: Q::Answer| {
             if task.is_cancelled() {
@@ -345,13 +349,13 @@ impl<Q: Question> GridStudy<Q> {
             }
         };
         let mut next = |under_way: UnderWay| loop {
-            // checked before waiting for more, since there may be none left
-            task.go_on().ok()?;
+            // checked first, since `take` may wait for another thread
+            task.check_cancelled().ok()?;
             let kept = ready.borrow_mut().pop();
             let (number, begun) = kept.or_else(|| take(under_way).map(|number| (number, walk(number))))?;
             let answer = match (self.cells.model(begun.cell(), &mut scene, task), request) {
                 (Some(Ok(model)), Some(request)) => {
-                    let model = begun.carried.on(self.question.model(model));
+                    let model = begun.carried.continued(self.question.model(model));
                     let carry = begun.direction.is_some();
                     walking.borrow_mut().insert(number, begun);
                     return Some((number, model, Request { carry, cancel: Some(task.cancel), ..request }));
@@ -372,7 +376,8 @@ impl<Q: Question> GridStudy<Q> {
     }
 }
 
-/// The columns of the swept fields, and of the direction where `walked`, with so many rows for each answer.
+/// The columns of the swept fields and, if `walked`, of the direction; `count` gives the number of rows of an
+/// answer.
 pub(super) fn fields<A>(grid: &Grid, rows: &[Row<A>], count: impl Fn(&A) -> usize, walked: bool) -> Table {
     let each = || rows.iter().flat_map(|row| std::iter::repeat_n(row, count(&row.answer)));
     let table = grid.table(|| each().map(|row| row.index));

@@ -1,5 +1,5 @@
-//! Scene in words: what it models and leaves out, how good its force curve is, where it rests, what releases
-//! it from its stop, how fast its stops are struck.
+//! Description of a scene: what it models and omits, the accuracy of its force curve, its equilibria, its
+//! release from a stop, and the speeds of its impacts.
 
 use std::sync::Arc;
 
@@ -12,7 +12,7 @@ use crate::mechanics::{Equilibrium, ForceExtremum, Kink, Landscape, Mechanism};
 use crate::numeric::short;
 use crate::scene::{Damping, Fault, Scene};
 
-/// The scene in words, a line each; all faults that only show when the model is built.
+/// The description of a scene in lines, or all faults that are found only when the model is built.
 ///
 /// Numbers here are rounded to four digits for reading; `curve --landscape` has them all.
 pub fn inspect(scene: &Scene, mechanism: &Arc<Mechanism>) -> Result<Vec<String>, Vec<Fault>> {
@@ -39,14 +39,14 @@ pub fn inspect(scene: &Scene, mechanism: &Arc<Mechanism>) -> Result<Vec<String>,
     Ok(lines)
 }
 
-/// The flexures, if any, and the force curve.
+/// Lines on the flexures, if any, and the force curve.
 fn force(mechanism: &Mechanism) -> Vec<String> {
     let Some(solved) = &mechanism.flexures else { return vec![force_curve(mechanism)] };
     let [shape, theory] = flexures(solved.geometry());
     vec![shape, theory, accuracy(mechanism, solved.accuracy())]
 }
 
-/// What the flexures are and which beams model them.
+/// Lines on the flexures and the beam models used for them.
 fn flexures(geometry: &Geometry) -> [String; 2] {
     let mm = |metres: f64| short(metres * 1e3);
     let group = |kind: &str, Group { count, length, width }: &Group| {
@@ -79,7 +79,8 @@ fn flexures(geometry: &Geometry) -> [String; 2] {
     ]
 }
 
-/// How good the curve of solved flexures is. Errors of what does not exist, such as a barrier, are left out.
+/// A line on the accuracy of the force curve of flexures. Errors of features that do not exist, such as a
+/// barrier, are left out.
 fn accuracy(mechanism: &Mechanism, accuracy: &Accuracy) -> String {
     let parts = [
         (accuracy.force, "of the largest inner force"),
@@ -132,7 +133,8 @@ fn force_curve(mechanism: &Mechanism) -> String {
     }
 }
 
-/// k and c of a damping ratio, and beside a kink those that other readings of the same ratio give.
+/// Lines on stiffness and damping coefficient for a damping ratio and, at a kink, on those for other
+/// definitions of the ratio.
 fn damping(scene: &Scene, model: &Model) -> Vec<String> {
     let Damping::Ratio(xi) = scene.damping else { return Vec::new() };
     let landscape = &model.mechanism().landscape;

@@ -11,14 +11,15 @@ use crate::scene::{Axis, Excitation, Scene, Start};
 /// The travel limit, over which the release is known in closed form.
 const LIMIT: &str = "stops.travel_limit_mm";
 
-/// Regimes of motions that cross at all.
+/// Regimes of motions that cross.
 const CROSS: [&str; 3] = [Regime::Interwell.name(), Regime::Irregular.name(), Regime::Crossing.name()];
 
 /// Points of the line of releases.
 const POINTS: usize = 400;
 
-/// `travel_limit_mm,amplitude_g`: the least amplitude of a sine that frees a mass from the stop that it rests
-/// on: mass times base acceleration reaches the force that presses it there, amplitude = |F(D)|/m.
+/// `travel_limit_mm,amplitude_g`: the smallest amplitude of a sine that releases a mass from the stop on
+/// which it rests: mass times base acceleration reaches the force that presses it there, amplitude =
+/// |F(D)|/m.
 ///
 /// Only for a grid over these two fields, from rest, and for travel limits inside the right-hand well:
 /// further out the mass does not rest on the stop.
@@ -34,7 +35,7 @@ pub fn release_line(scene: &Scene, mechanism: &Mechanism, grid: &Grid) -> Option
         return None;
     }
     let place = |i: usize| from + (to - from) * i as f64 / (POINTS - 1) as f64;
-    // Pressed outward only: a force that pulls inward lets the mass go at once.
+    // only outward forces count; an inward force releases the mass at once
     let pressed = |mm: f64| (-mechanism.curve.force(mm / 1e3)).max(0.0);
     let mass = scene.mass_g / 1e3;
     let limits: Vec<f64> = (0..POINTS).map(place).collect();
@@ -43,8 +44,8 @@ pub fn release_line(scene: &Scene, mechanism: &Mechanism, grid: &Grid) -> Option
     Some(table.with("amplitude_g", Values::Numbers(amplitudes)))
 }
 
-/// For each value of the other field the least amplitude, 0 or above, whose cell crosses, or NaN. The two
-/// columns are called as in the sweep, the other field first.
+/// For each value of the other field the smallest amplitude, 0 or above, whose cell crosses, or NaN. The two
+/// columns have the names of the sweep, the other field first.
 ///
 /// Only for a grid over two fields of which one is an amplitude. `rows` are all rows of the sweep.
 pub fn first_crossing(grid: &Grid, rows: &Table) -> Option<Table> {
@@ -67,7 +68,7 @@ pub fn first_crossing(grid: &Grid, rows: &Table) -> Option<Table> {
         if let Ok(place) = values.binary_search_by(|value| value.total_cmp(other))
             && counts
         {
-            // f64::min ignores the NaN of a place that has none yet.
+            // f64::min ignores the NaN of a place without a value
             least[place] = least[place].min(amplitudes[i]);
         }
     }
@@ -97,7 +98,7 @@ impl Edges {
         let middle = |pair: &[f64]| 0.5 * pair[0] + 0.5 * pair[1];
         let mut edges: Vec<f64> = values.windows(2).map(middle).collect();
         match (values.first(), values.last()) {
-            // A cell at the end reaches as far outward as inward.
+            // the outermost cells are symmetric about their values
             (Some(first), Some(last)) if edges.len() + 1 == values.len() && !edges.is_empty() => {
                 let (low, high) = (2.0 * first - edges[0], 2.0 * last - edges[edges.len() - 1]);
                 edges.insert(0, low);

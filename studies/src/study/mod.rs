@@ -1,10 +1,10 @@
-//! Studies: questions about a scene, answered by tables.
+//! Studies: computations about a scene whose results are tables.
 //!
-//! A study takes models and plain numbers, reports its progress and can be cancelled through a [`Task`], and
-//! answers with a [`Table`]. It reads no arguments and writes no files: the window and the command line ask
-//! the same studies and show the same tables.
+//! A study takes models and plain numbers, reports progress and can be cancelled through a [`Task`], and
+//! returns a [`Table`]. It reads no arguments and writes no files, so that the window and the command line
+//! call the same studies and show the same tables.
 
-/// An enum each of whose variants has a word, as arguments and tables have it.
+/// An enum whose variants each have a word, which is used in arguments and tables.
 macro_rules! words {
     ($(#[$about:meta])* $name:ident { $($(#[$of:meta])* $variant:ident = $word:literal,)+ }) => {
         $(#[$about])*
@@ -14,17 +14,17 @@ macro_rules! words {
         }
 
         impl $name {
-            /// All of them.
+            /// All variants.
             pub const ALL: [Self; [$($word),+].len()] = [$(Self::$variant),+];
 
-            /// Its word.
+            /// The word of the variant.
             pub const fn name(self) -> &'static str {
                 match self {
                     $(Self::$variant => $word,)+
                 }
             }
 
-            /// That with this word.
+            /// The variant with this word.
             pub fn named(word: &str) -> Option<Self> {
                 Self::ALL.into_iter().find(|one| one.name() == word)
             }
@@ -118,20 +118,20 @@ pub use watch::{Watch, continued_scene, distances, watched_events};
 /// Progress and cancellation of a long study.
 #[derive(Clone, Copy)]
 pub struct Task<'a> {
-    /// Called from any thread when another part is done.
+    /// Called after each finished part, from any thread.
     pub tick: &'a (dyn Fn() + Sync),
-    /// Set from elsewhere to stop soon.
+    /// Set by another thread to cancel the study.
     pub cancel: &'a AtomicBool,
 }
 
 impl Task<'_> {
-    /// Whether the study was told to stop.
+    /// Whether the study was cancelled.
     pub fn is_cancelled(&self) -> bool {
         self.cancel.load(Ordering::Relaxed)
     }
 
-    /// An error if the study was told to stop.
-    fn go_on(&self) -> Result<(), Cancelled> {
+    /// An error if the study was cancelled.
+    fn check_cancelled(&self) -> Result<(), Cancelled> {
         if self.is_cancelled() { Err(Cancelled) } else { Ok(()) }
     }
 }
@@ -139,11 +139,11 @@ impl Task<'_> {
 /// Displacement in m and velocity in m/s.
 type State = (f64, f64);
 
-/// A study was told to stop before it had its answer.
+/// The error of a study that was cancelled.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Cancelled;
 
-/// Why a study that knows a motion by displacement and velocity alone refuses a scene.
+/// Why a study whose state consists of displacement and velocity only refuses a scene.
 pub const ELECTRICAL_STATE: &str = "transducer: its current or voltage goes on with the motion as a third \
      state, and this compares displacement and velocity alone; take inductance_mh: 0 (of a piezoelectric one \
      load_kohm: 0, a short circuit), or transducer: None";

@@ -1,6 +1,6 @@
-//! Section of a motion: its state once a forcing period, or its impacts, over the settled window.
+//! Section of a motion: its stroboscopic states or its impacts over the settled window.
 //!
-//! Over a grid it is the bifurcation diagram.
+//! Over a grid it gives a bifurcation diagram.
 
 use std::sync::atomic::AtomicBool;
 
@@ -10,10 +10,10 @@ use super::{Carry, Cell, Grid, GridStudy, Question, Row, Table, Tally};
 use crate::dynamics::{EventKind, Model, Request, Run, SectionPoint, Side, Summary};
 use crate::scene::{Fault, Scene};
 
-/// The most states of one section.
+/// Largest number of states of one section.
 pub const MAX_SECTION: u64 = 1 << 22;
 
-/// States that are kept in memory before their rows are written.
+/// Number of states that are kept in memory before their rows are written.
 const KEPT: u64 = 1 << 21;
 
 /// Extra column of the table of states: the number of impacts in the settled window.
@@ -22,7 +22,7 @@ pub const IMPACTS: &str = "impacts";
 /// Where a section is taken.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum SectionAt {
-    /// At this phase of the drive in degrees: of a sum, the share of the common period since the start.
+    /// At this phase of the drive in degrees; for a sum of sines, 360 degrees are the common period.
     Phase(f64),
     /// At every impact that counts, contacts with a compliant stop among them.
     Impacts,
@@ -31,11 +31,11 @@ pub enum SectionAt {
 /// How a section is taken.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SectionOptions {
-    /// Where.
+    /// Where it is taken.
     pub at: SectionAt,
     /// Forcing periods that are skipped and that make the settled window, in place of the scene's run.
     pub periods: Option<(u64, u64)>,
-    /// Each run goes on until its motion repeats, or up to this time in s.
+    /// Each run continues until its motion repeats, at most up to this time in s.
     pub until_settled: Option<f64>,
     /// The last field of a grid is walked, as in a [sweep](super::SweepOptions::carry).
     pub carry: Option<Carry>,
@@ -45,9 +45,9 @@ pub struct SectionOptions {
 #[derive(Debug, Clone)]
 pub struct Sectioned {
     cell: Cell,
-    /// Its states, where it is taken at a phase.
+    /// Its states, if it is taken at a phase.
     states: Vec<SectionPoint>,
-    /// Its impacts, where it is taken at them.
+    /// Its impacts, if it is taken at impacts.
     impacts: Vec<Struck>,
 }
 
@@ -197,8 +197,9 @@ impl SectionOptions {
     }
 }
 
-/// The section of a run of `model`, which is that of `scene`, of states with [`IMPACTS`], and the summary. A
-/// fault if the drive does not repeat, or has no or too many periods.
+/// The section of a run of `model`, the model of `scene`, and the summary of the run. The table of states has
+/// the column [`IMPACTS`]. A fault if the drive does not repeat, or if the settled window has no period or
+/// too many.
 pub fn section(
     model: &Model,
     scene: &Scene,
@@ -215,5 +216,6 @@ pub fn section(
     Ok((options.table(&Grid::of_one(), &[row]), summary))
 }
 
-/// Sections of the cells of a grid: the swept fields, the direction of a walk, then as of one [`section`].
+/// Sections of the cells of a grid: columns of the swept fields and of the direction of a walk, then those of
+/// one [`section`].
 pub type Sections = GridStudy<SectionOptions>;

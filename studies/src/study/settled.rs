@@ -1,5 +1,5 @@
-//! Settled motion of a scene, the time it is waited for, the place of an undriven mass in the landscape, and
-//! runs that the threads of a pool take from each other.
+//! Settled motion of a scene and how long it is awaited, the well of an undriven mass, and runs that the
+//! threads of a pool share.
 
 use std::cell::RefCell;
 use std::sync::atomic::AtomicBool;
@@ -8,26 +8,28 @@ use super::Task;
 use crate::dynamics::{Model, Outcome, Phase, Request, Run, Sample, Summary};
 use crate::system::threads::{Pool, Queue, UnderWay, share_from};
 
-/// Forcing periods beyond the scene's own run for which a motion is followed until it repeats: five times
-/// what nearly all transients of the prototype take. Just above a threshold their length is unbounded:
-/// without stops, of 40 amplitudes within 1 % of it, five take between 1000 and 4500 periods.
+/// Number of forcing periods after the scene's own run in which a motion is awaited to repeat: five times the
+/// length of nearly all transients of the prototype. Just above a threshold transients can be arbitrarily
+/// long: without stops, five of 40 amplitudes within 1 % of it take between 1000 and 4500 periods.
 pub(super) const PATIENCE: u32 = 1000;
 
-/// Least number of forcing periods, for sums whose fastest sine is much faster than their common period.
-const LEAST_PATIENCE: f64 = 16.0;
+/// Smallest number of forcing periods, for sums of sines whose common period is much longer than that of the
+/// fastest sine.
+const MIN_PATIENCE: f64 = 16.0;
 
-/// The time in s up to which a run of `model` is followed until its motion repeats: 1000 periods of
-/// its fastest sine beyond its duration, and at least 16 forcing periods.
+/// The time in s up to which a run of `model` may continue until its motion repeats: its duration and 1000
+/// periods of its fastest sine, at least 16 forcing periods.
 pub fn followed_until(model: &Model) -> f64 {
     let period = model.forcing_period().unwrap_or(0.0);
     let fastest = period / model.window_periods().1.max(1) as f64;
-    model.duration() + (f64::from(PATIENCE) * fastest).max(LEAST_PATIENCE * period)
+    model.duration() + (f64::from(PATIENCE) * fastest).max(MIN_PATIENCE * period)
 }
 
-/// Forcing periods of a settled window in place of less than two, with which no repetition can be seen.
+/// Number of forcing periods of a settled window that replaces one of less than two, in which no repetition
+/// can be seen.
 const WINDOW: f64 = 8.0;
 
-/// The model with a settled window in which a motion can be seen to repeat, where its drive does.
+/// The model with a settled window that is long enough to see a repetition, if its drive repeats.
 pub fn widened(model: Model) -> Model {
     match model.forcing_period().filter(|_| model.repeats() && !model.can_settle()) {
         Some(period) => model.with_duration(model.settle() + WINDOW * period, model.settle()),
@@ -35,21 +37,21 @@ pub fn widened(model: Model) -> Model {
     }
 }
 
-/// A model, and the request that follows its run until it repeats, or up to `until` in s
-/// ([`followed_until`]).
+/// The model to run and the request to continue the run until it repeats, at most up to `until` in s (by
+/// default [`followed_until`]).
 pub(super) fn followed<'a>(model: Model, until: Option<f64>) -> (Model, Request<'a>) {
     let model = widened(model);
     let until_settled = until.or(Some(followed_until(&model)));
     (model, Request { until_settled, ..Request::default() })
 }
 
-/// Runs `model` for its settled motion, on beyond its duration until the motion repeats, at most up to
-/// [`followed_until`]; under an amplitude ramp to the ramp's end, but no longer. `None` if cancelled.
+/// Runs `model` until its motion repeats, at most up to [`followed_until`]; under an amplitude ramp, to the
+/// end of the ramp. `None` if cancelled.
 pub fn settled(model: &Model, cancel: &AtomicBool) -> Option<Summary> {
     settled_within(model, None, cancel)
 }
 
-/// The same, followed up to a time in s if given.
+/// Like [`settled`], with another limit of time in s if `until` is given.
 pub(super) fn settled_within(model: &Model, until: Option<f64>, cancel: &AtomicBool) -> Option<Summary> {
     let model = &widened(model.clone());
     let until_settled = until.or(model.forcing_period().map(|_| followed_until(model)));
@@ -61,25 +63,25 @@ pub(super) fn settled_within(model: &Model, until: Option<f64>, cancel: &AtomicB
     (!cancelled).then_some(run.summary)
 }
 
-/// Whether a run of `model` gets through its first `seconds`.
+/// Whether a run of `model` does not end within its first `seconds`.
 pub fn lasts(model: &Model, seconds: f64) -> bool {
     model.with_duration(seconds, 0.0).run(&Request::default()).summary.outcome == Outcome::Done
 }
 
-/// Place of an undriven mass at rest or swinging.
+/// State of an undriven mass in one of the wells.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Standing {
-    /// The number of the well that it is in, from the left and from 0.
+    /// Index of its well, from the left.
     pub well: usize,
-    /// Force in N that presses it on its stop, where it rests on one.
+    /// Force in N that presses it on a stop, if it rests on one.
     pub pressed_n: Option<f64>,
-    /// Mechanical energy in J above the lowest place that it can reach there.
+    /// Mechanical energy in J above the lowest potential that it can reach in the well.
     pub energy_j: f64,
-    /// Energy in J that lifts it from that place over the lower barrier beside it.
+    /// Energy in J from that potential to the top of the lower barrier of the well.
     pub needed_j: f64,
 }
 
-/// Where the mass is in the landscape; `None` without a barrier.
+/// The state of the mass in its well; `None` without a barrier.
 pub fn standing(model: &Model, state: &Sample) -> Option<Standing> {
     let curve = &model.mechanism().curve;
     let wells = model.mechanism().landscape.wells();
@@ -97,8 +99,8 @@ pub fn standing(model: &Model, state: &Sample) -> Option<Standing> {
     })
 }
 
-/// The answers of `count` runs in order. `model` gives the model and the request of a number, or its answer
-/// if there is nothing to run; `answer` reads it off the run. `None` if the task was cancelled.
+/// The answers of `count` runs in order. `model` returns the model and the request of a run, or its answer if
+/// there is nothing to run; `answer` evaluates the run. `None` if the task was cancelled.
 pub(super) fn shared_runs<'q, R: Send>(
     pool: Option<&Pool>,
     task: &'q Task,
@@ -110,7 +112,8 @@ pub(super) fn shared_runs<'q, R: Send>(
     runs_from(pool, task, &|under_way| queue.take(under_way), model, |_, run| answer(run))
 }
 
-/// The same of the numbers that `take` gives, as of a [`Queue`]. `answer` also gets the number.
+/// Like [`shared_runs`], for the indices that `take` returns, such as those of a [`Queue`]. `answer` also
+/// gets the index.
 pub(super) fn runs_from<'q, R: Send>(
     pool: Option<&Pool>,
     task: &'q Task,

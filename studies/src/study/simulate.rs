@@ -1,4 +1,4 @@
-//! One run: the times of its samples, its samples, events and summary, and remedies where it ended early.
+//! One run: its sample times, samples, events and summary, and remedies for a run that ended early.
 
 use std::sync::atomic::AtomicBool;
 
@@ -10,11 +10,11 @@ use crate::scene::{Excitation, Scene, TOLERANCES};
 /// When to sample.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Sampling {
-    /// A 60th of the forcing period, without one a thousandth of the duration.
+    /// Steps of a 60th of the forcing period or, without one, of a thousandth of the duration.
     Default,
-    /// Every so many seconds.
+    /// Steps of this length in s.
     Every(f64),
-    /// At these times in s, in any order; the rows keep that order.
+    /// These times in s, in any order; the rows have the same order.
     At(Vec<f64>),
 }
 
@@ -25,7 +25,7 @@ pub struct Keep {
     pub times: Vec<f64>,
     /// Whether to keep the events.
     pub events: bool,
-    /// Goes on until the motion repeats, or up to this time in s.
+    /// The run continues until the motion repeats, at most up to this time in s.
     pub until_settled: Option<f64>,
 }
 
@@ -40,7 +40,7 @@ pub struct Simulation {
     pub summary: Summary,
 }
 
-/// The sample times in s that `sampling` asks of this run, up to the last at which it may end.
+/// The sample times in s of this run, up to the latest time at which it may end.
 pub fn sample_times(
     scene: &Scene,
     model: &Model,
@@ -62,7 +62,7 @@ pub fn sample_times(
     even_times(step, duration)
 }
 
-/// Runs `model` once. Setting `cancel` from elsewhere ends it early, as its outcome then says.
+/// Runs `model` once. If another thread sets `cancel`, the run ends early with the outcome `Cancelled`.
 pub fn simulate(model: &Model, keep: &Keep, cancel: Option<&AtomicBool>) -> Simulation {
     let ascending = keep.times.is_sorted();
     let mut sorted = Vec::new();
@@ -81,7 +81,7 @@ pub fn simulate(model: &Model, keep: &Keep, cancel: Option<&AtomicBool>) -> Simu
     }
 }
 
-/// The samples in the order of `times`; times that an early end left without one are left out.
+/// The samples in the order of `times`; times after an early end of the run are left out.
 pub(super) fn in_order(times: &[f64], samples: &[Sample]) -> Vec<Sample> {
     let find = |t: &f64| {
         let at = samples.partition_point(|sample| sample.t < *t);
@@ -109,7 +109,7 @@ pub fn samples_table(samples: &[Sample], output: impl Fn(&Sample) -> Option<Outp
         .each("power_w", &outputs, column(|output| output.power))
 }
 
-/// Events as a table: `t_s,kind,side,v_in_m_per_s,v_out_m_per_s`, a row an event, SI.
+/// Events as a table, one row per event: `t_s,kind,side,v_in_m_per_s,v_out_m_per_s`, SI.
 pub fn events_table(events: &[Event]) -> Table {
     Table::new()
         .each("t_s", events, |event| event.t)
@@ -119,11 +119,12 @@ pub fn events_table(events: &[Event]) -> Table {
         .each("v_out_m_per_s", events, |event| event.v_out)
 }
 
-/// A contact with a compliant stop is called short if the motion takes this many times as long.
+/// Ratio of the time scale of the motion to the duration of a contact above which a contact with a compliant
+/// stop is short.
 const SHORT: f64 = 100.0;
 
-/// A clause on how to make a run of `model` with this outcome last longer or be more accurate; `None` if it
-/// is done, was cancelled, or the outcome says it.
+/// A clause on how to make a run of `model` with this outcome last longer or be more accurate; `None` if the
+/// run was completed or cancelled, or if the outcome itself names the remedy.
 pub fn ended_remedy(model: &Model, outcome: Outcome) -> Option<String> {
     let tolerance = model.tolerance();
     match outcome {
@@ -147,8 +148,8 @@ pub fn ended_remedy(model: &Model, outcome: Outcome) -> Option<String> {
     }
 }
 
-/// A clause on how to keep a run within its steps, which it used up at `at` in s: shorter, with a larger
-/// tolerance if cheaper steps suffice, with fewer lines if most of the work is theirs.
+/// A clause on how to keep a run within its step budget, which it used up at `at` in s: a shorter run, a
+/// larger tolerance if that saves steps, or fewer noise lines if these cause most of the work.
 fn fewer_steps(model: &Model, at: f64) -> String {
     let (step, of_drive) = model.cost_of_a_step(model.tolerance());
     let (coarse, _) = model.cost_of_a_step(TOLERANCES.1);
@@ -164,7 +165,7 @@ fn fewer_steps(model: &Model, at: f64) -> String {
     format!("{others}{last} would do")
 }
 
-/// Why steps are short with stops so stiff that a contact is far shorter than the motion.
+/// A clause on short steps due to stops so stiff that a contact is much shorter than the motion.
 fn short_contact(model: &Model) -> Option<String> {
     let (speed, time) = (model.scales().speed, model.scales().time);
     let contact = model.compliant()?.contact_time(model.mass(), speed);
@@ -177,10 +178,10 @@ fn short_contact(model: &Model) -> Option<String> {
     })
 }
 
-/// The largest number of samples of one run: they take 1 GB of memory.
+/// Largest number of samples of one run, which take 1 GB of memory.
 pub(super) const MAX_SAMPLES: u64 = 10_000_000;
 
-/// Why a run cannot be sampled as asked.
+/// Why a run cannot be sampled as requested.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum TimesError {
     /// The step is not a number above 0.
@@ -207,7 +208,7 @@ impl TimesError {
     }
 }
 
-/// A positive rational number: exactly what decimal text says, or a fraction of it.
+/// A positive rational number: the exact value of a decimal, or a fraction of it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Fraction {
     numerator: u128,
@@ -215,7 +216,7 @@ struct Fraction {
 }
 
 impl Fraction {
-    /// The decimal that the shortest text of `value` spells; `None` if not above 0 or above 38 digits.
+    /// The shortest decimal that identifies `value`; `None` if it is not above 0 or has more than 38 digits.
     fn decimal(value: f64) -> Option<Self> {
         let Decimal { digits, exponent } = Decimal::shortest(value).filter(|decimal| decimal.digits > 0)?;
         let digits = digits.unsigned_abs();
@@ -248,8 +249,8 @@ impl Fraction {
             let divisor = greatest_common_divisor(numerator, denominator);
             (numerator, denominator) = (numerator / divisor, denominator / divisor);
         }
-        // Both exact: one correctly rounded division. Beyond that the parser's rounding where the
-        // denominator is a power of ten, else an error of at most two units in the last place.
+        // if both are exact, a single division is correctly rounded; otherwise the parser rounds correctly if
+        // the denominator is a power of ten, and else the error is at most two units in the last place
         if (numerator >= EXACT || denominator >= EXACT) && denominator.is_multiple_of(10) {
             let zeros = denominator.ilog10();
             if 10_u128.checked_pow(zeros) == Some(denominator) {
@@ -288,10 +289,10 @@ impl SamplingStep {
     }
 }
 
-/// The times 0, dt, 2 dt, .. up to `duration` in s, which is among them where the step reaches it.
+/// The times 0, dt, 2 dt, .. up to `duration` in s, including `duration` if it is a multiple of the step.
 ///
-/// A step is the decimal that a person wrote: 0.1 makes 0.1, 0.2, 0.3, not 0.30000000000000004, and a 60th of
-/// a forcing period of 1/3 s the doubles nearest to k/180. So times ascend and none exceeds `duration`.
+/// A step is taken as a decimal: 0.1 gives 0.1, 0.2, 0.3 and not 0.30000000000000004, and a 60th of a forcing
+/// period of 1/3 s gives the doubles nearest to k/180. So the times ascend and none exceeds `duration`.
 fn even_times(step: SamplingStep, duration: f64) -> Result<Vec<f64>, TimesError> {
     let SamplingStep { seconds: dt, exact } = step;
     if !(dt.is_finite() && dt > 0.0) {

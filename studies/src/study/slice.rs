@@ -1,9 +1,9 @@
 //! Shards of a sweep: which of its rows each of several processes computes.
 //!
-//! The rows are cut into blocks of whole units, about [`ROUNDS`] for each shard, and dealt in rounds: each
-//! shard gets one block of every round, so that each has cells from all over the grid and costs even out. The
-//! order in which the shards are served changes from round to round by a fixed generator: in a fixed order a
-//! shard would get the same columns of a map again and again.
+//! The rows are divided into blocks of whole units, about [`ROUNDS`] for each shard, and dealt in rounds:
+//! each shard gets one block of every round, so that its cells are spread over the grid and costs are
+//! balanced. The order of the shards changes from round to round by a fixed pseudorandom generator; with a
+//! constant order, a shard could get the same columns of a map in every round.
 
 use std::fmt;
 
@@ -14,14 +14,14 @@ pub struct Shard {
     count: u64,
 }
 
-/// Rounds in which blocks are dealt, where blocks are not [as long as they may be](LONGEST).
+/// Number of rounds, unless blocks have their [largest length](MAX_BLOCK).
 const ROUNDS: u64 = 64;
 
-/// The most rows of a block, where a unit is not longer.
-const LONGEST: u64 = 4096;
+/// Largest number of rows of a block, unless a unit is longer.
+const MAX_BLOCK: u64 = 4096;
 
-/// The most shards.
-const MOST: u64 = 1_000_000;
+/// Largest number of shards.
+const MAX_SHARDS: u64 = 1_000_000;
 
 impl Shard {
     /// All rows.
@@ -29,8 +29,8 @@ impl Shard {
 
     /// Shard `number`, from 1, of `count`; the error is a clause.
     pub fn new(number: u64, count: u64) -> Result<Self, String> {
-        if !(1..=MOST).contains(&count) {
-            return Err(format!("{count} shards cannot be; give 1 to {MOST}"));
+        if !(1..=MAX_SHARDS).contains(&count) {
+            return Err(format!("{count} shards cannot be; give 1 to {MAX_SHARDS}"));
         }
         if !(1..=count).contains(&number) {
             return Err(format!(
@@ -80,7 +80,7 @@ pub struct Slice {
     shard_units: u64,
 }
 
-/// Rotation of the order of the shards in a round (splitmix64, Steele, Lea and Flood 2014).
+/// Rotation of the order of the shards in a round (splitmix64; Steele, Lea and Flood 2014).
 fn turn(round: u64, count: u64) -> u64 {
     let mut z = round.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -93,9 +93,9 @@ impl Slice {
     /// multiple of `unit`, which is at least 1.
     pub fn new(rows: u64, unit: u64, shard: Shard) -> Self {
         let units = rows / unit;
-        let block = units.div_ceil(ROUNDS * shard.count).clamp(1, (LONGEST / unit).max(1));
+        let block = units.div_ceil(ROUNDS * shard.count).clamp(1, (MAX_BLOCK / unit).max(1));
         let mut slice = Self { shard, unit, block, units, shard_units: 0 };
-        // All rounds but the last are full, and all blocks but the very last.
+        // only the last round and the very last block may be incomplete
         let (full, left) = (slice.blocks() / shard.count, slice.blocks() % shard.count);
         let place = slice.place(full);
         slice.shard_units = full * block + if place < left { block } else { 0 };
@@ -111,7 +111,7 @@ impl Slice {
         self.units.div_ceil(self.block)
     }
 
-    /// At which place of a round the shard gets its block.
+    /// Position of the block of the shard in a round.
     fn place(&self, round: u64) -> u64 {
         let count = self.shard.count;
         (self.shard.number - 1 + turn(round, count)) % count
@@ -140,7 +140,7 @@ impl Slice {
         (block * self.block + unit % self.block) * self.unit + within
     }
 
-    /// The whole sweep's rows in order, as stretches: of which shard, from 1, and how many rows.
+    /// The rows of the whole sweep in order, as pairs of a shard number, from 1, and a number of rows.
     pub fn dealt(&self) -> impl Iterator<Item = (u64, u64)> + '_ {
         let count = self.shard.count;
         (0..self.blocks()).map(move |block| {

@@ -1,8 +1,8 @@
 //! Spectrum of a settled motion: amplitude and power spectral density over frequency.
 //!
-//! A run is sampled evenly over its settled window. Under a drive with a period the window holds whole
-//! forcing periods, and whole periods of a motion that repeats, which then lies in lines and needs no taper.
-//! Every other motion is tapered by the window of von Hann.
+//! A run is sampled evenly over its settled window. With a periodic drive the window has a whole number of
+//! forcing periods and, if the motion repeats, of its periods; its spectrum then consists of exact lines and
+//! needs no window function. All other motions are weighted by the window function of von Hann.
 
 use super::simulate::MAX_SAMPLES;
 use super::{Table, Task, Values};
@@ -36,19 +36,20 @@ impl Signal {
 pub struct SpectrumOptions {
     /// The signal.
     pub signal: Signal,
-    /// How the samples are weighted; by default not if the motion repeats, else by the window of von Hann.
+    /// Window function; by default none if the motion repeats, else that of von Hann.
     pub taper: Option<Taper>,
-    /// Samples a second, raised until a whole number falls into a forcing period; by default enough for 128
-    /// in the shortest period of excitation and mechanism, and for 4096 in all.
+    /// Samples per second, raised until a forcing period has a whole number of them; by default at least 128
+    /// per shortest period of excitation and mechanism, and at least 4096 in total.
     pub rate_hz: Option<f64>,
-    /// Goes on until the motion repeats, or up to this time in s; the spectrum is that of the last window.
+    /// The run continues until the motion repeats, at most up to this time in s; the spectrum is that of the
+    /// last window.
     pub until_settled: Option<f64>,
 }
 
 /// A spectrum, and what it was made from. SI.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Spectrum {
-    /// `frequency_hz,amplitude,psd`, one-sided: from 0 to half the rate, a row a line.
+    /// `frequency_hz,amplitude,psd`, one-sided, from 0 to half the rate, with one row per line.
     pub table: Table,
     /// The signal.
     pub signal: Signal,
@@ -69,7 +70,7 @@ pub struct Spectrum {
 }
 
 impl Spectrum {
-    /// What it was made from, in one line.
+    /// Its settings and samples, in one line.
     pub fn describe(&self) -> String {
         let periods = match self.periods {
             0 => String::new(),
@@ -90,7 +91,7 @@ impl Spectrum {
 /// Why there is no spectrum.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum NoSpectrum {
-    /// It was told to stop.
+    /// It was cancelled.
     #[error("interrupted")]
     Cancelled,
     /// The run ended at this time in s, before the settled window did, with an outcome of this name.
@@ -99,7 +100,7 @@ pub enum NoSpectrum {
     /// The settled window has no length.
     #[error("the settled window from {0} to {1} s has no length: lower run.settle_s")]
     NoWindow(f64, f64),
-    /// A rate that is no number above 0, or makes too few samples or too many, as the sentence says.
+    /// The rate is not a number above 0, or gives too few or too many samples.
     #[error("{0}")]
     Rate(String),
 }
@@ -107,10 +108,10 @@ pub enum NoSpectrum {
 /// Samples in the shortest period of excitation and mechanism.
 const PER_CYCLE: f64 = 128.0;
 
-/// The fewest samples of a spectrum.
-const FEWEST: f64 = 4.0;
-/// The fewest samples by default.
-const PLENTY: f64 = 4096.0;
+/// Smallest number of samples of a spectrum.
+const MIN_SAMPLES: f64 = 4.0;
+/// Smallest number of samples by default.
+const DEFAULT_SAMPLES: f64 = 4096.0;
 
 /// The spectrum of the settled motion of `model`, which is run twice: for its verdict and for its samples.
 ///
@@ -173,7 +174,8 @@ struct Plan {
 }
 
 impl Plan {
-    /// The plan of a window of `periods` forcing periods, whose motion repeats after `repeats` of them.
+    /// The plan of a window of `periods` forcing periods, in which the motion repeats after `repeats` of
+    /// them.
     fn new(
         model: &Model,
         (from, to): (f64, f64),
@@ -192,20 +194,20 @@ impl Plan {
             None => (from, 1.0),
         };
         let length = whole.map_or(to - from, |(period, count)| period * count as f64);
-        let rate = rate_hz.unwrap_or_else(|| (PER_CYCLE / shortest(model)).max(PLENTY / length));
+        let rate = rate_hz.unwrap_or_else(|| (PER_CYCLE / shortest(model)).max(DEFAULT_SAMPLES / length));
         // a decimal rate may miss a whole number only by its rounding
         let least = (length / parts * rate - 1e-9).ceil().max(1.0);
-        // transforms of powers of two are the fastest
+        // transforms of a power of two are fastest
         let each = match rate_hz.is_some() || least > MAX_SAMPLES as f64 {
             true => least,
             false => (least as u64).next_power_of_two() as f64,
         };
         let samples = each * parts;
-        if !(rate > 0.0 && (FEWEST..=MAX_SAMPLES as f64).contains(&samples)) {
+        if !(rate > 0.0 && (MIN_SAMPLES..=MAX_SAMPLES as f64).contains(&samples)) {
             let remedy = if samples > MAX_SAMPLES as f64 {
                 format!("at most {MAX_SAMPLES} fit; take a lower rate or a shorter window")
             } else {
-                format!("take at least {}", short(FEWEST / length))
+                format!("take at least {}", short(MIN_SAMPLES / length))
             };
             return Err(NoSpectrum::Rate(format!(
                 "{rate} samples a second make {} in the {length} s of the settled window: {remedy}",

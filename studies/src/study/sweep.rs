@@ -1,4 +1,4 @@
-//! Sweep: a run for each cell of a grid, in parallel, a row a cell; and the tally of the cells of any grid.
+//! Sweep: a run for each cell of a grid, with one row per cell; and the tally of the cells of any grid.
 
 use std::collections::BTreeMap;
 use std::sync::atomic::AtomicBool;
@@ -38,30 +38,30 @@ impl Cell {
         }
     }
 
-    /// Whether its run lasted to its end.
+    /// Whether its run reached its end.
     pub fn is_done(&self) -> bool {
         self.summary().is_some_and(|summary| summary.outcome == Outcome::Done)
     }
 
-    /// The summary of a run that reached its settled window: in others counts of 0 would mislead.
+    /// The summary of a run that reached its settled window; in others, counts of 0 would be misleading.
     pub fn settled(&self) -> Option<&Summary> {
         self.summary().filter(|summary| summary.rms_velocity.is_some())
     }
 }
 
-/// What is wrong with one cell.
+/// The faults of one cell.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CellFaults {
-    /// The cell in words.
+    /// Description of the cell.
     pub cell: String,
     /// Its faults.
     pub faults: Vec<Fault>,
 }
 
-/// How a sweep ended short of its last cell; `E` is the writer's error.
+/// Why a sweep ended before its last cell; `E` is the error of the writer.
 #[derive(Debug)]
 pub enum SweepEnd<E> {
-    /// It was told to stop.
+    /// It was cancelled.
     Cancelled,
     /// The rows could not be written.
     Write(E),
@@ -70,7 +70,7 @@ pub enum SweepEnd<E> {
 /// Counts of the results of the cells of a grid.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Tally {
-    /// Cells run, those without a solved mechanism among them.
+    /// Cells that were run, including those without a solved mechanism.
     pub cells: u64,
     /// Cells whose run ended early, as their outcome says.
     pub ended_early: u64,
@@ -82,7 +82,7 @@ pub struct Tally {
     /// Cells without exponents: ended early, touched a stop without speed, or with flexures not solved.
     #[serde(skip)]
     pub without_exponents: u64,
-    /// Cells in which the contact with a compliant stop was pressed beyond what its material bears.
+    /// Cells in which the contact pressure on a compliant stop exceeded the yield limit of its material.
     pub yielding: u64,
     /// Mechanisms built: one for each combination of the swept fields of the mechanism.
     #[serde(skip)]
@@ -130,26 +130,27 @@ impl Tally {
 pub const STANDARD: [&str; 7] =
     ["rms_velocity_m_per_s", "regime", "crossings", "impacts", "max_abs_x_m", "period", OUTCOME];
 
-/// The column of how a run ended.
+/// The column of the outcome of a run.
 const OUTCOME: &str = "outcome";
 
-/// The column that says in which direction a field was walked.
+/// The column of the direction of a walk.
 pub const DIRECTION: &str = "direction";
 
 /// What a sweep does beyond running each cell for its duration.
 #[derive(Debug, Clone, Default)]
 pub struct SweepOptions {
-    /// More columns than the [standard](STANDARD) ones; one of the energy ledger has cells run one by one.
+    /// Columns in addition to the [standard](STANDARD) ones. With one of the energy ledger, cells are run one
+    /// at a time.
     pub columns: Vec<&'static SummaryField>,
-    /// Each run goes on until its motion repeats, or up to this time in s.
+    /// Each run continues until its motion repeats, at most up to this time in s.
     pub until_settled: Option<f64>,
-    /// The last field is walked: each cell begins in the state of the one before, at the last instant of its
-    /// run that is a whole number of forcing periods after its start. Only the first begins at its scene's
-    /// start. A column `direction` follows those of the fields, and the rows are in the order of the walk.
+    /// The last field is walked: each cell begins in the state of the cell before at the last whole forcing
+    /// period of its run. Only the first cell begins at the start of its scene. A column `direction` follows
+    /// those of the fields, and the rows are in the order of the walk.
     pub carry: Option<Carry>,
 }
 
-/// A run for each cell of a grid, a row a cell.
+/// A run for each cell of a grid, with one row per cell.
 pub type Sweep = GridStudy<SweepOptions>;
 
 impl Question for SweepOptions {

@@ -1,6 +1,6 @@
 //! Table: named columns of one length, each with a unit and one type of value.
 //!
-//! Every study answers in this form and every writer and plot reads it, so that each is written once.
+//! Every study returns this type, and every writer and plot reads it.
 
 use crate::scene::unit_ending;
 
@@ -13,7 +13,7 @@ pub enum Values {
     Counts(Vec<Option<u64>>),
     /// Words from a fixed list; an empty one is a missing value.
     Words(Vec<&'static str>),
-    /// Names that a person gave, without a comma, a quote or a line break; an empty one is a missing value.
+    /// Names given by a user, without commas, quotes or line breaks; an empty one is a missing value.
     Names(Vec<String>),
 }
 
@@ -44,7 +44,7 @@ impl Values {
     }
 }
 
-/// What the values of the rows make as a column; `None` is a missing one.
+/// Types of values from which a column can be collected; `None` is a missing value.
 macro_rules! collected {
     ($($value:ty: $variant:ident, $row:pat => $cell:expr;)*) => {$(
         impl FromIterator<$value> for Values {
@@ -73,23 +73,23 @@ pub struct Column {
     pub values: Values,
 }
 
-/// The name of a column or field as a person writes it, and its unit: `travel limit` and `mm`. The unit is
-/// read off the end of the name; it is empty for a pure number, a count or a word.
+/// The name of a column or field as plain text, and its unit: `travel limit` and `mm`. The unit is taken from
+/// the end of the name; it is empty for a pure number, a count or a word.
 pub fn label_and_unit(name: &str) -> (String, &'static str) {
     let (ending, unit) = unit_ending(name).unwrap_or_default();
     let words = name.strip_suffix(ending).unwrap_or(name).replace(['_', '.'], " ");
-    // The one name that is a letter.
+    // the only name that is a single letter
     let words = if words == "xi" { "damping ratio".to_owned() } else { words };
     (words, unit)
 }
 
 impl Column {
-    /// The unit as a person writes it; see [`label_and_unit`].
+    /// The unit as plain text; see [`label_and_unit`].
     pub fn unit(&self) -> &'static str {
         label_and_unit(&self.name).1
     }
 
-    /// The name as a person writes it, with the unit: `travel limit (mm)`.
+    /// The name as plain text with the unit: `travel limit (mm)`.
     pub fn label(&self) -> String {
         let (words, unit) = label_and_unit(&self.name);
         if unit.is_empty() { words } else { format!("{words} ({unit})") }
@@ -158,7 +158,7 @@ impl Table {
         }
     }
 
-    /// The table with these of its columns alone, in this order.
+    /// The table with only these of its columns, in this order.
     #[must_use]
     pub fn only(&self, names: &[String]) -> Self {
         Self { columns: names.iter().filter_map(|name| self.column(name)).cloned().collect() }

@@ -1,10 +1,11 @@
-//! Thresholds: least values of a field from which on a motion from rest is released, crosses or is interwell.
+//! Thresholds: the smallest values of a field at which a motion from rest is released, crosses or is
+//! interwell.
 //!
-//! These values form no interval: without stops, and near a resonance, they come in windows. So every step of
-//! a scan from below is run first; then the first step that changes the answer is bisected, and the changes
-//! above it are counted. Each run is followed until its motion repeats, so that a crossing on the way to a
-//! motion that does not cross is no answer. If it does not repeat in time, the bisection uses what it does at
-//! the end of that time, and `low` and `high` are the nearest values whose answers are known.
+//! The values with such motions need not form an interval: without stops, and near a resonance, there are
+//! windows. So all values of a scan are run first; then the first interval in which the answer changes is
+//! bisected, and the changes above it are counted. Each run continues until its motion repeats, so that a
+//! crossing during the transient does not count. If the motion does not repeat in time, the bisection uses
+//! its last window, and `low` and `high` are the nearest values with a known answer.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -19,40 +20,42 @@ use crate::mechanics::{BuildError, Mechanism};
 use crate::scene::{Fault, Files, Scene, Start};
 use crate::system::threads::{Pool, Queue, UnderWay};
 
-/// Scan for a threshold: the values of a field, ascending, and the resolution of the threshold.
+/// The values that are tried for a threshold, and its resolution.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scan {
     /// Dotted path of the field.
     pub field: String,
     /// Its values, ascending.
     pub values: Vec<f64>,
-    /// The threshold is located among the multiples of this, in the field's unit.
+    /// Resolution in the unit of the field: the threshold is a multiple of it.
     pub resolution: f64,
-    /// Time in s up to which runs go on until they repeat; by default 1000 forcing periods beyond the run.
+    /// Time in s up to which runs continue until they repeat; by default 1000 forcing periods beyond the run.
     pub until_settled: Option<f64>,
 }
 
 /// A threshold.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Found {
-    /// The least value; `None` if no value of the scan does it.
+    /// The smallest value with the motion; `None` if no value of the scan has it.
     pub value: Option<f64>,
-    /// The last value below it, of those tried, that is known not to do it.
+    /// The largest tried value below it whose motion is known to be different.
     pub low: Option<f64>,
-    /// The first value from it on, of those tried, that is known to do it.
+    /// The smallest tried value, from it on, that is known to have the motion.
     pub high: Option<f64>,
-    /// Whether the answer just below the value, or at it, is unknown; without a value, at the scan's end.
+    /// Whether the answer at the value or just below it is unknown; without a value, that at the end of the
+    /// scan.
     pub undecided: bool,
-    /// How often the answer changes above it, within the scan.
+    /// Number of changes of the answer above it, within the scan.
     pub windows: u64,
-    /// The value from which on the answer stays yes; `None` if the scan ends with no.
+    /// The value above which the whole scan has the motion; `None` if the last value of the scan does not
+    /// have it.
     pub without_gap: Option<f64>,
 }
 
-/// Runs the scan of `scene` with its `mechanism` from `files`, each run from rest. `None` if cancelled.
+/// The threshold of `scene` with its `mechanism` from `files`; all runs begin at rest. `None` if cancelled.
 ///
-/// A value that makes no valid model does not do it. A release under one sine, over the amplitude, is known
-/// in closed form: exactly there the mass is not released yet, so that value is also the last one below.
+/// A value without a valid model counts as one without the motion. The release under one sine, over its
+/// amplitude, has a closed form; exactly at that amplitude the mass is not yet released, so it is also `low`.
 pub fn threshold(
     scene: &Scene,
     mechanism: &Arc<Mechanism>,
@@ -70,15 +73,16 @@ pub fn threshold(
 /// Why there is no table of thresholds.
 #[derive(Debug, Clone, PartialEq)]
 pub enum NoThresholds {
-    /// It was told to stop.
+    /// It was cancelled.
     Cancelled,
-    /// In these cells no value makes a valid model, for interwell motion one with a drive that repeats.
+    /// Cells in which no value gives a valid model, or none whose drive repeats, which interwell motion
+    /// needs.
     Wrong(Vec<CellFaults>),
 }
 
 /// The thresholds of every cell of `grid`: the swept fields, then `of,value,low,high,undecided,windows`. A
-/// value is missing if it is not found or the mechanism is not solved. Ticks for each value of the scan in
-/// each cell. If cells are wrong, nothing has been run.
+/// value is missing if it was not found or the mechanism is not solved. Ticks for each value of the scan in
+/// each cell. All cells are checked before the first run.
 pub fn threshold_table(
     scene: &Scene,
     files: &Files,
@@ -92,7 +96,7 @@ pub fn threshold_table(
     let count = grid.cells() as usize;
     let begin = || cells.base.clone();
     let check = |scene: &mut Scene, index: usize| {
-        task.go_on()?;
+        task.check_cancelled()?;
         let built = cells.mechanism(index as u64, scene, task.cancel).ok_or(Cancelled)?;
         let faults = match built {
             Ok(mechanism) => faults(&from_rest(scene), &mechanism, files, scan, onset),
@@ -107,7 +111,7 @@ pub fn threshold_table(
     if !wrong.is_empty() {
         return Err(NoThresholds::Wrong(wrong));
     }
-    // several cells have a thread each
+    // with several cells, each runs on one thread
     let ahead = if count == 1 { pool.count() } else { 1 };
     let cell = |scene: &mut Scene, index: usize| {
         let built = cells.mechanism(index as u64, scene, task.cancel).ok_or(Cancelled)?;
@@ -136,7 +140,7 @@ fn from_rest(scene: &Scene) -> Scene {
     Scene { start: Start::Rest, ..scene.clone() }
 }
 
-/// The faults at the first value of the scan, if no value makes a model that can do it.
+/// The faults at the first value of the scan, if no value gives a model that may have the motion.
 fn faults(
     trial: &Scene,
     mechanism: &Arc<Mechanism>,
@@ -161,28 +165,28 @@ fn faults(
 const NO_PERIOD: &str = "does not repeat, so no motion can be said to repeat with it (interwell): ask for \
                          crossing, or take a Sine, or a Sum of sines whose frequencies have a common period";
 
-/// A value of the field and the verdict of its run; `None` while it is not known.
+/// A value of the field and the verdict on its run; `None` until the run has ended.
 type Answer = (f64, Option<Verdict>);
 
-/// What is known of a scan and of the bisection at its first change.
+/// The answers of a scan and of the bisection at its first change.
 #[derive(Default)]
 pub(super) struct Answers {
     /// The values of the scan, ascending.
     pub scan: Vec<Answer>,
-    /// Those of the bisection, in the order in which they were begun.
+    /// The values of the bisection, in the order in which they were begun.
     between: Vec<Answer>,
-    /// How many values of the scan, from the first on, are known not to do it.
+    /// Number of values at the beginning of the scan without the motion.
     below: usize,
 }
 
 impl Answers {
-    /// Of a scan that begins with a value that does it.
+    /// The answers of a scan whose first value has the motion.
     pub fn begun_with(value: f64) -> Self {
         let verdict = Verdict { does: true, known: false };
         Self { scan: vec![(value, Some(verdict))], ..Self::default() }
     }
 
-    /// A value by its number: those of the scan first, then those of the bisection.
+    /// The answer with this index: first those of the scan, then those of the bisection.
     fn number(&mut self, number: usize) -> &mut Answer {
         match number.checked_sub(self.scan.len()) {
             Some(place) => &mut self.between[place],
@@ -190,12 +194,13 @@ impl Answers {
         }
     }
 
-    /// The place in the scan of the first value that does it.
-    pub fn first_that_does(&self) -> Option<usize> {
+    /// Index in the scan of the first value with the motion.
+    pub fn first_with_motion(&self) -> Option<usize> {
         self.scan.iter().position(|(_, verdict)| verdict.is_some_and(|verdict| verdict.does))
     }
 
-    /// The values of the scan between which the answer changes first, once all below are known.
+    /// The two values of the scan between which the answer changes first; `None` until all values below are
+    /// known.
     fn first_change(&mut self) -> Option<(f64, f64)> {
         let does = |answer: &Answer| answer.1.map(|verdict| verdict.does);
         self.below += self.scan[self.below..].iter().take_while(|answer| does(answer) == Some(false)).count();
@@ -203,7 +208,7 @@ impl Answers {
         does(above)?.then_some((below.0, above.0))
     }
 
-    /// The next value that is to be asked of the bisection at the first change.
+    /// The next value to run for the bisection at the first change.
     fn next_between(&mut self, resolution: f64, ahead: usize) -> Option<f64> {
         let span = self.first_change()?;
         let trial = |value: f64| match self.between.iter().find(|answer| answer.0 == value) {
@@ -214,7 +219,7 @@ impl Answers {
         next_between(trial, span, resolution, ahead)
     }
 
-    /// The result of the scan and its bisection, once all is known.
+    /// The threshold, when scan and bisection are complete.
     pub fn found(mut self, resolution: f64) -> Found {
         let mut tried: Vec<(f64, Verdict)> = Vec::with_capacity(self.scan.len());
         tried.extend(self.scan.iter().filter_map(|(value, verdict)| Some((*value, (*verdict)?))));
@@ -222,7 +227,7 @@ impl Answers {
         let last_up = changes.clone().next_back().map(|pair| pair[1].0);
         let windows = changes.count() as u64;
         let ends_with_yes = tried.last().is_some_and(|(_, verdict)| verdict.does);
-        // values asked ahead are left out, since they depend on the number of threads
+        // values that were run ahead are left out, since they depend on the number of threads
         let span = self.first_change();
         let mut place = self.below;
         let (mut low, mut high) = span.unwrap_or_default();
@@ -250,9 +255,9 @@ impl Answers {
     }
 }
 
-/// Runs under way on a thread from which on a further one shares their lanes.
+/// Number of runs under way on a thread from which further runs share their vector lanes.
 const SHARING: usize = 5;
-/// Values of a bisection that are then asked at a time.
+/// Number of values of a bisection that are then run at a time.
 const SHARED_AHEAD: usize = 3;
 
 /// A search over the values of a field.
@@ -263,12 +268,12 @@ pub(super) struct Search<'a> {
     pub until_settled: Option<f64>,
     pub task: &'a Task<'a>,
     pub pool: Option<&'a Pool>,
-    /// Values of a bisection that are asked at a time by a thread without other runs.
+    /// Number of values of a bisection that a thread without other runs runs at a time.
     pub ahead: usize,
 }
 
 impl Search<'_> {
-    /// The threshold of `scene` with its `mechanism`, to which the family of models belongs.
+    /// The threshold of `scene` with its `mechanism`; the family of models must be theirs.
     fn found(&self, scene: &Scene, mechanism: &Mechanism, scan: &Scan) -> Result<Found, Cancelled> {
         if self.onset == Onset::Release
             && scan.field == AMPLITUDE
@@ -286,8 +291,8 @@ impl Search<'_> {
         Ok(answers.found(scan.resolution))
     }
 
-    /// Runs further values of a scan, and beside them values of the bisection at its first change, which take
-    /// little more time in the same lanes. Then completes the bisection. Ticks for each value of the scan.
+    /// Runs further values of a scan, and in free vector lanes values of the bisection at its first change.
+    /// Then completes the bisection. Ticks for each value of the scan.
     pub fn scan(&self, answers: &mut Answers, values: &[f64], resolution: f64) -> Result<(), Cancelled> {
         let first = answers.scan.len();
         answers.scan.extend(values.iter().map(|value| (*value, None)));
@@ -334,44 +339,44 @@ words! {
     Onset {
         /// The mass leaves the stop on which it rests.
         Release = "release",
-        /// The settled motion crosses the barrier at all.
+        /// The settled motion crosses the barrier.
         Crossing = "crossing",
         /// The settled motion crosses, and its crossings repeat.
         Interwell = "interwell",
     }
 }
 
-/// Verdict of a run on an onset.
+/// Whether a run shows an onset.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Verdict {
-    /// Whether the motion does it in the last window of the run.
+    /// Whether the motion in the last window of the run shows it.
     pub does: bool,
-    /// Whether it goes on so: the motion repeats or rests. A motion that does not, up to the end of the time
-    /// for which it is followed, may be a transient: one that crosses may stay in one well later, and one in
-    /// one well may cross later. Under a drive that does not repeat, the verdict is about the run itself.
+    /// Whether this is known to be permanent: the motion repeats or rests. Otherwise the motion may be a
+    /// transient: it may stop crossing later, or begin to cross. Under a drive that does not repeat, the
+    /// verdict applies to the run itself.
     pub known: bool,
 }
 
 impl Verdict {
-    /// Of a value that makes no valid model.
+    /// The verdict on a value without a valid model.
     pub(super) const NO_MODEL: Self = Self { does: false, known: false };
 }
 
 impl Onset {
-    /// The verdict of the run with this summary.
+    /// The verdict on the run with this summary.
     pub fn verdict(self, summary: &Summary) -> Verdict {
         let does = match self {
             Self::Release => summary.releases > 0,
             Self::Crossing => summary.crossings > 0 && summary.regime != Regime::OneWell,
             Self::Interwell => summary.regime == Regime::Interwell,
         };
-        Verdict { does, known: goes_on_so(summary) }
+        Verdict { does, known: is_permanent(summary) }
     }
 }
 
-/// Whether what a run did in its last window is what the motion does from then on: it repeats or rests, or
-/// the drive has no period and nothing is asked beyond the run.
-fn goes_on_so(summary: &Summary) -> bool {
+/// Whether the motion in the last window of a run is permanent: it repeats or rests, or the drive has no
+/// period and only the run itself counts.
+fn is_permanent(summary: &Summary) -> bool {
     let within_the_run = summary.settled.is_none() || summary.periods == 0;
     summary.outcome == Outcome::Done && (summary.settled == Some(true) || within_the_run)
 }

@@ -1,17 +1,17 @@
-//! Samples of a run for a picture: its path, every jump of the velocity, and the spans at rest.
+//! Samples of a run for a picture: the path with every jump of the velocity, and the spans at rest.
 //!
-//! A picture must be right however sparse the requested samples are, so it has its own, from the same run.
+//! A picture must be right even if few samples are requested, so it has samples of its own.
 
 use super::simulate::in_order;
 use super::{Keep, Simulation, Table, events_table, samples_table};
 use crate::dynamics::{Event, EventKind, Model, Outcome, Phase, Request, Sample, Side};
 
-/// One run as a picture shows it.
+/// The data of a run that a picture shows.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trace {
-    /// `t_s,x_m,v_m_per_s,base_accel_m_per_s2,power_w` in order of time; at an impact the velocities before
-    /// and after it, without the base's acceleration and the power. The power is that into the load of a
-    /// transducer, or without a transducer that of the base on the mass.
+    /// `t_s,x_m,v_m_per_s,base_accel_m_per_s2,power_w` in order of time; an impact has two rows, before and
+    /// after it, in which base acceleration and power are missing. The power is that into the load of a
+    /// transducer or, without a transducer, that of the base on the mass.
     pub path: Table,
     /// Whether the scene has a transducer.
     pub has_load: bool,
@@ -19,16 +19,17 @@ pub struct Trace {
     pub impacts: Table,
     /// `from_s,to_s,side` of every span at rest on a stop.
     pub rests: Table,
-    /// `t_s,x_m,v_m_per_s` once a forcing period, where the drive has its phase of time 0, over the times of
-    /// the phase portrait.
+    /// `t_s,x_m,v_m_per_s` once per forcing period, at the phase of time 0, over the times of the phase
+    /// portrait.
     pub strobes: Table,
-    /// Time in s from which on the phase portrait is shown: the last forcing periods, or a window asked for.
+    /// First time in s of the phase portrait: that of the last forcing periods, or of a requested window.
     pub portrait_from: f64,
-    /// Time in s from which on the motion is shown: all of it, or the last forcing periods of a long run.
+    /// First time in s of the motion over time: 0, or that of the last forcing periods of a long run, or of a
+    /// requested window.
     pub shown_from: f64,
-    /// Time in s up to which motion and phase portrait are shown.
+    /// Last time in s of both.
     pub shown_to: f64,
-    /// Whether that is a window that was asked for.
+    /// Whether these times are a requested window.
     pub is_section: bool,
     /// Positions of the left and the right stop in m; NaN without one.
     pub stops: (f64, f64),
@@ -36,30 +37,33 @@ pub struct Trace {
     pub end: f64,
 }
 
-/// Samples over the whole run, at least and at most: some per column of a picture, and memory.
+/// Smallest and largest number of samples over the whole run: several per pixel column, and a bound on
+/// memory.
 const OVERVIEW: (f64, f64) = (8_000.0, 400_000.0);
 
-/// Samples in a period of the drive and in one of small oscillations.
+/// Samples per period of the drive or of small oscillations, whichever is shorter.
 const PER_PERIOD: f64 = 80.0;
 
-/// Forcing periods in a phase portrait: the longest period of a response that is recognised.
+/// Forcing periods in a phase portrait: the longest recognised period of a response.
 const PORTRAIT_PERIODS: f64 = 12.0;
 
-/// A run of more forcing periods than this is a filled band over time.
+/// Number of forcing periods above which a run over time would be drawn as a filled band.
 const BAND_PERIODS: f64 = 60.0;
-/// The last forcing periods that are then shown.
+/// Number of last forcing periods that are then shown.
 const SHOWN_PERIODS: f64 = 24.0;
 
-/// The most states once a period.
-const MOST_STROBES: u32 = 300;
+/// Largest number of stroboscopic states.
+const MAX_STROBES: u32 = 300;
 
-/// Samples in a phase portrait.
+/// Samples of a phase portrait.
 const PORTRAIT: f64 = 24_000.0;
 
-/// The most rows in a phase portrait; more of them, as from a million impacts, only blacken it.
-const MOST_PORTRAIT: usize = 60_000;
+/// Largest number of rows in a phase portrait; more of them, as from a million impacts, would cover it
+/// completely.
+const MAX_PORTRAIT_ROWS: usize = 60_000;
 
-/// Runs `model` once, with what `keep` says and what a picture needs; a `window` in s is all that it shows.
+/// Runs `model` and returns what `keep` requests and the data of a picture. A `window` in s restricts the
+/// picture to these times.
 pub fn simulate_with_trace(
     model: &Model,
     keep: &Keep,
@@ -67,33 +71,34 @@ pub fn simulate_with_trace(
     cancel: Option<&std::sync::atomic::AtomicBool>,
 ) -> (Simulation, Trace) {
     let request = Request { cancel, until_settled: keep.until_settled, ..Request::default() };
-    // where the run ends and what its window is must be known before it is asked for samples
+    // the sample times depend on the end of the run and on its settled window
     let span = match keep.until_settled {
         Some(_) => model.run(&request).summary.window,
         None => (model.settle(), model.duration()),
     };
     let mut close = window.unwrap_or((portrait_from(model, span), span.1));
     let mut strobes = strobe_times(model, close);
-    let mut seen =
+    let mut picture_samples =
         ascending(picture_times(model, close, span.1).into_iter().chain(strobes.clone()).collect());
-    let times = ascending(seen.iter().chain(&keep.times).copied().collect());
+    let times = ascending(picture_samples.iter().chain(&keep.times).copied().collect());
     let run = model.run(&Request { sample_times: &times, events: true, ledger: true, ..request });
     let (left, right) = model.stop_positions();
     let stops = (left.unwrap_or(f64::NAN), right.unwrap_or(f64::NAN));
     let end = run.summary.outcome.ended_at().unwrap_or(span.1);
-    let mut shown = in_order(&seen, &run.samples);
+    let mut shown = in_order(&picture_samples, &run.samples);
     if end < span.1 && !matches!(run.summary.outcome, Outcome::Cancelled { .. }) {
-        // it ended where there are few samples: the same run again, with samples up to its end
+        // the run ended where it has few samples, so it is repeated with samples up to its end
         close = window.filter(|(from, _)| *from < end).map_or((0.0, end), |(from, to)| (from, to.min(end)));
         strobes = strobe_times(model, close);
-        seen = ascending(picture_times(model, close, end).into_iter().chain(strobes.clone()).collect());
-        shown = model.run(&Request { sample_times: &seen, ..request }).samples;
+        picture_samples =
+            ascending(picture_times(model, close, end).into_iter().chain(strobes.clone()).collect());
+        shown = model.run(&Request { sample_times: &picture_samples, ..request }).samples;
     }
     let path = path(model, &shown, &run.events, stops);
     let rows = path.numbers("t_s").unwrap_or_default();
     let (mut portrait_from, shown_to) = close;
     let until = rows.partition_point(|t| *t <= shown_to);
-    if let Some(t) = until.checked_sub(MOST_PORTRAIT).map(|first| rows[first]) {
+    if let Some(t) = until.checked_sub(MAX_PORTRAIT_ROWS).map(|first| rows[first]) {
         portrait_from = portrait_from.max(t);
     }
     let shown_from = match window {
@@ -125,7 +130,7 @@ pub fn simulate_with_trace(
     (Simulation { samples, events, summary: run.summary }, trace)
 }
 
-/// From when on in s the phase portrait of a run with this settled window is shown.
+/// First time in s of the phase portrait of a run with this settled window.
 fn portrait_from(model: &Model, (settle, end): (f64, f64)) -> f64 {
     match model.forcing_period() {
         Some(period) => settle.max(end - PORTRAIT_PERIODS * period).min(end),
@@ -141,12 +146,12 @@ fn shown_from(model: &Model, end: f64) -> f64 {
     }
 }
 
-/// The last whole forcing periods in s up to the end of a range; none without a period.
+/// The times in s of the last ends of forcing periods in a range; empty without a period.
 fn strobe_times(model: &Model, (from, to): (f64, f64)) -> Vec<f64> {
     let Some(period) = model.forcing_period() else { return Vec::new() };
     let last = (to / period).floor();
-    let first = (from / period).ceil().max(last - f64::from(MOST_STROBES) + 1.0);
-    let numbers = (0..MOST_STROBES).map(|i| first + f64::from(i));
+    let first = (from / period).ceil().max(last - f64::from(MAX_STROBES) + 1.0);
+    let numbers = (0..MAX_STROBES).map(|i| first + f64::from(i));
     numbers.take_while(|number| *number <= last).map(|number| number * period).collect()
 }
 
@@ -156,7 +161,7 @@ fn ascending(mut times: Vec<f64>) -> Vec<f64> {
     times
 }
 
-/// Even times up to `duration`, and closer ones from one time to another, in ascending order.
+/// Even times up to `duration` and closer ones over the range `close`, in ascending order.
 fn picture_times(model: &Model, close: (f64, f64), duration: f64) -> Vec<f64> {
     let swing = std::f64::consts::TAU * model.scales().time;
     let fastest = model.forcing_period().map_or(swing, |period| period.min(swing));
@@ -168,7 +173,7 @@ fn picture_times(model: &Model, close: (f64, f64), duration: f64) -> Vec<f64> {
     ascending(even((0.0, duration), count).chain(even(close, PORTRAIT)).collect())
 }
 
-/// Samples and impacts in order of time. A sample at an impact's instant is the state after it.
+/// Samples and impacts in order of time. A sample at the time of an impact is the state after it.
 fn path(model: &Model, samples: &[Sample], events: &[Event], stops: (f64, f64)) -> Table {
     let mut rows: Vec<[f64; 5]> = Vec::with_capacity(samples.len());
     let mut jumps = events.iter().filter(|event| event.kind == EventKind::Impact).peekable();
@@ -197,10 +202,10 @@ fn impacts(events: &[Event]) -> Table {
     Table::new().each("t_s", &impacts, |impact| impact.t).each("side", &impacts, |impact| impact.side.name())
 }
 
-/// Contacts with a compliant stop that take a smaller share of the run are impacts to the eye.
+/// Share of the run below which a contact with a compliant stop is too short to be shown as a span.
 const SHORTEST_SPAN: f64 = 5e-4;
 
-/// Spans from a rest to the release that follows, or to the end of the run.
+/// Spans from each rest to the release that follows, or to the end of the run.
 fn rests(events: &[Event], first: Option<&Sample>, end: f64) -> Table {
     let mut spans: Vec<(f64, f64, Side)> = Vec::new();
     let mut open = first.and_then(|sample| match sample.phase {
@@ -226,12 +231,13 @@ fn rests(events: &[Event], first: Option<&Sample>, end: f64) -> Table {
     table.each("side", &spans, |span| span.2.name())
 }
 
-/// Displacements in m and velocities in m/s at `count` - 1 times, even between two samples of a flight,
-/// neither of them included. Empty between samples at the same time or at rest.
+/// Displacements in m and velocities in m/s at `count` - 1 even times between two samples of a flight,
+/// without the samples themselves. Empty between samples at the same time or at rest.
 ///
-/// For pictures: samples that are dense enough for an oscillation are too few where taut flexures turn the
-/// mass round in a hundredth of it. The classical Runge-Kutta method goes from one sample towards the next,
-/// with the acceleration of the base linear between them; its error at the next one is spread over the way.
+/// For pictures: samples that are dense enough for an oscillation are too sparse if taut flexures reverse the
+/// velocity within a hundredth of a period. The classical Runge-Kutta method integrates from one sample to
+/// the next, with linear interpolation of the base acceleration; its error at the next sample is distributed
+/// linearly over the points.
 pub fn between(model: &Model, from: &Sample, to: &Sample, count: usize) -> Vec<(f64, f64)> {
     let whole = to.t - from.t;
     if !(whole > 0.0) || from.phase != Phase::Free || count < 2 {
@@ -243,29 +249,29 @@ pub fn between(model: &Model, from: &Sample, to: &Sample, count: usize) -> Vec<(
         (v, model.acceleration(x, v, base))
     };
     let mut at = (from.x, from.v);
-    let mut way = Vec::with_capacity(count);
+    let mut points = Vec::with_capacity(count);
     for i in 0..count {
         let share = |part: f64| (i as f64 + part) / count as f64;
-        let ahead = |k: (f64, f64), part: f64| (at.0 + part * h * k.0, at.1 + part * h * k.1);
+        let stage = |k: (f64, f64), part: f64| (at.0 + part * h * k.0, at.1 + part * h * k.1);
         let k1 = rate(share(0.0), at);
-        let k2 = rate(share(0.5), ahead(k1, 0.5));
-        let k3 = rate(share(0.5), ahead(k2, 0.5));
-        let k4 = rate(share(1.0), ahead(k3, 1.0));
+        let k2 = rate(share(0.5), stage(k1, 0.5));
+        let k3 = rate(share(0.5), stage(k2, 0.5));
+        let k4 = rate(share(1.0), stage(k3, 1.0));
         let mean = |a: f64, b: f64, c: f64, d: f64| (a + 2.0 * (b + c) + d) / 6.0;
         at = (at.0 + h * mean(k1.0, k2.0, k3.0, k4.0), at.1 + h * mean(k1.1, k2.1, k3.1, k4.1));
-        way.push(at);
+        points.push(at);
     }
     let missed = (to.x - at.0, to.v - at.1);
     if !(missed.0.is_finite() && missed.1.is_finite()) {
-        // it left the known curve on the way: no points in between
+        // the motion has left the force curve
         return Vec::new();
     }
-    way.pop();
-    for (i, point) in (1..).zip(way.iter_mut()) {
+    points.pop();
+    for (i, point) in (1..).zip(points.iter_mut()) {
         let share = f64::from(i) / count as f64;
         *point = (point.0 + share * missed.0, point.1 + share * missed.1);
     }
-    way
+    points
 }
 
 #[cfg(test)]
@@ -289,9 +295,9 @@ mod tests {
         let quarter = 0.25 * TAU / w;
         let sample =
             |t: f64, x: f64, v: f64| Sample { t, x, v, base_accel: 0.0, phase: Phase::Free, electrical: 0.0 };
-        let way = between(&model, &sample(0.0, 0.0, w * 1e-3), &sample(quarter, 1e-3, 0.0), 9);
-        assert_eq!(way.len(), 8);
-        for (i, (x, v)) in (1..).zip(&way) {
+        let points = between(&model, &sample(0.0, 0.0, w * 1e-3), &sample(quarter, 1e-3, 0.0), 9);
+        assert_eq!(points.len(), 8);
+        for (i, (x, v)) in (1..).zip(&points) {
             let (sine, cosine) = (0.25 * TAU * f64::from(i) / 9.0).sin_cos();
             assert!((x - 1e-3 * sine).abs() < 1e-7 && (v - w * 1e-3 * cosine).abs() < 1e-5, "{i} {x} {v}");
         }

@@ -1,5 +1,5 @@
-//! Models that differ in one field of their scene, and walks over it: runs each of which goes on from where
-//! the one before was.
+//! Models that differ in one field of their scene, and walks over its values, in which each run continues
+//! from the state of the one before.
 
 use std::sync::Arc;
 
@@ -19,12 +19,12 @@ pub struct Family<'a> {
 }
 
 impl<'a> Family<'a> {
-    /// Of a scene with its mechanism, built from `files`, over the numeric field called `field`.
+    /// The family of a scene with its mechanism, built from `files`, over the numeric field `field`.
     pub fn new(scene: &'a Scene, files: &'a Files, mechanism: &'a Arc<Mechanism>, field: &str) -> Self {
         Self { scene, files, mechanism, path: FieldPath::new(field) }
     }
 
-    /// The model where the field has this value, or why there is none.
+    /// The model for this value of the field, or why there is none.
     pub fn model(&self, value: f64) -> Result<Model, NoModel> {
         let mut scene = self.scene.clone();
         if !self.path.set(&mut scene, value) {
@@ -54,7 +54,7 @@ pub enum NoModel {
 }
 
 words! {
-    /// The direction in which the values of a field are gone through.
+    /// The direction in which the values of a field are taken.
     Direction {
         /// In their order.
         Up = "up",
@@ -70,7 +70,7 @@ words! {
         Up = "up",
         /// Backwards.
         Down = "down",
-        /// Both, each for itself.
+        /// Both, as two separate walks.
         Both = "both",
     }
 }
@@ -86,33 +86,34 @@ impl Carry {
     }
 }
 
-/// Cells that are answered one after the other. The first begins at its scene's start, each further one in
-/// the state of the one before after whole forcing periods. A cell alone is a walk of length 1.
+/// Cells that are run one after the other. The first run begins at the start of its scene, each further one
+/// in the state of the run before after a whole number of forcing periods. A single cell is a walk of length
+/// 1.
 pub(super) struct Walk {
     /// The first of its cells in the order of the grid.
     begin: u64,
     /// Number of its cells.
     pub length: u64,
     pub direction: Option<Direction>,
-    /// Number of cells it has gone through.
+    /// Number of cells that have been run.
     pub done: u64,
     pub carried: Carried,
 }
 
-/// The model of the last run of a walk, and the state from which the next one goes on.
+/// The model of the last run of a walk, and the state from which the next one continues.
 #[derive(Default)]
 pub(super) struct Carried(Option<(Model, State)>);
 
 impl Carried {
-    /// The next model, which goes on from the run before.
-    pub fn on(&self, model: Model) -> Model {
+    /// The next model, which continues from the run before.
+    pub fn continued(&self, model: Model) -> Model {
         match &self.0 {
             Some((before, state)) => model.carried_on(before, *state),
             None => model,
         }
     }
 
-    /// Keeps the state from which the next run goes on.
+    /// Stores the state from which the next run continues.
     pub fn keep(&mut self, model: &Model, run: &Run) {
         if let Some(state) = run.carried.filter(|(x, v)| x.is_finite() && v.is_finite()) {
             self.0 = Some((model.clone(), state));
@@ -148,8 +149,8 @@ pub(super) fn excitation_fault(scene: &Scene, problem: String) -> Fault {
     Fault { field: "excitation".into(), value: kind.unwrap_or_else(|| "None".to_owned()), problem }
 }
 
-/// The most stroboscopic states that are kept of one run.
-const MOST_STROBES: usize = 60;
+/// Largest number of stroboscopic states that are kept of one run.
+const MAX_STROBES: usize = 60;
 
 /// A run of a walk.
 #[derive(Debug, Clone, PartialEq)]
@@ -160,12 +161,13 @@ pub struct Visit {
     pub value: f64,
     /// Its summary.
     pub summary: Summary,
-    /// Displacements in m at the drive's phase 0, once a forcing period: the last 60 of the settled window.
+    /// Displacements in m once per forcing period, at the phase 0 of the drive: the last 60 of the settled
+    /// window.
     pub strobes: Vec<f64>,
 }
 
-/// Walks a family over `values`, ascending, upwards and downwards side by side, and hands over each run as
-/// soon as it is known. A value that makes no model is skipped. False if cancelled.
+/// Walks a family over `values` (ascending) upwards and downwards at the same time, and passes on each run as
+/// soon as it has ended. Values without a model are skipped. False if cancelled.
 pub fn up_and_down(
     family: &Family,
     values: &[f64],
@@ -182,7 +184,7 @@ pub fn up_and_down(
             values.reverse();
         }
         walk_over(family, &values, &request, |value, run| {
-            let skipped = run.section.len().saturating_sub(MOST_STROBES);
+            let skipped = run.section.len().saturating_sub(MAX_STROBES);
             let strobes = run.section[skipped..].iter().map(|point| point.x).collect();
             if !task.is_cancelled() {
                 each(Visit { direction, value, summary: run.summary, strobes });
@@ -195,8 +197,8 @@ pub fn up_and_down(
     pool.map(2, || (), walk).is_ok()
 }
 
-/// Runs the family at one value after the other, each from the state in which the one before ended, until
-/// `each` returns false. Values that make no model are skipped; returns their number.
+/// Runs the family at one value after the other, each run from the final state of the one before, until
+/// `each` returns false. Values without a model are skipped; returns their number.
 pub(super) fn walk_over(
     family: &Family,
     values: &[f64],
@@ -209,7 +211,7 @@ pub(super) fn walk_over(
             unfit += 1;
             continue;
         };
-        let model = carried.on(model);
+        let model = carried.continued(model);
         let run = model.run(request);
         if !each(*value, &run) {
             break;

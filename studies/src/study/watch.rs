@@ -1,8 +1,9 @@
-//! Live run with a memory of its path.
+//! Live run that keeps its recent path.
 //!
-//! The path is sampled for the eye: some eighty times a period, and at every event, so that rebounds are
-//! corners and rests are flat. The energy ledger is kept at the end of every forcing period while somebody
-//! looks at it. The oldest part is forgotten. The models are kept with it ([`models`](super::models)).
+//! The path is sampled for display: 80 times per period, and at every event, so that impacts are drawn as
+//! corners and rests as straight lines. While ledgers are switched on, the energy ledger is stored at the end
+//! of every forcing period. The oldest data are dropped. The models of the motion are stored as well
+//! ([`models`](super::models)).
 
 use std::collections::VecDeque;
 use std::ops::Range;
@@ -13,31 +14,31 @@ use super::{Held, Table, events_table};
 use crate::dynamics::{Event, EventKind, Live, LiveLedger, LiveOutput, Model, Outcome, Phase, Sample, Side};
 use crate::scene::{Excitation, Scene, Start};
 
-/// Samples in a period of the drive or of small oscillations, whichever is shorter.
+/// Samples per period of the drive or of small oscillations, whichever is shorter.
 const PER_PERIOD: f64 = 80.0;
 
-/// How many samples are remembered: some minutes of the prototype.
-const MOST_SAMPLES: usize = 200_000;
-/// How many events are remembered.
-const MOST_EVENTS: usize = 50_000;
+/// Largest number of samples that are kept: some minutes of the prototype.
+const MAX_KEPT_SAMPLES: usize = 200_000;
+/// Largest number of events that are kept.
+const MAX_KEPT_EVENTS: usize = 50_000;
 
-/// How many ledgers are remembered.
-const MOST_LEDGERS: usize = 10_000;
-/// The most ledgers that one call makes: over a longer time the last ones.
-const LEDGERS_AT_ONCE: f64 = 64.0;
+/// Largest number of ledgers that are kept.
+const MAX_KEPT_LEDGERS: usize = 10_000;
+/// Largest number of ledgers that one call of `advance` stores; over a longer time, only the last ones.
+const MAX_LEDGERS_PER_CALL: f64 = 64.0;
 
-/// The most samples that one call makes: over a longer time they are further apart.
-const MOST_AT_ONCE: f64 = 20_000.0;
+/// Largest number of samples that one call of `advance` stores; over a longer time they are further apart.
+const MAX_SAMPLES_PER_CALL: f64 = 20_000.0;
 
-/// A live run and its past.
+/// A live run and its recent past.
 #[derive(Debug, Clone)]
 pub struct Watch {
     live: Live,
     models: Models,
     samples: VecDeque<Sample>,
     events: VecDeque<Event>,
-    /// How many events are no longer remembered.
-    forgotten: usize,
+    /// Number of events that have been dropped.
+    dropped_events: usize,
     /// Ledgers at the start and at multiples of the forcing period.
     ledgers: VecDeque<(f64, LiveLedger)>,
     keeps_ledgers: bool,
@@ -48,7 +49,7 @@ pub struct Watch {
 }
 
 impl Watch {
-    /// Begins at the model's own start.
+    /// A run from the start of the model.
     pub fn new(model: &Model) -> Self {
         let live = Live::new(model);
         let now = live.state();
@@ -57,7 +58,7 @@ impl Watch {
             models: Models::new(Arc::new(model.clone())),
             samples: VecDeque::new(),
             events: VecDeque::new(),
-            forgotten: 0,
+            dropped_events: 0,
             ledgers: VecDeque::from([(0.0, LiveLedger::default())]),
             keeps_ledgers: false,
             now,
@@ -68,25 +69,27 @@ impl Watch {
         watch
     }
 
-    /// Whether from now on a ledger is kept at the end of every forcing period, which repeats the last step.
+    /// Sets whether a ledger is stored at the end of every forcing period from now on, which costs a second
+    /// computation of the last step.
     pub fn keep_ledgers(&mut self, keep: bool) {
         self.keeps_ledgers = keep;
     }
 
-    /// Whether ledgers are kept at the ends of forcing periods.
+    /// Whether ledgers are stored at the ends of forcing periods.
     pub fn keeps_ledgers(&self) -> bool {
         self.keeps_ledgers
     }
 
-    /// How many ledgers there are, that of the start included.
+    /// Number of ledgers, including that of the start.
     pub fn ledger_count(&self) -> usize {
         self.ledgers.len()
     }
 
-    /// Goes on to the time `to` in s. False if the run ended before, or if crowded impacts need more calls.
+    /// Continues to the time `to` in s. False if the run ended earlier, or if many impacts in a short time
+    /// need further calls.
     pub fn advance(&mut self, to: f64) -> bool {
         let from = self.live.time();
-        let step = self.step.max((to - from) / MOST_AT_ONCE);
+        let step = self.step.max((to - from) / MAX_SAMPLES_PER_CALL);
         let first = (from / step).floor() + 1.0;
         let count = ((to / step).floor() - first + 1.0).max(0.0) as u32;
         let times = (0..count).map(|i| (first + f64::from(i)) * step);
@@ -113,25 +116,26 @@ impl Watch {
         let period = self.live.model().forcing_period().filter(|_| self.keeps_ledgers);
         let Some(period) = period else { return Vec::new() };
         let last = (to / period).floor();
-        let first = ((from / period).floor() + 1.0).max(last + 1.0 - LEDGERS_AT_ONCE);
+        let first = ((from / period).floor() + 1.0).max(last + 1.0 - MAX_LEDGERS_PER_CALL);
         let count = (last - first + 1.0).max(0.0) as u32;
         let marks = (0..count).map(|i| (first + f64::from(i)) * period);
         marks.filter(|mark| *mark > from && *mark <= to).collect()
     }
 
-    /// From now on the mass moves as `model` says; see [`Live::change`].
+    /// Replaces the model from now on; see [`Live::change`].
     pub fn change(&mut self, model: &Model) {
         self.step = sampling_step(model);
         self.models.change(self.now.t, Arc::new(model.clone()), self.step);
         self.jump(|live, passage| live.change(model, passage));
     }
 
-    /// Puts the mass to `x` in m with velocity `v` in m/s.
+    /// Sets the state of the mass to `x` in m and `v` in m/s.
     pub fn place(&mut self, x: f64, v: f64) {
         self.jump(|live, passage| live.place(x, v, passage));
     }
 
-    /// Changes the motion at the present instant, before which the state is remembered: the path jumps there.
+    /// Changes the state or the model at the present time. The state before the change is stored, so that the
+    /// path shows the jump.
     fn jump(&mut self, change: impl FnOnce(&mut Live, &mut LiveOutput)) {
         if self.samples.back().is_none_or(|last| last.t < self.now.t) {
             self.samples.push_back(self.now);
@@ -152,18 +156,18 @@ impl Watch {
         self.now
     }
 
-    /// How the run ended, where it did.
+    /// How the run ended; `None` while it continues.
     pub fn ended(&self) -> Option<Outcome> {
         self.live.ended()
     }
 
-    /// Where the energy went since the start.
+    /// The energy ledger since the start.
     pub fn ledger(&self) -> LiveLedger {
         self.live.ledger()
     }
 
-    /// Where the energy went up to a time in s: at the present, and in the past up to the last period's end.
-    /// `None` in a past without a period or without ledgers.
+    /// The energy ledger up to about a time in s, with the time to which it belongs: the present, or in the
+    /// past the last end of a forcing period. `None` for a past time without a period or without ledgers.
     pub fn ledger_at(&self, t: f64) -> Option<(f64, LiveLedger)> {
         if t >= self.now.t {
             return Some((self.now.t, self.ledger()));
@@ -174,8 +178,8 @@ impl Watch {
         (t - mark.0 < period * (1.0 + 1e-9)).then_some(*mark)
     }
 
-    /// Where the energy went in the last whole forcing period that had ended at a time in s. `None` without a
-    /// period, and while the first one since the period was changed, or since ledgers are kept, still lasts.
+    /// The energy ledger of the last whole forcing period before a time in s. `None` without a period, and
+    /// during the first period after the period was changed or ledgers were switched on.
     pub fn last_period(&self, t: f64) -> Option<LiveLedger> {
         let period = self.models.at(t).forcing_period()?;
         let after = self.ledgers.partition_point(|mark| mark.0 <= t);
@@ -185,47 +189,47 @@ impl Watch {
         (whole && last).then(|| end.1.since(&begin.1))
     }
 
-    /// The model of the motion from here on: see [`Live::from_here`].
+    /// A model that continues the motion from its present state; see [`Live::from_here`].
     pub fn from_here(&self) -> Option<Model> {
         self.live.from_here()
     }
 
-    /// The path that is remembered, ascending in time; at an impact two samples, before and after it.
+    /// The samples that are kept, in order of time; an impact has two, before and after it.
     pub fn samples(&self) -> &VecDeque<Sample> {
         &self.samples
     }
 
-    /// The events that are remembered, ascending in time.
+    /// The events that are kept, in order of time.
     pub fn events(&self) -> &VecDeque<Event> {
         &self.events
     }
 
-    /// How many events came before these and are no longer remembered.
+    /// Number of earlier events that have been dropped.
     pub fn forgotten_events(&self) -> usize {
-        self.forgotten
+        self.dropped_events
     }
 
-    /// The model that held at a time in s, as far back as there are samples.
+    /// The model that was in use at a time in s, as far back as there are samples.
     pub fn model_at(&self, t: f64) -> &Arc<Model> {
         self.models.at(t)
     }
 
-    /// The time in s from which it held.
+    /// The time in s from which that model was in use.
     pub fn model_since(&self, t: f64) -> f64 {
         self.models.since(t)
     }
 
-    /// Which models held from `from` to `to` in s, in order of time.
+    /// The models that were in use from `from` to `to` in s, in order of time.
     pub fn models_between(&self, from: f64, to: f64) -> impl Iterator<Item = Held<'_>> {
         self.models.between(from, to)
     }
 
-    /// The first time in s that is remembered.
+    /// The time of the first sample in s.
     pub fn begin(&self) -> f64 {
         self.samples.front().map_or(0.0, |sample| sample.t)
     }
 
-    /// The remembered state at a time in s: between two samples by the cubic through places and velocities.
+    /// The state at a time in s, by cubic Hermite interpolation between two samples.
     pub fn state_at(&self, t: f64) -> Sample {
         if t >= self.now.t {
             return self.now;
@@ -240,7 +244,6 @@ impl Watch {
             return Sample { t, ..*a };
         }
         let s = (t - a.t) / h;
-        // Hermite's cubic and its derivative
         let (rise, bend) = (b.x - a.x, (a.v + b.v) * h - 2.0 * (b.x - a.x));
         let c = rise - a.v * h - bend;
         Sample {
@@ -250,7 +253,7 @@ impl Watch {
             base_accel: a.base_accel + s * (b.base_accel - a.base_accel),
             phase: Phase::Free,
             electrical: match b.electrical - a.electrical {
-                // (corners have no electrical state)
+                // samples at events have no electrical state
                 change if change.is_nan() && a.electrical.is_nan() => b.electrical,
                 change if change.is_nan() => a.electrical,
                 change => a.electrical + s * change,
@@ -258,10 +261,11 @@ impl Watch {
         }
     }
 
-    /// The event before or after a time in s: a release, a crossing, or the first impact after a flight.
+    /// The next event after a time in s, or the last one before it: a release, a crossing, or the first
+    /// impact after a flight.
     pub fn neighbour(&self, t: f64, later: bool) -> Option<Event> {
-        // a chatter is one event, at its first impact
-        let lone = |i: &usize| {
+        // a chattering sequence counts as one event, at its first impact
+        let begins_sequence = |i: &usize| {
             let event = &self.events[*i];
             let before = i.checked_sub(1).map(|j| &self.events[j]);
             let struck = |kind| matches!(kind, EventKind::Impact | EventKind::Contact | EventKind::Separate);
@@ -270,15 +274,15 @@ impl Watch {
         };
         let split = |time: f64| self.events.partition_point(|event| event.t <= time);
         let found = if later {
-            (split(t)..self.events.len()).find(lone)
+            (split(t)..self.events.len()).find(begins_sequence)
         } else {
             let before = self.events.partition_point(|event| event.t < t);
-            (0..before).rev().find(lone)
+            (0..before).rev().find(begins_sequence)
         };
         found.map(|i| self.events[i])
     }
 
-    /// Records a passage, with the corners of the path at its events.
+    /// Stores the samples and events of a passage, with samples at its events where the path has corners.
     fn take(&mut self, passage: LiveOutput) {
         let mut events = passage.events.iter().peekable();
         for sample in &passage.samples {
@@ -289,9 +293,9 @@ impl Watch {
         }
         events.for_each(|event| self.corner(event));
         self.events.extend(passage.events);
-        keep_last(&mut self.samples, MOST_SAMPLES);
-        self.forgotten += keep_last(&mut self.events, MOST_EVENTS);
-        keep_last(&mut self.ledgers, MOST_LEDGERS);
+        keep_last(&mut self.samples, MAX_KEPT_SAMPLES);
+        self.dropped_events += keep_last(&mut self.events, MAX_KEPT_EVENTS);
+        keep_last(&mut self.ledgers, MAX_KEPT_LEDGERS);
         self.models.forget(self.begin());
     }
 
@@ -299,7 +303,7 @@ impl Watch {
         let (left, right) = self.live.model().stop_positions();
         let Some(x) = (if event.side == Side::Left { left } else { right }) else { return };
         let base_accel = self.live.base_acceleration(event.t);
-        // Events do not carry it: a missing number in a table.
+        // Events have no electrical state; NaN becomes a missing value in a table.
         let electrical = if self.live.model().has_electrical_state() { f64::NAN } else { 0.0 };
         let sample = |v: f64, phase: Phase| Sample { t: event.t, x, v, base_accel, phase, electrical };
         let on_stop = if event.side == Side::Left { Phase::LeftStop } else { Phase::RightStop };
@@ -310,16 +314,16 @@ impl Watch {
             EventKind::Rest => self.samples.push_back(sample(0.0, on_stop)),
             EventKind::Release => self.samples.push_back(sample(0.0, Phase::Free)),
             EventKind::Crossing => {}
-            // The path has no corner there, only an end of the stretch in contact.
+            // The path is smooth here; the sample only marks an end of the contact.
             EventKind::Contact => self.samples.push_back(sample(event.v_in, on_stop)),
             EventKind::Separate => self.samples.push_back(sample(event.v_out, Phase::Free)),
         }
     }
 }
 
-/// Forgets all but the last `most` entries; returns how many it forgot.
-fn keep_last<T>(entries: &mut VecDeque<T>, most: usize) -> usize {
-    let spare = entries.len().saturating_sub(most);
+/// Drops all but the last `limit` entries; returns how many were dropped.
+fn keep_last<T>(entries: &mut VecDeque<T>, limit: usize) -> usize {
+    let spare = entries.len().saturating_sub(limit);
     entries.drain(..spare);
     spare
 }
@@ -329,13 +333,13 @@ fn sampling_step(model: &Model) -> f64 {
     model.forcing_period().map_or(swing, |period| period.min(swing)) / PER_PERIOD
 }
 
-/// Least share of samples at common times for which these alone are compared.
-const ENOUGH: f64 = 0.25;
+/// Smallest share of samples at common times for which only these are compared.
+const MIN_COMMON: f64 = 0.25;
 
-/// Times in s from `from` to `to` and the distance in m of two motions at each: at most some `limit` of them.
+/// Times in s from `from` to `to` with the distance in m of two motions, about `limit` of them at most.
 ///
-/// Motions that are sampled in the same steps are compared at their common samples, which are exact; others
-/// between samples, where the distance is good to a millionth of the way between two of these.
+/// Motions with the same sampling steps are compared at their common samples, which are exact. Others are
+/// interpolated, with an error of about a millionth of the distance between two samples.
 pub fn distances(a: &Watch, b: &Watch, (from, to): (f64, f64), limit: usize) -> Vec<(f64, f64)> {
     let (samples, other) = (a.samples(), b.samples());
     let to = to.min(a.time()).min(b.time());
@@ -353,7 +357,7 @@ pub fn distances(a: &Watch, b: &Watch, (from, to): (f64, f64), limit: usize) -> 
             Some((sample.t, (sample.x - twin.x).abs()))
         })
         .collect();
-    if (found.len() as f64) < ENOUGH * taken().count() as f64 {
+    if (found.len() as f64) < MIN_COMMON * taken().count() as f64 {
         found = taken().map(|sample| (sample.t, (sample.x - b.state_at(sample.t).x).abs())).collect();
     }
     if to > from {
@@ -362,10 +366,10 @@ pub fn distances(a: &Watch, b: &Watch, (from, to): (f64, f64), limit: usize) -> 
     found
 }
 
-/// Some of the events that are remembered, by their places, in the columns of
-/// [`events_table`](super::events_table) and two more: `phase_deg`, the phase of the drive, missing where it
-/// does not repeat; and `lost_j`, the kinetic energy that an event takes, m (v_in^2 - v_out^2) / 2 with the
-/// mass at that time. That is missing for a touch of a compliant stop, whose loss is spread over the contact.
+/// The kept events with these indices, in the columns of [`events_table`](super::events_table) and two more:
+/// `phase_deg`, the phase of the drive, missing if the drive does not repeat; and `lost_j`, the loss of
+/// kinetic energy, m (v_in^2 - v_out^2) / 2 with the mass at that time. The loss is missing for contacts with
+/// a compliant stop, which lose energy throughout the contact.
 pub fn watched_events(watch: &Watch, which: Range<usize>) -> Table {
     let count = watch.events().len();
     let which = which.start.min(count)..which.end.min(count);
@@ -374,15 +378,15 @@ pub fn watched_events(watch: &Watch, which: Range<usize>) -> Table {
     let lost = |event: &Event| {
         let mass = watch.model_at(event.t).mass();
         let is_spread = matches!(event.kind, EventKind::Contact | EventKind::Separate);
-        // the sum of the speeds times their difference: exact where they are nearly equal
+        // the product of sum and difference is accurate for nearly equal speeds
         (!is_spread).then_some(0.5 * mass * (event.v_in + event.v_out) * (event.v_in - event.v_out))
     };
     events_table(&events).each("phase_deg", &events, phase).each("lost_j", &events, lost)
 }
 
-/// `scene` with the start and the phases of `here`, the model of a motion that goes on from its present state
-/// ([`Watch::from_here`]). `None` for noise, which begins at its seed, and where a compliant stop is pressed
-/// in.
+/// `scene` with the start and the phases of `here`, the model that continues a motion from its present state
+/// ([`Watch::from_here`]). `None` for noise, which always begins at its seed, and during contact with a
+/// compliant stop.
 pub fn continued_scene(scene: &Scene, here: &Model) -> Option<Scene> {
     let (x, v) = here.start();
     if !here.excitation().noises.is_empty() || here.compliant().is_some() && here.pressed_depth(x).is_some() {
@@ -397,7 +401,8 @@ pub fn continued_scene(scene: &Scene, here: &Model) -> Option<Scene> {
     put_phases(&mut scene.excitation, &mut turns).then_some(scene)
 }
 
-/// Gives every sine of an excitation its phase, from turns and half turns; false if another part has one.
+/// Sets the phases of all sines of an excitation. `turns` gives for each its phase and its offset for a
+/// negative amplitude, in turns. False if another kind of excitation has a phase.
 fn put_phases(excitation: &mut Excitation, turns: &mut impl Iterator<Item = (f64, f64)>) -> bool {
     match excitation {
         Excitation::None | Excitation::Constant { .. } => true,
@@ -415,7 +420,7 @@ fn put_phases(excitation: &mut Excitation, turns: &mut impl Iterator<Item = (f64
     }
 }
 
-/// The number of millimetres that is read back as `x` in m, where there is one.
+/// The number of millimetres that converts back to exactly `x` in m, if there is one.
 fn millimetres(x: f64) -> f64 {
     let mm = x * 1e3;
     [mm, mm.next_up(), mm.next_down()].into_iter().find(|mm| mm / 1e3 == x).unwrap_or(mm)

@@ -8,13 +8,13 @@ use crate::numeric::round::{ONE_TWO_FIVE, decade, round_up};
 pub struct PlotAxis {
     /// Value at the left or lower end.
     pub low: f64,
-    /// Value at the other end; above `low`.
+    /// Value at the right or upper end, above `low`.
     pub high: f64,
-    /// Values that have a tick, with the text at it.
+    /// Values with ticks, and the text at each.
     pub ticks: Vec<(f64, String)>,
-    /// What the axis shows, with unit and power of ten.
+    /// Label with unit and power of ten.
     pub label: String,
-    /// What it shows, without a power of ten.
+    /// Label without a power of ten.
     name: String,
     scale: Scale,
 }
@@ -26,13 +26,14 @@ enum Scale {
     Linear,
     /// At powers of ten; the ends are logarithms.
     Decades,
-    /// At 1 and 3 times powers of ten of 1 more than the value: room for 0 and for thousands.
+    /// At 1 and 3 times powers of ten on a logarithmic scale of the value plus 1, which has room for 0 and
+    /// for thousands.
     Counts,
-    /// Where they were given.
+    /// At given values.
     Given,
 }
 
-/// The requested ranges of a picture's axes: of the horizontal one and of the (first) vertical one.
+/// The requested ranges of the horizontal and the (first) vertical axis of a picture.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Ranges {
     /// Range of the horizontal axis.
@@ -41,15 +42,15 @@ pub struct Ranges {
     pub y: Option<(f64, f64)>,
 }
 
-/// Ticks of an axis that has no place yet.
+/// Number of ticks of an axis before the layout.
 const USUAL: usize = 6;
 
-/// Values beyond this are drawn at it, so that no difference of two values overflows.
+/// Magnitude to which values are limited, so that no difference of two values overflows.
 const LARGEST: f64 = 1e300;
 
 impl PlotAxis {
-    /// An axis from the least to the greatest of `values`, with `margin` of that range added at both ends.
-    /// Values that are not finite are ignored; a range of length 0 is widened.
+    /// An axis from the smallest to the largest of `values`, extended by the share `margin` of that range at
+    /// both ends. Values that are not finite are ignored; a range of length 0 is widened.
     pub fn around(values: impl IntoIterator<Item = f64>, margin: f64, label: &str) -> Self {
         let (low, high) = extent(values.into_iter().filter(|value| value.is_finite()));
         if low > high {
@@ -72,19 +73,19 @@ impl PlotAxis {
         // a range that begins and ends with one
         let finer = round_up(0.39 * usual, &ONE_TWO_FIVE);
         let step = if ticks(usual) < 3.0 || ticks(finer) <= count as f64 + 1.0 { finer } else { usual };
-        // Where plain numbers would be long, a common power of ten goes into the label.
+        // if plain numbers would be long, the label has a common power of ten
         let largest = low.abs().max(high.abs());
         let power = decade(largest);
         let power = if (-3..5).contains(&power) { 0 } else { power };
         let scale = 10_f64.powi(power);
         let decimals = (power - (step.log10() + 1e-9).floor() as i32).clamp(0, 12) as usize;
-        // If the step is lost in the rounding of large numbers, only the ends get ticks.
+        // if the step is lost in the rounding of large numbers, only the ends have ticks
         let ticks = if step > 8.0 * f64::EPSILON * largest {
             let (first, last) = ((low / step - 1e-9).ceil(), (high / step + 1e-9).floor());
             let number = |k: i64| {
                 let value = (first + k as f64) * step;
                 let text = format!("{:.decimals$}", value / scale);
-                // Zero gets no sign, and negative numbers a minus sign instead of a hyphen.
+                // zero has no sign, and negative numbers have a minus sign instead of a hyphen
                 let zero = text.bytes().all(|b| matches!(b, b'-' | b'0' | b'.'));
                 let text = if zero { text.replace('-', "") } else { text.replace('-', "\u{2212}") };
                 (value.clamp(low, high), text)
@@ -107,7 +108,7 @@ impl PlotAxis {
         Self { low, high, ticks, label: label.to_owned(), name: label.to_owned(), scale: Scale::Given }
     }
 
-    /// An axis of whole numbers from 0 to `high` on which equal ratios are nearly equal lengths.
+    /// A nearly logarithmic axis of whole numbers from 0 to `high`.
     pub fn counts(high: f64, label: &str) -> Self {
         let high = high.max(1.0);
         let powers = (0..9).flat_map(|power| [1, 3].map(|digit| digit * 10_u64.pow(power)));
@@ -131,18 +132,18 @@ impl PlotAxis {
         }
     }
 
-    /// The axis between other ends, which are logarithms where its own are.
+    /// The axis with other ends, which are logarithms on a logarithmic axis.
     #[must_use]
     pub fn zoomed(&self, (low, high): (f64, f64)) -> Self {
         Self { low, high, ..self.clone() }.with_ticks(USUAL)
     }
 
-    /// Whether its ticks are numbers of a scale, of which some may be left out.
+    /// Whether its ticks are numbers of a scale, so that some may be left out.
     pub(super) fn is_scale(&self) -> bool {
         self.scale != Scale::Given
     }
 
-    /// The axis with its unit alone as its label, where it has one.
+    /// The axis with only its unit as the label, if it has one.
     pub(super) fn by_unit(&self) -> Self {
         let unit = self.label.rsplit_once(" (").map(|(_, unit)| unit.trim_end_matches(')').to_owned());
         Self { label: unit.unwrap_or_else(|| self.label.clone()), ..self.clone() }
@@ -185,7 +186,7 @@ impl PlotAxis {
         Self { scale: Scale::Decades, ..Self::given(low, high, ticks, label) }
     }
 
-    /// Where `value` stands between the ends: 0 at the lower, 1 at the upper.
+    /// Position of `value` between the ends: 0 at the lower, 1 at the upper end.
     pub fn share(&self, value: f64) -> f64 {
         match self.scale {
             Scale::Counts => (1.0 + value.max(0.0)).ln() / (1.0 + self.high).ln(),

@@ -20,7 +20,7 @@ pub fn can_show_starts(starts: &Starts) -> Result<(), NoPicture> {
     if count > MAX_PICTURE_CELLS { Err(NoPicture::Starts(count)) } else { Ok(()) }
 }
 
-/// The picture of a map, which may be incomplete.
+/// The picture of a map that may be incomplete.
 pub fn basins_chart(basins: &Basins, answer: &Answer) -> Chart {
     let starts = basins.starts();
     let (across, up) = match starts.axes() {
@@ -107,7 +107,7 @@ fn drawn(basins: &Basins, answer: &Answer) -> Table {
     drawn.table()
 }
 
-/// Maps each row to the row whose answer is shown for it: itself, or the nearest one that has been run.
+/// For each row, the row whose answer is shown there: itself, or the nearest row that has been run.
 fn source_row(basins: &Basins) -> impl Fn(usize) -> usize {
     let (levels, done) = basins.levels();
     move |row| {
@@ -115,7 +115,8 @@ fn source_row(basins: &Basins) -> impl Fn(usize) -> usize {
     }
 }
 
-/// The names of the attractors with their shares; of many only those with the largest shares have one.
+/// The names of the attractors with their shares; if there are many, only those with the largest shares have
+/// a name.
 fn names(basins: &Basins, answer: &Answer) -> Vec<String> {
     let mut order: Vec<usize> = (0..answer.attractors.len()).collect();
     order.sort_by_key(|place| std::cmp::Reverse(answer.attractors[*place].starts));
@@ -126,7 +127,7 @@ fn names(basins: &Basins, answer: &Answer) -> Vec<String> {
     names
 }
 
-/// An attractor in words, with its number and its share; for random starts with the interval of the share.
+/// Description of an attractor with its number and share; for random starts also the interval of the share.
 fn words(place: usize, kind: &str, attractor: &Attractor, is_grid: bool) -> String {
     let mut words = format!("{} {kind}", place + 1);
     let percent = |share: f64| short((1e3 * share).round() / 10.0);

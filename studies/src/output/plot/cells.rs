@@ -32,9 +32,9 @@ impl Cell {
 pub enum Colours {
     /// Along this axis.
     Scale(PlotAxis),
-    /// About 0, up to this to either side.
+    /// Symmetric about 0, up to this magnitude.
     Signed(f64),
-    /// By whole numbers, each a place among these roles and words.
+    /// By whole numbers that are indices of these roles and words.
     Categories(Vec<(Role, String)>),
 }
 
@@ -54,7 +54,7 @@ impl Colours {
         }
     }
 
-    /// A bar at `area` with the colours along an axis, and its numbers.
+    /// Draws a colour bar in `area` with the numbers of its axis.
     pub fn bar(&self, figure: &mut Figure, area: Area, axis: &PlotAxis, theme: &Theme) {
         const STEPS: usize = 256;
         let Area { left, top, right, bottom } = area;
@@ -110,7 +110,7 @@ impl Cells {
         self.cells[column * self.up.values.len() + row]
     }
 
-    /// The roles and words of the legend: categories that are there, cells at rest and missing ones.
+    /// The roles and words of the legend: existing categories, cells at rest and missing cells.
     pub fn entries(&self) -> Vec<(Role, String)> {
         let has = |cell: Cell| self.cells.contains(&cell);
         let mut entries = Vec::new();

@@ -1,8 +1,8 @@
-//! Picture as data: panels with axes and layers, without a pixel or a colour.
+//! Picture as data: panels with axes and layers, independent of pixels and colours.
 //!
-//! A study's table becomes a [`Chart`]; [`Chart::figure`] lays it out for a screen or a sheet of paper. Each
-//! layer names its [`Role`], from which its colour, width, dash and marker follow, and the legend is made of
-//! the layers that have a name.
+//! The table of a study becomes a [`Chart`]; [`Chart::figure`] lays it out for a screen or a sheet of paper.
+//! The [`Role`] of a layer determines its colour, width, dash and marker. The legend contains the layers that
+//! have a name.
 
 use super::axis::PlotAxis;
 use super::cells::Cells;
@@ -16,16 +16,16 @@ use crate::study::Table;
 pub struct Chart {
     /// The columns of panels, side by side; on a narrow canvas they are stacked.
     pub columns: Vec<Column>,
-    /// What is shown, in one sentence.
+    /// A caption in one sentence.
     pub subtitle: String,
-    /// What is drawn: a row a point, a cell or a mark, its kind in the column `series`.
+    /// The drawn data, one row per point, cell or mark, with its kind in the column `series`.
     pub data: Table,
 }
 
 /// Panels one above the other. Neighbours with the same horizontal axis share its numbers.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Column {
-    /// Its width in proportion to that of the others.
+    /// Its width relative to the other columns.
     pub width: f64,
     /// From top to bottom.
     pub panels: Vec<Panel>,
@@ -34,17 +34,17 @@ pub struct Column {
 /// Layers over two axes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Panel {
-    /// The words over it; empty for none.
+    /// Its heading; empty for none.
     pub heading: String,
-    /// The axis to the right.
+    /// The horizontal axis.
     pub x: PlotAxis,
-    /// The axis upward.
+    /// The vertical axis.
     pub y: PlotAxis,
     /// What is drawn, from back to front.
     pub layers: Vec<Layer>,
     /// The axis of the colour scale beside it.
     pub bar: Option<PlotAxis>,
-    /// Its height in proportion to that of the others in the column.
+    /// Its height relative to the other panels of the column.
     pub height: f64,
     /// Lines of text below it.
     pub notes: Vec<Note>,
@@ -83,7 +83,7 @@ pub enum Side {
     Bottom,
 }
 
-/// What a layer draws. Points that are not finite are left out and part a line.
+/// What a layer draws. Points that are not finite are left out and interrupt a line.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Marks {
     /// A line through points in any order.
@@ -92,17 +92,17 @@ pub enum Marks {
     Trace(Vec<Point>),
     /// A marker at each point.
     Points(Vec<Point>),
-    /// Markers of regimes by their words; on a line, of those that lie close, some.
+    /// Markers of regimes by their words; close markers on a line are left out.
     Regimes(Vec<(Point, &'static str)>, bool),
-    /// Small markers, the smaller the more there are.
+    /// Small markers, whose size decreases with their number.
     Cloud(Vec<Point>),
     /// A line from the lower edge to each point.
     Sticks(Vec<Point>),
     /// A line from the second to the third value at each x.
     Intervals(Vec<[f64; 3]>),
-    /// What lies between the second and the third value over x.
+    /// The area between the second and the third value over x.
     Band(Vec<[f64; 3]>),
-    /// A bar at each y from one x to another, as high as the last share of a unit of the axis.
+    /// A bar at each y from one x to another; the last number is its height in units of the axis.
     Bars(Vec<[f64; 3]>, f64),
     /// Spans of x over the whole height.
     Spans(Vec<(f64, f64)>),
@@ -112,15 +112,15 @@ pub enum Marks {
     Horizontals(Vec<f64>),
     /// A wall at a value, solid on this side of it.
     Wall(f64, Side),
-    /// Short ticks along this edge; of those that lie close, some.
+    /// Short ticks along this edge; close ticks are left out.
     Ticks(Vec<f64>, Side),
-    /// Words, each beginning at its place, or as far before it as they would leave the frame.
+    /// Texts that begin at their places, shifted to the left if they would leave the frame.
     Words(Vec<(Point, String)>),
     /// A colour for each cell of a grid.
     Cells(Cells),
     /// The cells as a surface in projection, over a third axis.
     Surface(Cells, PlotAxis),
-    /// Nothing but an entry of the legend.
+    /// Only an entry of the legend.
     Patch,
 }
 
@@ -178,11 +178,11 @@ impl Panel {
         self.x.contains(x) && self.y.contains(y)
     }
 
-    /// Whether something of a layer may lie within the axes; of one that draws nothing, its entry in the
-    /// legend counts.
+    /// Whether a part of a layer may lie within the axes; true for a layer that is only an entry of the
+    /// legend.
     pub fn shows(&self, layer: &Layer) -> bool {
         let reaches = |axis: &PlotAxis, a: f64, b: f64| a.max(b) >= axis.low && a.min(b) <= axis.high;
-        // a part of a line counts where its box and the frame have something in common
+        // a segment counts if its bounding box and the frame overlap
         let is_crossed = |points: &[Point]| {
             points.len() < 2
                 || points.windows(2).any(|pair| {

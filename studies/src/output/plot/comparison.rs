@@ -21,23 +21,24 @@ pub struct ComparisonPicture<'a> {
     pub frequency_hz: f64,
 }
 
-/// The most panels side by side.
+/// Largest number of panels side by side.
 const COLUMNS: usize = 4;
 
-/// Height of a bar over that of its row, and of a row over that of a panel of height 1.
+/// Height of a bar relative to that of its row.
 const BAR: f64 = 0.5;
+/// Height of a row relative to a panel of height 1.
 const ROW: f64 = 0.2;
 
-/// The most letters of a name.
-const LONGEST_NAME: usize = 28;
+/// Largest number of characters of a name.
+const MAX_NAME: usize = 28;
 
-/// Where the marker of a regime stands, and its number begins at least, as shares of the axis.
+/// Position of the marker of a regime, and smallest position of its number, as shares of the axis.
 const MARKED: (f64, f64) = (0.06, 0.12);
 
 /// Room beyond the frequencies that were searched, as a share of their axis.
 const BAND_ROOM: f64 = 0.55;
 
-/// How much longer an axis is than the longest bar, as room for its number.
+/// Length of an axis relative to the longest bar, which leaves room for a number.
 const ROOM: f64 = 1.45;
 
 /// A frequency within this factor of an end of the search counts as that end.
@@ -141,8 +142,8 @@ fn names(rated: &[Rated]) -> Vec<String> {
     } else {
         rated.iter().map(|scene| scene.name.clone()).collect()
     };
-    // the end of a long name tells it from others
-    let shortened = |name: String| match name.char_indices().rev().nth(LONGEST_NAME - 1) {
+    // the end of a long name distinguishes it from others
+    let shortened = |name: String| match name.char_indices().rev().nth(MAX_NAME - 1) {
         Some((begin, _)) if begin > 0 => format!("\u{2026}{}", &name[begin..]),
         _ => name,
     };

@@ -43,8 +43,8 @@ pub fn curve_chart(table: &Table, mechanism: &Mechanism, stops: (f64, f64), rang
     Chart::stack(vec![upper, lower], words, drawn(table, mechanism, stops, inside))
 }
 
-/// The force that holds the mass, over displacement in mm, of which `per_newton` units are a N: its stops in
-/// mm, kinks, equilibria, and the curve by its name and points.
+/// Panel of the holding force over displacement in mm, with `per_newton` units of the axis per N: stops in
+/// mm, kinks, equilibria, and the curve with its name and points.
 pub fn force_panel(
     mechanism: &Mechanism,
     axes: (PlotAxis, PlotAxis),
@@ -117,8 +117,8 @@ fn subtitle(landscape: &Landscape) -> String {
     parts.join(", ")
 }
 
-/// What the panel of the force does not show of the positions in its range: how large the force becomes, and
-/// where. `scale` is that of the axis upward.
+/// A note on forces beyond the vertical axis at positions in the range: how large they become, and where.
+/// `scale` is that of the vertical axis.
 fn wall(x: &[f64], force: &[f64], panel: &Panel, scale: f64) -> Option<String> {
     let shown = x.iter().zip(force).filter(|(x, force)| panel.x.contains(**x * 1e3) && force.is_finite());
     let outside = shown.filter(|(_, force)| !panel.y.contains(**force * scale));
@@ -127,8 +127,8 @@ fn wall(x: &[f64], force: &[f64], panel: &Panel, scale: f64) -> Option<String> {
     Some(format!(", force leaves the picture ({force} N at {x} mm)").replace('-', "\u{2212}"))
 }
 
-/// The factor from SI and the name of the largest of `units` (each its size in SI, falling) in which the
-/// greatest value of a range is 0.1 or more.
+/// The factor from SI and the name of the largest of `units` (in descending order, with their sizes in SI) in
+/// which the largest value of a range is at least 0.1.
 fn scaled((low, high): (f64, f64), units: &[(f64, &'static str)]) -> (f64, &'static str) {
     let greatest = [low, high].iter().filter(|value| value.is_finite()).fold(0.0_f64, |a, b| a.max(b.abs()));
     let fits =
@@ -136,8 +136,8 @@ fn scaled((low, high): (f64, f64), units: &[(f64, &'static str)]) -> (f64, &'sta
     fits.or(units.first()).map_or((1.0, ""), |(size, unit)| (1.0 / size, *unit))
 }
 
-/// The range of values that tells something. Beyond the outermost equilibrium a force may rise like a wall
-/// and press everything else flat: what lies there counts up to half the range between more on each side.
+/// The range of values of interest. A steep force beyond the outermost equilibria would flatten the rest of
+/// the curve, so it extends the range between the equilibria by at most half of it on each side.
 fn telling(x: &[f64], values: &[f64], landscape: &Landscape) -> (f64, f64) {
     let range = |from: f64, to: f64| {
         let inside = x.iter().zip(values).filter(|(x, v)| **x >= from && **x <= to && v.is_finite());

@@ -1,8 +1,8 @@
-//! Table of what a picture shows, a row a point, a cell or a mark.
+//! Table of the data in a picture, one row per point, cell or mark.
 
 use crate::study::{Column, Table, Values};
 
-/// Rows of several kinds, told apart by their `series`.
+/// Rows of several kinds, distinguished by the column `series`.
 pub(super) struct Drawn {
     series: Vec<&'static str>,
     numbers: Vec<(String, Vec<f64>)>,
@@ -10,7 +10,7 @@ pub(super) struct Drawn {
 }
 
 impl Drawn {
-    /// No rows yet, of these columns of numbers, after which those of words come.
+    /// An empty table with these columns of numbers, followed by columns of words.
     pub fn new<'a>(numbers: impl IntoIterator<Item = &'a str>, words: &[&'static str]) -> Self {
         Self {
             series: Vec::new(),
@@ -19,7 +19,7 @@ impl Drawn {
         }
     }
 
-    /// Adds a row; numbers and words left out at the end are missing.
+    /// Adds a row; omitted numbers and words at the end are missing values.
     pub fn put(&mut self, series: &'static str, numbers: &[f64], words: &[&'static str]) {
         self.series.push(series);
         for (i, (_, column)) in self.numbers.iter_mut().enumerate() {

@@ -1,7 +1,7 @@
-//! Picture as a list of plain shapes, in the order in which they are painted.
+//! Picture as a list of simple shapes in painting order.
 //!
-//! The plots write down what they show; [`Format`](super::Format) turns that into a file. So
-//! each plot is written once for both, and a test can read what a picture says.
+//! Plots produce shapes; [`Format`](super::Format) turns them into a file. So a plot is independent of the
+//! format, and tests can inspect its contents.
 
 use serde_json::{Map, Value};
 
@@ -14,7 +14,7 @@ use super::surface::SurfaceFrame;
 use crate::numeric::short;
 use crate::study::Table;
 
-/// A place on the canvas: to the right and down from the upper left corner.
+/// A position on the canvas, to the right and down from the upper left corner.
 pub type Point = (f64, f64);
 
 /// A rectangle by two corners, the first one above and to the left.
@@ -36,21 +36,21 @@ impl Area {
         Self { left, top, right, bottom }
     }
 
-    /// What this and `other` share; none where that is nothing.
+    /// The intersection with `other`; `None` if it is empty.
     pub fn common(self, other: Self) -> Option<Self> {
         let (left, right) = (self.left.max(other.left), self.right.min(other.right));
         let (top, bottom) = (self.top.max(other.top), self.bottom.min(other.bottom));
         (left < right && top < bottom).then_some(Self { left, top, right, bottom })
     }
 
-    /// Whether a place lies inside.
+    /// Whether a point lies inside.
     pub fn contains(self, (x, y): Point) -> bool {
         (self.left..=self.right).contains(&x) && (self.top..=self.bottom).contains(&y)
     }
 
     /// The part of a convex polygon that lies inside (Sutherland and Hodgman 1974); empty if none does.
     pub fn clip_polygon(self, points: Vec<Point>) -> Vec<Point> {
-        // inside is where the normal takes a point beyond the edge
+        // the inside is the side to which the normal of the edge points
         let edges = [
             ((1.0, 0.0), self.left),
             ((-1.0, 0.0), -self.right),
@@ -109,13 +109,13 @@ impl Area {
             }
         }
         let at = |share: f64| (a.0 + share * dx, a.1 + share * dy);
-        // Whole ends stay as they are, bit for bit: the next segment begins there.
+        // ends inside are kept bit for bit, since the next segment begins there
         let (from, to) = (if enter > 0.0 { at(enter) } else { a }, if leave < 1.0 { at(leave) } else { b });
         (enter <= leave).then_some((from, to))
     }
 }
 
-/// Where a text's given point lies on it.
+/// The point of a text that is at its position.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Align {
     /// At its beginning.
@@ -126,15 +126,15 @@ pub enum Align {
     Right,
 }
 
-/// The most dashes of a line.
-const MOST_DASHES: f64 = 400.0;
+/// Largest number of dashes of a line.
+const MAX_DASHES: f64 = 400.0;
 
 /// A line of text.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Text {
     /// What it says.
     pub words: String,
-    /// Where on the canvas; its height is that of the baseline.
+    /// Position on the canvas; the vertical one is that of the baseline.
     pub at: Point,
     /// Height of an em.
     pub size: f64,
@@ -142,9 +142,9 @@ pub struct Text {
     pub ink: Ink,
     /// Heavier letters.
     pub bold: bool,
-    /// Which part of it is at `at`.
+    /// The point of the text that is at `at`.
     pub align: Align,
-    /// Read from below to above.
+    /// Whether it reads upwards.
     pub upright: bool,
 }
 
@@ -154,7 +154,7 @@ impl Text {
         Self { words: words.into(), at, size, ink, bold: false, align: Align::Left, upright: false }
     }
 
-    /// How much of it stands before its given point.
+    /// Length of the text before its position.
     pub fn before(&self) -> f64 {
         match self.align {
             Align::Left => 0.0,
@@ -184,26 +184,26 @@ pub enum Shape {
 pub struct Figure {
     /// The shapes in the order in which they are painted.
     pub shapes: Vec<Shape>,
-    /// All that can be drawn on.
+    /// The whole canvas.
     pub canvas: Area,
-    /// What of the canvas is painted.
+    /// The part of the canvas that is painted.
     pub shown: Area,
-    /// Width and height in pixels; left out, one for each unit of the canvas. What is shown keeps its
-    /// proportions and stands in their middle.
+    /// Width and height in pixels; by default one pixel per unit of the canvas. The painted part keeps its
+    /// proportions and is centred.
     pub size: Option<(u32, u32)>,
-    /// The sheet of paper that it is laid out for; none for a screen.
+    /// The sheet of paper for which it is laid out; `None` for a screen.
     pub sheet: Option<Sheet>,
-    /// What made it: names and values, as in a manifest.
+    /// Its provenance: names and values, as in a manifest.
     pub origin: Map<String, Value>,
-    /// What is drawn: a row a point, a cell or a mark, its kind in the column `series`.
+    /// The drawn data, one row per point, cell or mark, with its kind in the column `series`.
     pub data: Table,
     /// The frames of its panels, without those of surfaces.
     pub frames: Vec<Frame>,
     /// The frame of a surface.
     pub surface: Option<SurfaceFrame>,
-    /// The entries of its legend, and where each is.
+    /// The entries of its legend with their places.
     pub legend: Vec<(Area, String)>,
-    /// Upper and lower edge of what stands between the captions.
+    /// Upper and lower edge of the part between the captions.
     body: (f64, f64),
 }
 
@@ -226,7 +226,7 @@ impl Figure {
         }
     }
 
-    /// The picture without what stands over and under it, as for a page that has a caption of its own.
+    /// The picture without its captions, for a page that has its own caption.
     #[must_use]
     pub fn without_title(mut self) -> Self {
         (self.shown.top, self.shown.bottom) = self.body;
@@ -239,14 +239,14 @@ impl Figure {
         self
     }
 
-    /// What is said where the height that was asked for has no room for the picture; it is then higher.
+    /// A warning if the requested height is too small for the picture, which is then higher.
     pub fn grown(&self) -> Option<String> {
         let (asked, made) = (self.sheet?.height_mm?, self.size_mm()?.1);
         let words = || format!("{asked} mm are too low; the picture is {} mm high", short(made));
         (made > asked + 1e-6).then(words)
     }
 
-    /// What made it, as JSON in one line.
+    /// Its provenance as JSON in one line.
     pub fn made(&self) -> String {
         Value::Object(self.origin.clone()).to_string()
     }
@@ -282,7 +282,7 @@ impl Figure {
         for part in within.parts(points) {
             let length: f64 =
                 part.windows(2).map(|pair| (pair[1].0 - pair[0].0).hypot(pair[1].1 - pair[0].1)).sum();
-            let longer = (length / (MOST_DASHES * (on + off))).max(1.0);
+            let longer = (length / (MAX_DASHES * (on + off))).max(1.0);
             for piece in dashes(&part, (on * longer, off * longer)) {
                 self.shapes.push(Shape::Line(piece, width, ink));
             }
@@ -329,7 +329,7 @@ impl Figure {
         self.line(&corners, width, ink, self.canvas);
     }
 
-    /// Hatches `area` with lines that go down to the right, as a value that is missing.
+    /// Hatches `area` with lines that fall to the right, the sign of a missing value.
     pub fn hatch_missing(&mut self, area: Area, ink: Ink) {
         let Some(area) = area.common(self.canvas) else { return };
         let (step, width) = style::HATCH;
@@ -343,7 +343,7 @@ impl Figure {
         }
     }
 
-    /// Hatches `area` with lines that go up to the right, in step with every other hatching.
+    /// Hatches `area` with lines that rise to the right, aligned with all other hatchings.
     pub fn hatch(&mut self, area: Area, ink: Ink) {
         let Some(area) = area.common(self.canvas) else { return };
         let (step, width) = style::HATCH;
@@ -357,7 +357,7 @@ impl Figure {
         }
     }
 
-    /// Everything that can be read on the picture.
+    /// All texts of the picture.
     pub fn words(&self) -> impl Iterator<Item = &str> {
         self.shapes.iter().filter_map(|shape| match shape {
             Shape::Text(text) => Some(text.words.as_str()),

@@ -1,8 +1,8 @@
 //! Font of the pictures: its letters, their outlines, and the width of a text.
 //!
-//! Inter (The Inter Project Authors, SIL Open Font License 1.1, text in `assets/fonts`), cut down to
-//! Latin, Greek and the signs that a formula needs. It is part of the program: no font of the machine is
-//! looked for, so a picture is the same everywhere. Pairs of letters are not kerned.
+//! Inter (The Inter Project Authors, SIL Open Font License 1.1, text in `assets/fonts`), cut down to Latin,
+//! Greek and the signs that a formula needs. The font is embedded in the program and no system font is used,
+//! so pictures are the same everywhere. There is no kerning.
 
 use std::sync::LazyLock;
 
@@ -36,7 +36,7 @@ pub struct Letter {
     pub character: char,
     /// Its glyph in the font.
     pub glyph: GlyphId,
-    /// From the begin of the text to that of the letter, in ems.
+    /// Distance from the beginning of the text to that of the letter, in ems.
     pub begin: f64,
     /// Its width in ems.
     pub width: f64,
@@ -67,7 +67,7 @@ impl Face {
         }
     }
 
-    /// The letters of a text; what the font does not have is its box for a missing letter.
+    /// The letters of a text; a missing letter is shown as the box of the font.
     pub fn letters(&self, words: &str) -> impl Iterator<Item = Letter> {
         words.chars().scan(0.0, |end, character| {
             let glyph = self.letters.map(character).unwrap_or_default();

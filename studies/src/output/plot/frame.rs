@@ -11,58 +11,63 @@ use super::mark::{REGIMES, dot, mark, marker};
 use super::role::{Look, Role};
 use super::style::{self, Theme};
 
-/// Half the size of a point of a cloud: of few, and of many; as many or more of them.
+/// Half the size of the points of a cloud of few points, and of one of many.
 const CLOUD: (f64, f64) = (6.0, 2.2);
+/// Number of points up to which a cloud has few.
 const FEW: f64 = 100.0;
+/// Number of points from which on it has many.
 const MANY: f64 = 2000.0;
 
-/// Length of a tick of a layer, and the least distance between two.
+/// Length of a tick of a layer.
 const TICK: f64 = 20.0;
+/// Smallest distance of two such ticks.
 const APART: f64 = 4.5;
 
-/// Numbers of a scale upward stand this far apart at least.
-const LEAST_APART: f64 = 24.0;
+/// Smallest distance of the numbers on a vertical axis.
+const MIN_DISTANCE: f64 = 24.0;
 
-/// So many times its half height apart, markers on a line are told from each other.
+/// Smallest distance of markers on a line, in multiples of half their height.
 const MARKER_ROOM: f64 = 5.0;
 
-/// From one symbol over a map to the next, and how far around one the cells are of its kind.
+/// Distance of the symbols over a map.
 const SYMBOLS: f64 = 104.0;
+/// Distance around a symbol within which all cells must be of its kind.
 const AROUND: f64 = 20.0;
 
-/// Half the size of a marker where there are many: this share of the width over their number, at least.
+/// Half the size of one of many markers, as a share of the width over their number.
 const SIZE_SHARE: f64 = 0.3;
+/// Smallest half size of a marker.
 const SMALLEST: f64 = 3.5;
 
-/// A rectangle of the canvas with an axis to the right and one upward.
+/// A rectangle of the canvas with a horizontal and a vertical axis.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Frame {
-    /// Where it is.
+    /// Its place on the canvas.
     pub area: Area,
-    /// The axis to the right.
+    /// The horizontal axis.
     pub x: PlotAxis,
-    /// The axis upward.
+    /// The vertical axis.
     pub y: PlotAxis,
 }
 
 impl Frame {
-    /// Where a value of x stands on the canvas.
+    /// Horizontal position of a value of x on the canvas.
     pub fn across(&self, x: f64) -> f64 {
         self.area.left + self.x.share(x) * (self.area.right - self.area.left)
     }
 
-    /// Where a value of y stands on the canvas.
+    /// Vertical position of a value of y on the canvas.
     pub fn down(&self, y: f64) -> f64 {
         self.area.bottom - self.y.share(y) * (self.area.bottom - self.area.top)
     }
 
-    /// Where a pair of values stands on the canvas; values that are not finite stay so.
+    /// Position of a pair of values on the canvas; values that are not finite are kept.
     pub fn place(&self, (x, y): Point) -> Point {
         let finite = |value: f64, place: f64| if value.is_finite() { place } else { f64::NAN };
         (finite(x, self.across(x)), finite(y, self.down(y)))
     }
 
-    /// The shapes of layers over it, on a canvas as large as itself.
+    /// The shapes of layers over it, on a canvas of its size.
     pub fn shapes(&self, layers: &[Layer], theme: &Theme) -> Vec<Shape> {
         let Area { right, bottom, .. } = self.area;
         let mut figure = Figure::new(theme, (right, bottom), (0.0, bottom));
@@ -84,8 +89,8 @@ impl Frame {
         }
     }
 
-    /// The frame with its ticks over everything else, and their numbers where they are shown: those upward
-    /// within this width, smaller where they are longer or stand close.
+    /// The frame with its ticks over everything else, and with their numbers if they are shown. Those of the
+    /// vertical axis fit into this width; long or dense ones are smaller.
     pub fn ticks(&self, figure: &mut Figure, theme: &Theme, shows_x: bool, numbers: Option<f64>) {
         let Area { left, bottom, .. } = self.area;
         figure.outline(self.area, style::FRAME, theme.ink);
@@ -100,7 +105,7 @@ impl Frame {
             let tick = [(at, bottom), (at, bottom + style::TICK_LENGTH)];
             figure.line(&tick, style::FRAME, theme.ink, figure.canvas);
             if shows_x && numbered(i) {
-                // where the canvas ends beside it, a number stands inwards
+                // at the edge of the canvas a number is shifted inwards
                 let half = 0.5 * font::width(words, style::TICK, false) + 2.0;
                 let at = at.min(figure.canvas.right - half).max(half);
                 figure.text(text(words, (at, bottom + style::TICK_LENGTH + ascent + 8.0), Align::Centre));
@@ -108,8 +113,8 @@ impl Frame {
         }
         let places: Vec<f64> = self.y.ticks.iter().map(|tick| self.down(tick.0)).collect();
         let apart = places.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(f64::INFINITY, f64::min);
-        // in a low frame some have no number
-        let least = if self.y.is_scale() { LEAST_APART } else { 0.0 };
+        // in a low frame some ticks have no number
+        let least = if self.y.is_scale() { MIN_DISTANCE } else { 0.0 };
         let every = (least / apart).ceil().clamp(1.0, 50.0) as usize;
         let zero = self.y.ticks.iter().position(|tick| tick.0 == 0.0).unwrap_or(0);
         let apart = apart * every as f64;
@@ -125,7 +130,7 @@ impl Frame {
         }
     }
 
-    /// Which ticks to the right have their number: as many as stand apart, 0 among them.
+    /// Which ticks of the horizontal axis have a number: as many as have room, including 0.
     fn numbered(&self) -> impl Fn(usize) -> bool + use<> {
         const BETWEEN: f64 = 16.0;
         let ticks: Vec<(f64, f64)> = self
@@ -162,7 +167,7 @@ impl Frame {
             Marks::Sticks(points) => self.sticks(figure, points, &look),
             Marks::Intervals(rows) => {
                 for [x, low, high] in rows {
-                    // an end that is not known lies beyond the picture
+                    // an unknown end lies outside the picture
                     let end = |y: &f64, edge: f64| if y.is_finite() { self.down(*y) } else { edge };
                     let at = self.across(*x);
                     figure.styled(&[(at, end(low, bottom)), (at, end(high, top))], &look, self.area);
@@ -236,8 +241,8 @@ impl Frame {
         }
     }
 
-    /// A line through data in any order: points nearer to the last kept one than a part of a pixel are left
-    /// out. A point alone is a dash.
+    /// A line through data in any order. Points closer than a part of a pixel to the last kept one are left
+    /// out; a single point becomes a dash.
     fn path(&self, figure: &mut Figure, points: &[Point], look: &Look) {
         const NEAR: f64 = 0.35;
         let places: Vec<Point> = points.iter().map(|point| self.place(*point)).collect();
@@ -260,8 +265,8 @@ impl Frame {
         }
     }
 
-    /// A line through data with ascending x: in each column of the canvas the first, the least, the greatest
-    /// and the last are kept, which cover what all of them would.
+    /// A line through data with ascending x: in each pixel column the first, smallest, largest and last
+    /// points are kept, which cover the same pixels as all points.
     fn trace(&self, figure: &mut Figure, points: &[Point], look: &Look) {
         let places: Vec<Point> = points.iter().map(|point| self.place(*point)).collect();
         for part in places.split(|(x, y)| !(x.is_finite() && y.is_finite())) {
@@ -271,7 +276,7 @@ impl Frame {
         }
     }
 
-    /// On a line those that lie close are left out; else each is shown, the smaller the more there are.
+    /// Close markers on a line are left out; otherwise each is shown, and many are smaller.
     fn regimes(&self, figure: &mut Figure, points: &[(Point, &'static str)], on_line: bool, theme: &Theme) {
         let placed = points.iter().map(|(point, word)| (self.place(*point), *word));
         let marks: Vec<(Point, &str)> = placed.filter(|mark| self.area.contains(mark.0)).collect();
@@ -303,7 +308,7 @@ impl Frame {
         }
     }
 
-    /// Of the lines in one pixel the highest.
+    /// Only the highest line in each pixel is kept.
     fn sticks(&self, figure: &mut Figure, points: &[Point], look: &Look) {
         let placed = points.iter().filter(|point| point.1 > self.y.low).map(|point| self.place(*point));
         let mut highest: Vec<Point> = Vec::new();
@@ -318,7 +323,7 @@ impl Frame {
         }
     }
 
-    /// What lies between two lines from one x to the next, where both have values; the lines may cross.
+    /// The area between two lines over x, where both have values; the lines may cross.
     fn band(&self, figure: &mut Figure, rows: &[[f64; 3]], look: &Look) {
         let mut fill = |corners: Vec<Point>| {
             let inside = self.area.clip_polygon(corners);
@@ -345,7 +350,7 @@ impl Frame {
         }
     }
 
-    /// Spans that are shaded; neighbours nearer than a part of a pixel are one.
+    /// Shaded spans; neighbours closer than a part of a pixel are joined.
     fn spans(&self, figure: &mut Figure, spans: &[(f64, f64)], look: &Look) {
         let mut merged: Vec<(f64, f64)> = Vec::new();
         for (left, right) in spans.iter().map(|(from, to)| (self.across(*from), self.across(*to))) {
@@ -361,7 +366,7 @@ impl Frame {
         }
     }
 
-    /// A wall reaches to the edge of the frame where that is near.
+    /// A wall extends to the edge of the frame if that is near.
     fn wall(&self, figure: &mut Figure, at: f64, side: Side, look: &Look, theme: &Theme) {
         let Area { left, top, right, bottom } = self.area;
         let thickness = |room: f64| if room < 3.0 * style::WALL { room } else { style::WALL };
@@ -444,13 +449,13 @@ impl Frame {
     }
 }
 
-/// Leaves one of the points on the same half pixel.
+/// Keeps one of the points in the same half pixel.
 fn once(places: &mut Vec<Point>) {
     let mut taken = HashSet::new();
     places.retain(|at| taken.insert(((2.0 * at.0) as i64, (2.0 * at.1) as i64)));
 }
 
-/// First, least, greatest and last of a column, in their order.
+/// The first, smallest, largest and last point of a column, in their order.
 fn extremes(column: &[Point]) -> Vec<Point> {
     let by = |better: fn(f64, f64) -> bool| {
         (1..column.len()).fold(0, |best, i| if better(column[i].1, column[best].1) { i } else { best })
@@ -461,7 +466,7 @@ fn extremes(column: &[Point]) -> Vec<Point> {
     kept.into_iter().map(|i| column[i]).collect()
 }
 
-/// The marks of a line that stand `apart` from the one before; where the word changes, `close` is enough.
+/// The marks of a line at a distance of at least `apart` from the one before, or `close` if the word changes.
 fn thinned<'a>(marks: &[(Point, &'a str)], apart: f64, close: f64) -> Vec<(Point, &'a str)> {
     let mut kept: Vec<(Point, &str)> = Vec::new();
     for (at, word) in marks {

@@ -1,5 +1,5 @@
-//! Places of the panels of a chart: columns side by side, rows one under the other, and what axes need beside
-//! and below the frames.
+//! Layout of the panels of a chart in columns and rows, with room for numbers and labels of axes beside and
+//! below the frames.
 
 use super::axis::PlotAxis;
 use super::cells::Cells;
@@ -12,53 +12,59 @@ use super::page::{NAMELESS, Room, wrapped};
 use super::style::{self, Theme};
 use super::surface;
 
-/// Height of a heading over a panel, and of a line of a note below it.
+/// Height of a heading above a panel.
 const HEADING: f64 = 46.0;
+/// Height of a line of a note below a panel.
 const NOTE: f64 = 36.0;
-/// Under a panel: the numbers of its axis, and each line of its label.
+/// Height of the numbers below a panel.
 const NUMBERS: f64 = style::TICK_LENGTH + 8.0 + 0.75 * style::TICK;
+/// Height of a line of the label below a panel.
 const LABEL: f64 = 38.0;
-/// Under a surface.
+/// Room below a surface.
 const SURFACE: f64 = 100.0;
-/// Beside a panel: from its frame to its numbers, from those to the label, and the width of a line of that.
+/// Distance from the frame to the numbers beside it.
 const TO_NUMBERS: f64 = style::TICK_LENGTH + 7.0;
+/// Distance from the numbers to the label beside them.
 const TO_LABEL: f64 = 8.0;
+/// Width of a line of the label beside a panel.
 const LABEL_WIDTH: f64 = 36.0;
-/// A colour bar: its distance from the frame, and its width.
+/// Distance of a colour bar from the frame, and its width.
 const BAR: (f64, f64) = (22.0, 30.0);
-/// Between two panels one above the other, and between two columns.
+/// Vertical distance of two panels.
 const BETWEEN: f64 = 22.0;
+/// Horizontal distance of two columns.
 const BETWEEN_COLUMNS: f64 = 26.0;
-/// The least width of a frame, and a usual size of one.
-const LEAST_WIDTH: f64 = 60.0;
+/// Smallest width of a frame.
+const MIN_WIDTH: f64 = 60.0;
+/// Usual size of a frame, with which the layout begins.
 const USUAL: f64 = 230.0;
-/// The share of the canvas that numbers or names upward may take; longer ones are made smaller.
-const MOST_NUMBERS: f64 = 0.3;
-/// Room for a tick on an axis upward and on one to the right.
-const A_TICK: (f64, f64) = (75.0, 130.0);
+/// Largest share of the canvas for the numbers or names of a vertical axis; longer ones are drawn smaller.
+const MAX_NUMBERS_SHARE: f64 = 0.3;
+/// Room for a tick on a vertical and on a horizontal axis.
+const TICK_ROOM: (f64, f64) = (75.0, 130.0);
 
-/// A panel in its place.
+/// A panel with its layout.
 pub struct Slot<'a> {
     panel: &'a Panel,
-    /// Its axes, with the ticks that they have room for.
+    /// Its axes, with as many ticks as they have room for.
     x: PlotAxis,
     y: PlotAxis,
     bar: Option<PlotAxis>,
-    /// Whether the axes have numbers and a label; else they have those of a neighbour.
+    /// Whether the axes show numbers and a label; otherwise they share those of a neighbour.
     shows_x: bool,
     shows_y: bool,
     x_label: Label,
     y_label: Label,
     bar_label: Label,
-    /// Room for the numbers upward.
+    /// Room for the numbers of the vertical axis.
     numbers: f64,
-    /// How much wider than the column's its frame is, where it has no colour bar.
+    /// Additional width of its frame compared with the column, if it has no colour bar.
     more: f64,
-    /// Where the frame is.
+    /// Place of the frame.
     area: Area,
 }
 
-/// A column of slots, with the width of its frames and of what stands beside them.
+/// A column of slots, with the width of its frames and the room beside them.
 struct Stack<'a> {
     slots: Vec<Slot<'a>>,
     share: f64,
@@ -69,7 +75,7 @@ struct Stack<'a> {
     unit: f64,
 }
 
-/// What a row of panels needs: over the frame, its height in proportion, and under the frame.
+/// Heights of a row of panels: above the frame, of the frame in proportion, and below the frame.
 #[derive(Clone, Copy, Default)]
 struct Row {
     over: f64,
@@ -77,10 +83,10 @@ struct Row {
     under: f64,
 }
 
-/// The panels of a chart in their places.
+/// The layout of the panels of a chart.
 pub struct Grid<'a> {
     stacks: Vec<Stack<'a>>,
-    /// Whether the panels of a row stand at the same height.
+    /// Whether the panels of a row are aligned vertically.
     aligned: bool,
     /// Where the first column begins.
     begin: f64,
@@ -132,15 +138,16 @@ impl<'a> Grid<'a> {
         Self { stacks, aligned, begin: 0.0 }
     }
 
-    /// Finds the sizes of the frames between these edges and within this height, where a panel of height 1
-    /// has at least `least`; the height that is needed. With this room the frames begin where it says.
+    /// Finds the sizes of the frames between these edges and within this height, in which a panel of height 1
+    /// has at least `least`; returns the height that is needed. If a room is given, it determines where the
+    /// frames begin.
     pub fn fit(&mut self, (left, right): (f64, f64), height: f64, least: f64, room: Option<&Room>) -> f64 {
         self.begin = left;
         let mut needed = height;
-        // The ticks depend on the size of the frames, and that on the room for the ticks.
+        // the ticks depend on the size of the frames, which depends on the room for the ticks
         for _ in 0..3 {
             let last = self.stacks.len().saturating_sub(1);
-            let most = MOST_NUMBERS * (right - left);
+            let most = MAX_NUMBERS_SHARE * (right - left);
             for (i, stack) in self.stacks.iter_mut().enumerate() {
                 stack.measure(most, (if i == 0 { left } else { 0.0 }, if i == last { left } else { 0.0 }));
                 if let Some(room) = room {
@@ -149,7 +156,7 @@ impl<'a> Grid<'a> {
             }
             let beside: f64 = self.stacks.iter().map(|stack| stack.left + stack.right).sum();
             let frames = right - left - beside - BETWEEN_COLUMNS * last as f64;
-            self.stacks.iter_mut().for_each(|stack| stack.width = (frames * stack.share).max(LEAST_WIDTH));
+            self.stacks.iter_mut().for_each(|stack| stack.width = (frames * stack.share).max(MIN_WIDTH));
             let rows: Vec<Vec<Row>> = (0..self.stacks.len()).map(|column| self.rows(column)).collect();
             let fixed = |rows: &[Row]| rows.iter().map(|row| row.over + row.under).sum::<f64>();
             let weights = |rows: &[Row]| rows.iter().map(|row| row.height).sum::<f64>();
@@ -203,11 +210,11 @@ fn widest(axis: &PlotAxis) -> f64 {
     axis.ticks.iter().map(|tick| font::width(&tick.1, style::TICK, false)).fold(0.0, f64::max)
 }
 
-/// The least size of a label over the usual one at which it stays in one line.
+/// Smallest relative size at which a label is kept in one line.
 const ONE_LINE: f64 = 0.85;
 
-/// A label in lines that are no longer than `room`: smaller where it then fits in one line, or where a word
-/// is longer.
+/// A label in lines no longer than `room`. It is drawn smaller if it then fits in one line, or if a word is
+/// too long.
 #[derive(Default)]
 struct Label {
     lines: Vec<String>,
@@ -221,7 +228,7 @@ impl Label {
         let share =
             if whole >= ONE_LINE { whole } else { axis.label.split(' ').map(fits).fold(1.0, f64::min) };
         let size = share * style::AXIS;
-        // the measured width may be longer than the room by a rounding
+        // the measured width may exceed the room by a rounding error
         let mut lines = wrapped(&axis.label, size, false, room + 1e-6);
         lines.retain(|line| !line.is_empty());
         Self { lines, size }
@@ -241,13 +248,13 @@ impl Stack<'_> {
         let mut numbers: f64 = 0.0;
         for slot in &mut self.slots {
             let height = self.unit * slot.panel.height;
-            let count = (height / A_TICK.0).round().clamp(2.0, 8.0) as usize;
+            let count = (height / TICK_ROOM.0).round().clamp(2.0, 8.0) as usize;
             slot.y = slot.panel.y.with_ticks(count);
             if slot.shows_y && slot.panel.surface().is_none() {
                 numbers = numbers.max(widest(&slot.y).min(most));
             }
             slot.bar = slot.panel.bar.as_ref().map(|axis| axis.with_ticks(count));
-            let count = (self.width / A_TICK.1).round().clamp(2.0, 9.0) as usize;
+            let count = (self.width / TICK_ROOM.1).round().clamp(2.0, 9.0) as usize;
             slot.x = slot.panel.x.with_ticks(count);
             let along = height + BETWEEN - 6.0;
             slot.y_label = if slot.shows_y { Label::new(&slot.y, along) } else { Label::default() };
@@ -267,7 +274,7 @@ impl Stack<'_> {
             self.left = self.left.max(half(slot.x.ticks.first()) - spare_left + 2.0);
             self.right = self.right.max(half(slot.x.ticks.last()) - spare_right + 2.0);
         }
-        // a frame takes the room of a bar that it lacks, unless one with the same axis has the bar
+        // a frame without a colour bar takes its room, unless a frame with the same axis has a bar
         let barred: Vec<PlotAxis> =
             self.slots.iter().filter(|slot| slot.bar.is_some()).map(|slot| slot.panel.x.clone()).collect();
         for slot in &mut self.slots {
@@ -275,7 +282,7 @@ impl Stack<'_> {
             let is_free = slot.bar.is_none() && !barred.contains(&slot.panel.x);
             slot.more = if is_free { (self.right - 0.5 * number).max(0.0) } else { 0.0 };
         }
-        // labels of a column stand in line
+        // labels of a column are aligned
         for slot in &mut self.slots {
             slot.numbers = if slot.shows_y { numbers } else { 0.0 };
             if slot.panel.surface().is_none() {
@@ -285,8 +292,8 @@ impl Stack<'_> {
         }
     }
 
-    /// Gives its frames this room to the left and none to the right. A name that would need a second line
-    /// becomes the unit, and in a low place the axis to the right has none.
+    /// Gives the frames this room to the left and none to the right. A label that would need a second line is
+    /// reduced to its unit; in a low place the horizontal axis has no label.
     fn line_up(&mut self, room: &Room, height: f64) {
         (self.left, self.right) = (room.left, 0.0);
         for slot in &mut self.slots {

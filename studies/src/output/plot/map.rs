@@ -11,10 +11,10 @@ use super::swept::{Cut, SweepPicture, ascending, cells, drawn, label, marks};
 use crate::numeric::short;
 use crate::study::{Table, first_crossing_edge, label_and_unit, line_meets};
 
-/// The most columns or rows of a map whose cells have a dot each.
-const MOST_DOTS: usize = 110;
+/// Largest number of columns or rows of a map in which cells are marked by dots.
+const MAX_DOTS: usize = 110;
 
-/// Height of a cut to the right, and width of one upward, over those of the map.
+/// Height of a horizontal cut, and width of a vertical one, relative to the map.
 const CUT: f64 = 0.5;
 
 /// The lines over a map, in its fields.
@@ -56,7 +56,7 @@ impl Lines {
     }
 }
 
-/// A panel of cells, with a colour bar where they have a scale.
+/// A panel of cells, with a colour bar if they have a scale.
 pub(super) fn cells_panel(
     picture: &SweepPicture,
     (x, y): (&str, &str),
@@ -87,13 +87,13 @@ fn map_panel(picture: &SweepPicture, (x, y): (&str, &str)) -> (Panel, Lines) {
     (panel, lines)
 }
 
-/// The cells whose motion may be a transient, by the columns `settled` and `steady`; none where the rows lack
-/// those, or where cells are too many for a dot each.
+/// The cells whose motion may be a transient, from the columns `settled` and `steady`; empty if the rows lack
+/// these columns, or if there are too many cells for dots.
 fn transients(rows: &Table, (x, y): (&str, &str), cells: &Cells) -> Vec<Point> {
     let names = [x, y].map(|name| rows.numbers(name).unwrap_or_default());
     let words = ["settled", "steady", "regime"].map(|name| rows.words(name));
     let lengths = [cells.across.values.len(), cells.up.values.len()];
-    if words.iter().any(|words| words.is_empty()) || lengths.iter().any(|length| *length > MOST_DOTS) {
+    if words.iter().any(|words| words.is_empty()) || lengths.iter().any(|length| *length > MAX_DOTS) {
         return Vec::new();
     }
     let [settled, steady, regime] = words;

@@ -1,4 +1,4 @@
-//! Markers, legends, and the lines above and below a picture.
+//! Markers, legends, and the captions above and below a picture.
 
 use serde_json::{Map, Value, json};
 
@@ -10,7 +10,7 @@ use super::style::{self, Ink, Theme};
 use crate::output::manifest::origin;
 use crate::scene::{Document, PROGRAM};
 
-/// A shape that stands for something.
+/// The shape of a marker.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Marker {
     /// A disc.
@@ -47,7 +47,7 @@ pub fn dot(figure: &mut Figure, marker: Marker, (x, y): Point, size: f64, ink: I
     let polygon = |points: &[Point]| points.iter().map(|(dx, dy)| (x + dx, y + dy)).collect::<Vec<Point>>();
     match marker {
         Marker::Disc => figure.disc((x, y), size, ink),
-        // a polygon, since rectangles are of whole pixels
+        // a polygon, since rectangles are rounded to whole pixels
         Marker::Square => {
             figure.polygon(polygon(&[(-flat, -flat), (flat, -flat), (flat, flat), (-flat, flat)]), ink);
         }
@@ -68,7 +68,7 @@ pub fn dot(figure: &mut Figure, marker: Marker, (x, y): Point, size: f64, ink: I
     }
 }
 
-/// What an entry of a legend shows beside its words.
+/// The sample of an entry of a legend.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Sample {
     /// A line.
@@ -83,7 +83,7 @@ pub enum Sample {
     Ticks(Ink),
 }
 
-/// Draws the sample of a legend's entry in `area`.
+/// Draws the sample of an entry in `area`.
 pub fn entry(figure: &mut Figure, theme: &Theme, sample: Sample, area: Area) {
     let Area { left, top, right, bottom } = area;
     let middle = (0.5 * (left + right), 0.5 * (top + bottom));
@@ -124,21 +124,21 @@ pub fn mark(figure: &mut Figure, look: &Look, at: Point, size: f64, theme: &Them
     }
 }
 
-/// What stands over and under a picture.
+/// Captions of a picture.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Caption {
     /// Over it: the scene's title.
     pub title: String,
     /// Under it: what was run.
     pub footer: String,
-    /// What made it, for the picture's file.
+    /// Provenance, for the file of the picture.
     pub origin: Map<String, Value>,
 }
 
-/// The most lines of a footer, about.
-const MOST_FOOTER_LINES: usize = 8;
+/// Approximate largest number of lines of a footer.
+const MAX_FOOTER_LINES: usize = 8;
 
-/// What stands between the parts of a footer.
+/// Separator of the parts of a footer.
 const PART: &str = " \u{b7} ";
 
 impl Caption {
@@ -163,7 +163,7 @@ impl Caption {
         Self { title: name.to_owned(), footer, origin }
     }
 
-    /// The footer in lines that are no longer than `room`, parted between its parts where that is enough.
+    /// The footer in lines no longer than `room`, broken between its parts if possible.
     pub fn footer_lines(&self, room: f64) -> Vec<String> {
         let fits = |words: &str| font::width(words, style::FOOTER, false) <= room;
         let mut lines: Vec<String> = Vec::new();
@@ -176,8 +176,8 @@ impl Caption {
                 _ => lines.push(part.to_owned()),
             }
         }
-        let most = MOST_FOOTER_LINES.saturating_sub(lines.len() - 1).max(1);
-        lines.truncate(MOST_FOOTER_LINES);
+        let most = MAX_FOOTER_LINES.saturating_sub(lines.len() - 1).max(1);
+        lines.truncate(MAX_FOOTER_LINES);
         lines.iter().flat_map(|line| wrapped_to(line, style::FOOTER, false, room, most)).collect()
     }
 }

@@ -1,8 +1,8 @@
 //! Pictures as PNG, SVG or PDF.
 //!
 //! A study's table becomes a [`Chart`]: panels, axes and layers, each with its [`Role`]. [`Chart::figure`]
-//! lays it out as a list of plain shapes, and [`Format::bytes`] paints those. Light or dark, the data and
-//! their places are the same, and the same data give the same bytes.
+//! lays it out as a list of simple shapes, and [`Format::bytes`] paints them. Positions do not depend on the
+//! theme, and equal data give equal bytes.
 
 mod accuracy;
 mod arguments;
@@ -93,13 +93,13 @@ pub enum Format {
     Pdf,
 }
 
-/// A file name that tells no kind of picture.
+/// The error of a file name without the ending of a picture format.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("a picture's name ends in .png, .svg or .pdf")]
 pub struct UnknownFormat;
 
 impl Format {
-    /// The kind that the ending of a file's name asks for.
+    /// The format for the ending of a file name.
     pub fn of(path: &Path) -> Result<Self, UnknownFormat> {
         let ending = path.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
         match ending.as_deref() {

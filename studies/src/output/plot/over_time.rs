@@ -5,12 +5,12 @@ use super::chart::{Layer, Marks, Panel, Side};
 use super::role::Role;
 use super::run::RunPanel;
 
-/// What a motion meets over time, beside the values that are drawn. Unknown numbers are NaN.
+/// Events and positions that a panel over time shows in addition to the values. Unknown numbers are NaN.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OverTime {
     /// The axis of time in s.
     pub time: PlotAxis,
-    /// Times in s at rest on a stop, and what they are called.
+    /// Times in s at rest on a stop, with their name in the legend.
     pub rests: (Vec<(f64, f64)>, &'static str),
     /// Times in s of the impacts on the left and on the right stop.
     pub impacts: [Vec<f64>; 2],
@@ -21,7 +21,7 @@ pub struct OverTime {
 }
 
 impl RunPanel {
-    /// The axis of this quantity is called so, in a unit. With a load, power is that into it.
+    /// Label of the axis of this quantity in a unit. With a load, power is that into the load.
     pub fn label(self, unit: &str, has_load: bool) -> String {
         let name = match self {
             Self::Acceleration => "base accel.",

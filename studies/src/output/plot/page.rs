@@ -1,4 +1,4 @@
-//! Layout of a chart: captions and legend over the panels, a footer below, each where its text has room.
+//! Layout of a chart: captions and legend above the panels, footer below.
 
 use super::chart::{Chart, Layer, Marks};
 use super::figure::{Area, Figure, Text};
@@ -11,26 +11,32 @@ use super::style::{self, Theme};
 
 /// Free space at the left and right edges of a narrow canvas and of a wide one.
 const EDGE: (f64, f64) = (24.0, 40.0);
-/// From one line of the title to the next, of the subtitle, and of a legend.
+/// Line height of the title.
 const TITLE_LINE: f64 = 46.0;
+/// Line height of the subtitle.
 const SUBTITLE_LINE: f64 = 36.0;
+/// Line height of the legend.
 const ROW: f64 = 38.0;
-/// Width of a legend's sample, its distance from its words, and from those to the next entry.
+/// Width of a sample in the legend.
 const SAMPLE: f64 = 44.0;
+/// Distance from a sample to its text.
 const GAP: f64 = 12.0;
+/// Distance from the text to the next entry of the legend.
 const BETWEEN_ENTRIES: f64 = 38.0;
-/// The least height of a panel of height 1: of a page, and of a place of the window.
-const LEAST: f64 = 230.0;
-const LEAST_PANE: f64 = 90.0;
-const LEAST_LINED: f64 = 20.0;
-/// Free space around a place of the window, and the height below which it has no subtitle.
+/// Smallest height of a panel of height 1 on a page.
+const MIN_HEIGHT: f64 = 230.0;
+/// The same in a pane of the window.
+const MIN_PANE_HEIGHT: f64 = 90.0;
+/// The same in a pane that is aligned with others.
+const MIN_ALIGNED_HEIGHT: f64 = 20.0;
+/// Free space around a pane of the window.
 const PANE: f64 = 16.0;
+/// Height below which a pane has no subtitle.
 const LOW_PANE: f64 = 600.0;
-/// Height of the panels on a sheet over its width, where it is not given.
+/// Height of the panels on a sheet relative to its width, if no height is given.
 const PROPORTION: f64 = 0.625;
 
-/// `words` in lines that are no longer than `room`, parted at blanks, and where that is not enough within a
-/// word.
+/// Wraps `words` into lines no longer than `room`, at spaces, and within a word that is too long.
 pub fn wrapped(words: &str, size: f64, bold: bool, room: f64) -> Vec<String> {
     let fits = |line: &str| font::width(line, size, bold) <= room;
     let mut lines: Vec<String> = Vec::new();
@@ -57,7 +63,7 @@ pub fn wrapped(words: &str, size: f64, bold: bool, room: f64) -> Vec<String> {
     lines
 }
 
-/// The same, of which at most so many lines are kept; the last one then ends in an ellipsis.
+/// Like [`wrapped`], with a largest number of lines; if lines are dropped, the last one ends in an ellipsis.
 pub fn wrapped_to(words: &str, size: f64, bold: bool, room: f64, most: usize) -> Vec<String> {
     let mut lines = wrapped(words, size, bold, room);
     if lines.len() > most {
@@ -70,8 +76,8 @@ pub fn wrapped_to(words: &str, size: f64, bold: bool, room: f64, most: usize) ->
     lines
 }
 
-/// The most lines of a title or a subtitle.
-const MOST_LINES: usize = 3;
+/// Largest number of lines of a title or a subtitle.
+const MAX_LINES: usize = 3;
 
 /// Lines of text of one size.
 struct Lines {
@@ -80,18 +86,18 @@ struct Lines {
 }
 
 impl Lines {
-    /// On paper the words are smaller before they have a second line.
+    /// On paper the text is made smaller before it gets a second line.
     fn new(words: &str, size: f64, bold: bool, room: f64, on_paper: bool) -> Self {
         let share = if on_paper { (room / font::width(words, size, bold)).clamp(0.7, 1.0) } else { 1.0 };
         let size = share * size;
-        Self { lines: wrapped_to(words, size, bold, room, MOST_LINES), size }
+        Self { lines: wrapped_to(words, size, bold, room, MAX_LINES), size }
     }
 }
 
-/// What is left free in a place of the window whose pictures stand in line one above the other.
+/// Margins in a pane of the window whose pictures are aligned one above the other.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Room {
-    /// From the left edge to the frames, whatever their numbers need.
+    /// From the left edge to the frames, independent of their numbers.
     pub left: f64,
     /// From the left edge to the legend.
     pub legend: f64,
@@ -101,13 +107,13 @@ pub struct Room {
     pub between: f64,
 }
 
-/// Height of a legend over that of such a place, at most; one that needs more has its rows closer together,
-/// by the second number, and may have the last share.
+/// Largest share of the height of such a pane for its legend. A legend that needs more has its rows closer
+/// together, by the second number, and may take the last share.
 const LEGEND_SHARE: (f64, f64, f64) = (1.0 / 6.0, 0.82, 0.3);
-/// The height of such a place below which its horizontal axis has no name.
+/// Height below which the horizontal axis of such a pane has no name.
 pub(super) const NAMELESS: f64 = 340.0;
 
-/// An entry of a legend, placed from the legend's upper left corner on.
+/// An entry of a legend, with its place relative to the upper left corner of the legend.
 struct Entry<'a> {
     sample: Sample,
     words: &'a str,
@@ -138,7 +144,7 @@ impl Chart {
             Some(sheet) => sheet.height_mm.map_or(PROPORTION * width + around, |mm| mm / sheet.unit_mm()),
         };
         let body =
-            grid.fit((edge, width - edge), asked - around - legend.height, LEAST, None) + legend.height;
+            grid.fit((edge, width - edge), asked - around - legend.height, MIN_HEIGHT, None) + legend.height;
         let height = above + body + below;
         let mut figure = Figure::new(theme, (width, height), (above, height - below));
         figure.origin = caption.origin.clone();
@@ -162,8 +168,8 @@ impl Chart {
         figure
     }
 
-    /// The chart in this width and height, as for a place of the window: without captions but the subtitle,
-    /// which a low one has not. One in line with others leaves some room free.
+    /// The chart in this width and height, for a pane of the window: with the subtitle as the only caption,
+    /// and without it in a low pane. `room` are the margins of a pane that is aligned with others.
     pub fn pane(&self, (width, height): (f64, f64), theme: &Theme, room: Option<&Room>) -> Figure {
         let named = self.entries(theme);
         let margin = if room.is_some() { 0.0 } else { PANE };
@@ -176,7 +182,7 @@ impl Chart {
         let is_low = height < LOW_PANE;
         let has_subtitle = !is_low && !self.subtitle.is_empty();
         let subtitle = if has_subtitle { &self.subtitle } else { "" };
-        let subtitle = wrapped_to(subtitle, style::TICK, false, width - 2.0 * PANE, MOST_LINES);
+        let subtitle = wrapped_to(subtitle, style::TICK, false, width - 2.0 * PANE, MAX_LINES);
         let edge = if is_low || room.is_some() { 0.0 } else { 0.5 * PANE };
         let above = edge + if has_subtitle { SUBTITLE_LINE * subtitle.len() as f64 } else { 0.0 };
         let below = above + legend.height + room.map_or(0.0, |room| room.between);
@@ -184,7 +190,7 @@ impl Chart {
         grid.fit(
             (margin, width - margin),
             height - below - edge,
-            room.map_or(LEAST_PANE, |_| LEAST_LINED),
+            room.map_or(MIN_PANE_HEIGHT, |_| MIN_ALIGNED_HEIGHT),
             room,
         );
         let mut figure = Figure::new(theme, (width, height), (0.0, height));

@@ -1,6 +1,6 @@
 //! Painting of a list of shapes as PDF: paths, and text as text with the letters used embedded.
 //!
-//! The file has no date and no random identity: the same picture is the same bytes.
+//! The file has no date and no random identifier, so that equal pictures have equal bytes.
 
 use std::collections::BTreeMap;
 use std::io::Write;
@@ -55,7 +55,7 @@ pub fn pdf(figure: &Figure) -> Vec<u8> {
         sheet.fill(*paper);
         sheet.content.rect(0.0, 0.0, width as f32, height as f32).fill_nonzero();
     }
-    // the canvas goes down, a page up
+    // the vertical axis of the canvas points down, that of a page up
     let (x, y) = (move_by.0 as f32, move_by.1 as f32);
     sheet.content.transform([scale as f32, 0.0, 0.0, -scale as f32, x, y]);
     sheet.content.set_line_cap(LineCapStyle::RoundCap).set_line_join(LineJoinStyle::RoundJoin);
@@ -94,7 +94,7 @@ fn font_object(place: usize, object: i32) -> Ref {
 
 fn packed(bytes: &[u8]) -> Vec<u8> {
     let mut encoder = ZlibEncoder::new(Vec::new(), Compression::new(9));
-    // a vector takes all that is written to it
+    // writing to a vector cannot fail
     let _ = encoder.write_all(bytes);
     encoder.finish().unwrap_or_default()
 }
@@ -102,7 +102,7 @@ fn packed(bytes: &[u8]) -> Vec<u8> {
 /// Writes a font with the glyphs that are used, each with its letter.
 fn embed(pdf: &mut Pdf, place: usize, used: &BTreeMap<GlyphId, char>) {
     let face = Face::of(place == 1);
-    // six letters before the name say that the font is not whole
+    // six letters before the name mark a subset of a font
     let name = format!("INTERW+{}", face.name);
     let name = Name(name.as_bytes());
     pdf.type0_font(font_object(place, 0))
@@ -158,13 +158,13 @@ fn parts(Ink(red, green, blue): Ink) -> [f32; 3] {
     [red, green, blue].map(|part| f32::from(part) / 255.0)
 }
 
-/// A length on the canvas, rounded to what no print can show.
+/// A length on the canvas, rounded to less than any print can show.
 fn rounded(length: f64) -> f32 {
     ((length * 100.0).round() / 100.0) as f32
 }
 
 impl Sheet {
-    /// Sets the colour of areas, where it changes.
+    /// Sets the fill colour if it changes.
     fn fill(&mut self, ink: Ink) {
         if self.filling != Some(ink) {
             let [red, green, blue] = parts(ink);
@@ -173,7 +173,7 @@ impl Sheet {
         }
     }
 
-    /// Sets the colour and the width of lines, where they change.
+    /// Sets the colour and the width of lines if they change.
     fn pen(&mut self, ink: Ink, width: f64) {
         if self.drawing.is_none_or(|last| last.0 != ink) {
             let [red, green, blue] = parts(ink);

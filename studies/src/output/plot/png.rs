@@ -80,7 +80,7 @@ impl Canvas {
                     self.pixels.stroke_path(&path, &paint(*ink), &stroke, self.transform(), None);
                 }
             }
-            // with a thin outline, so that nothing shines through between neighbours
+            // with a thin outline, so that no gap shows between neighbours
             Shape::Polygon(points, ink) => {
                 let path = path(points, true);
                 let stroke = Stroke { width: (0.8 / self.scale) as f32, ..Stroke::default() };
@@ -107,7 +107,7 @@ impl Canvas {
         }
     }
 
-    /// Fills whole pixels, so that the paper does not shine through between the cells of a map.
+    /// Fills whole pixels, so that the background does not show between the cells of a map.
     fn rect(&mut self, area: Area, ink: Ink) {
         let across = |x: f64| (x * self.scale + self.move_by.0).round() as f32;
         let down = |y: f64| (y * self.scale + self.move_by.1).round() as f32;

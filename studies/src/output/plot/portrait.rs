@@ -1,5 +1,5 @@
-//! Phase portrait: velocity over displacement, with the states of the energy of the top of the barrier, which
-//! bound the wells.
+//! Phase portrait: velocity over displacement, with the separatrix, the states with the energy of the top of
+//! the barrier.
 
 use super::axis::PlotAxis;
 use super::chart::{Layer, Marks, Panel};

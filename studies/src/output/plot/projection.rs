@@ -8,7 +8,7 @@ const TURN: f64 = 37.5;
 const ELEVATION: f64 = 30.0;
 const HEIGHT: f64 = 0.72;
 
-/// About so many lines over the surface each way.
+/// Approximate number of lines over the surface in each direction.
 const LINES: usize = 40;
 
 /// A place in the box: to the right, to the back, upward, each from 0 to 1.

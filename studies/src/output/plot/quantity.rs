@@ -1,4 +1,4 @@
-//! Column of a sweep that a picture shows, in units that suit it.
+//! Column of a sweep that a picture shows, in suitable units.
 
 use super::axis::PlotAxis;
 use super::mark::REGIMES;
@@ -6,7 +6,7 @@ use super::role::Role;
 use crate::numeric::extent;
 use crate::study::{Grid, RMS_VELOCITY, Read, SummaryField, Table, Values, label_and_unit};
 
-/// The column that is shown where none is named.
+/// The column that is shown by default.
 pub const RMS: &str = RMS_VELOCITY.name;
 
 /// The words that the column called `name` can have, in the order of their colours; `None` for numbers.
@@ -27,19 +27,19 @@ pub fn words_of(name: &str) -> Option<&'static [&'static str]> {
     Some(words).filter(|words| !words.is_empty())
 }
 
-/// Counts with more values than this are numbers on a scale.
-const MOST_COUNTS: usize = 8;
+/// Number of distinct counts above which they are shown on a scale.
+const MAX_COUNTS: usize = 8;
 
 /// A column to show.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Quantity {
-    /// Its values, a row each; NaN where there is none. Of kinds, their places.
+    /// Its values, one per row, NaN for missing ones; for kinds, their indices.
     pub values: Vec<f64>,
-    /// What stands at its axis.
+    /// Label of its axis.
     pub label: String,
     /// The unit at the end of the label; empty where it has none.
     pub unit: String,
-    /// The kinds that the values are places of, with their words, where it has kinds.
+    /// The kinds of which the values are indices, with their words, if it has kinds.
     pub kinds: Option<Vec<(Role, String)>>,
     /// Whether every motion at rest is shown as such, not only one whose value is 0.
     pub rests: bool,
@@ -142,8 +142,8 @@ fn without_value(name: &str) -> &'static str {
     }
 }
 
-/// The factor from the SI unit called `unit` to the one in which these values are short numbers, and its
-/// name. Lengths and speeds below 2 are in thousandths.
+/// The factor from the SI unit `unit` to a unit in which these values are short numbers, and its name.
+/// Lengths and speeds below 2 are shown in thousandths.
 pub fn suited_unit(unit: &'static str, values: impl Iterator<Item = f64>) -> (f64, &'static str) {
     let finite = values.filter(|value| value.is_finite());
     let greatest = finite.fold(0.0_f64, |greatest, value| greatest.max(value.abs()));
@@ -172,13 +172,13 @@ fn counted(values: &mut [f64]) -> Vec<(Role, String)> {
     let mut all: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
     all.sort_by(f64::total_cmp);
     all.dedup();
-    let rest = all.len() > MOST_COUNTS;
-    all.truncate(MOST_COUNTS);
+    let rest = all.len() > MAX_COUNTS;
+    all.truncate(MAX_COUNTS);
     for value in values.iter_mut().filter(|value| value.is_finite()) {
         *value = all.partition_point(|known| known <= value).saturating_sub(1) as f64;
     }
     let name = |(i, value): (usize, &f64)| {
-        let least = if rest && i + 1 == MOST_COUNTS { "\u{2265} " } else { "" };
+        let least = if rest && i + 1 == MAX_COUNTS { "\u{2265} " } else { "" };
         (Role::Kind(i), format!("period {least}{value}"))
     };
     all.iter().enumerate().map(name).collect()

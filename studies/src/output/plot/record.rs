@@ -1,5 +1,5 @@
-//! Pictures of a measured record with what was identified from it or is computed beside it, and below them
-//! what is left over, or the numbers with their intervals.
+//! Pictures of a measured record with a fit or a computed curve, and with a lower panel of the residuals, or
+//! of numbers with their intervals.
 
 use super::axis::{PlotAxis, Ranges};
 use super::chart::{Chart, Marks, Panel};
@@ -12,7 +12,7 @@ use crate::numeric::{extent, short};
 use crate::scene::{Quantity, Timing};
 use crate::study::{ForceComparison, Identified, Identity, Table};
 
-/// Fewer samples than this are dots.
+/// Number of samples below which they are drawn as dots.
 pub(super) const DOTS: usize = 400;
 
 /// The height of the lower panel over that of the upper one.
@@ -30,9 +30,9 @@ struct Series {
     is_marks: bool,
 }
 
-/// What stands below.
+/// The lower panel.
 enum Lower {
-    /// What is left over, about 0: its label and its series in the table of what is drawn.
+    /// Residuals about 0: label, and name of the series in the drawn data.
     Rest(&'static str, &'static str, Vec<Point>),
     /// Numbers with their intervals over the same axis, and the one for all: their label and their column.
     Intervals(&'static str, &'static str, Vec<(f64, [f64; 3])>, Option<Identity>),
@@ -44,7 +44,7 @@ struct RecordPicture {
     up: &'static str,
     /// The unit upwards.
     unit: &'static str,
-    /// Names of both in the table of what is drawn, and what 1 in SI is on the axes.
+    /// Names of both columns in the drawn data, and the factors from SI to the axes.
     columns: [String; 2],
     scales: [f64; 2],
     /// The record.

@@ -90,11 +90,11 @@ pub enum Role {
     Total,
     /// The energy of the top of the barrier.
     Barrier,
-    /// A curve beyond the stops, where the mass does not get.
+    /// A curve beyond the stops, where the mass cannot go.
     Beyond,
-    /// The push of the base.
+    /// The inertial force of the base motion.
     Push,
-    /// How far the push is from the curve.
+    /// The difference of the inertial force and the curve.
     Apart,
     /// A motion as it was: from 0, which is now, to 1, the oldest that is shown.
     Past(f64),
@@ -106,7 +106,7 @@ pub enum Role {
     Resting,
 }
 
-/// Dash and gap of the pinned motions, of which each can be told from the others.
+/// Dash and gap of the pinned motions, by which they can be distinguished.
 const PINS: [(f64, f64); 3] = [(36.0, 14.0), (4.5, 9.0), (14.0, 9.0)];
 
 /// Strength of the oldest part of a motion that fades.

@@ -38,7 +38,7 @@ impl RunPanel {
     pub const ALL: [Self; 6] =
         [Self::Displacement, Self::Velocity, Self::Acceleration, Self::Power, Self::Energy, Self::Portrait];
 
-    /// Those that are shown where none are named. Together they have numbers beside them.
+    /// The default panels. If they are shown together, numbers are printed beside them.
     pub const USUAL: [Self; 4] = [Self::Displacement, Self::Velocity, Self::Acceleration, Self::Portrait];
 
     /// Its word.
@@ -68,7 +68,7 @@ pub fn run_chart(
     panels: &[RunPanel],
     ranges: Ranges,
 ) -> Chart {
-    // the usual picture, with its numbers, has an order of its own
+    // the default picture, with its numbers, has a different order
     let whole = RunPanel::USUAL.iter().all(|panel| panels.contains(panel));
     let usual = RunPanel::ALL.into_iter().filter(|panel| panels.contains(panel));
     let ordered: Vec<RunPanel> = if whole { usual.collect() } else { panels.to_vec() };
@@ -88,7 +88,7 @@ pub fn run_chart(
         speed: suited_unit("m/s", column("v_m_per_s").iter().copied()),
         displacements: ranges.y,
         panels,
-        // on a compliant stop it never rests: it trembles
+        // on a compliant stop the mass never comes to rest completely
         rests: if summary.peak_contact_force.is_some() { "on a stop" } else { "at rest on a stop" },
     };
     let judged = is_judged(summary, trace);
@@ -143,12 +143,12 @@ impl Seen<'_> {
         self.t.partition_point(|t| *t < from).min(end)..end
     }
 
-    /// The axis for these displacements. Stops count where the mass comes near them, so that a far one
-    /// does not press the motion flat.
+    /// The axis for these displacements. Stops are included if the mass comes near them, so that a distant
+    /// stop does not flatten the motion.
     fn displacement(&self, x: &[f64]) -> PlotAxis {
         const NEAR: f64 = 0.4;
         let (low, high) = extent(x.iter().copied().filter(|x| x.is_finite()));
-        // A mass that does not move is shown between all that it could move to.
+        // a mass that does not move is shown with all stops and equilibria
         let room = if low < high { NEAR * (high - low) } else { 3.0 * high.abs() };
         let stops = [self.trace.stops.0, self.trace.stops.1];
         let near = stops.into_iter().filter(|stop| (low - room..=high + room).contains(stop));

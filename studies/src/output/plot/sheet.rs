@@ -2,7 +2,7 @@
 
 use super::style::{SIZE, TICK};
 
-/// Units of length: so many mm are a point of text.
+/// Length of a typographic point in mm.
 const MM_A_POINT: f64 = 25.4 / 72.0;
 
 /// A picture of a given width on paper.
@@ -35,7 +35,7 @@ pub struct SheetText<'a> {
     pub titled: bool,
 }
 
-/// A part of a sheet that cannot be.
+/// An invalid part of a sheet.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("--{option} {value}: {problem}")]
 pub struct SheetError {
@@ -48,7 +48,7 @@ pub struct SheetError {
 }
 
 impl Sheet {
-    /// The sheet that a text asks for, for a file that has pixels or none.
+    /// Parses a sheet; `has_pixels` says whether the file format has pixels.
     pub fn read(text: &SheetText<'_>, has_pixels: bool) -> Result<Self, SheetError> {
         let error = |option, value: &str, problem| SheetError { option, value: value.to_owned(), problem };
         let within = |option, text: &str, (least, most): (f64, f64), what: &str, such: &str| {
@@ -94,11 +94,11 @@ impl Sheet {
     /// The resolutions in pixels an inch.
     pub const DPI: (f64, f64) = (30.0, 2400.0);
 
-    /// The most pixels each way.
+    /// Largest number of pixels of width and height.
     pub const MOST_PIXELS: f64 = 6000.0;
 
-    /// The least width, in times the size of the text, on which the pictures can be laid out.
-    const LEAST_EMS: f64 = 24.0;
+    /// Smallest width for the layout of pictures, in multiples of the size of the text.
+    const MIN_EMS: f64 = 24.0;
 
     /// The length in mm of a unit of the canvas.
     pub fn unit_mm(&self) -> f64 {
@@ -107,7 +107,7 @@ impl Sheet {
 
     /// The largest text in points that `width_mm` has room for.
     pub fn largest_font_pt(width_mm: f64) -> f64 {
-        width_mm / (Self::LEAST_EMS * MM_A_POINT)
+        width_mm / (Self::MIN_EMS * MM_A_POINT)
     }
 
     /// A length in mm in pixels.

@@ -17,14 +17,14 @@ pub enum SpectrumQuantity {
     Density,
 }
 
-/// The share of the power up to the right edge, where no range was asked for.
+/// Share of the power below the right edge of the default range.
 const POWER: f64 = 0.9999;
 
-/// Decades of amplitude below the greatest line, where no range was asked for.
+/// Decades of amplitude below the largest line in the default range.
 const DECADES: f64 = 7.0;
 
-/// The most forcing frequencies that are marked and named.
-const MOST_MARKED: usize = 4;
+/// Largest number of forcing frequencies that are marked and named.
+const MAX_MARKED: usize = 4;
 
 /// The picture of a spectrum. `ranges` are those of the frequency in Hz and of the quantity.
 pub fn spectrum_chart(spectrum: &Spectrum, quantity: SpectrumQuantity, ranges: Ranges) -> Chart {
@@ -46,7 +46,7 @@ pub fn spectrum_chart(spectrum: &Spectrum, quantity: SpectrumQuantity, ranges: R
         None => PlotAxis::decades([least.max(greatest * 10_f64.powf(-decades)), greatest * 1.5], label),
     };
     let mut panel = Panel::new(across, up);
-    let marked: Vec<f64> = spectrum.forcing_hz.iter().copied().take(MOST_MARKED).collect();
+    let marked: Vec<f64> = spectrum.forcing_hz.iter().copied().take(MAX_MARKED).collect();
     let names: Vec<String> = marked.iter().map(|hz| short(*hz)).collect();
     let words = match (names.len(), spectrum.forcing_hz.len()) {
         (1, _) => format!("forcing frequency, {} Hz", names[0]),

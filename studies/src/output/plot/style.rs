@@ -1,9 +1,9 @@
 //! Colours, widths and sizes of the pictures.
 //!
-//! Colours are those of Okabe and Ito (2008, "Color Universal Design"), one meaning each; what differs by
-//! colour also differs by shape, hatching or dashes. Sizes are in units of a canvas of 1600 by 1000 on a
-//! screen, chosen so that the smallest text can still be read at half of it. On paper the canvas is as many
-//! units wide as the size of the text there makes it.
+//! Colours are those of Okabe and Ito (2008, "Color Universal Design"), with one meaning each. Elements that
+//! differ in colour also differ in shape, hatching or dashes. Sizes are in units of a canvas of 1600 by 1000
+//! on a screen, chosen so that the smallest text is legible at half that size. On paper the width of the
+//! canvas in units follows from the size of the text.
 
 use super::sheet::{Sheet, canvas_width};
 
@@ -24,10 +24,10 @@ impl Ink {
 /// Width and height of the canvas for a screen.
 pub const SIZE: (u32, u32) = (1600, 1000);
 
-/// Canvases of less width are narrow.
+/// Width below which a canvas is narrow.
 pub const NARROW: f64 = 1150.0;
 
-/// From one line of the footer to the next.
+/// Line height of the footer.
 pub const FOOTER_LINE: f64 = 26.0;
 
 /// Text sizes: the height of an em.
@@ -43,9 +43,9 @@ pub const FOOTER: f64 = 20.0;
 
 /// A data line.
 pub const LINE: f64 = 3.5;
-/// A data line where lines lie close.
+/// A data line among close lines.
 pub const FINE_LINE: f64 = 2.4;
-/// A line that tells where to look, such as the release over a map.
+/// A reference line, such as the release over a map.
 pub const GUIDE: f64 = 5.0;
 /// A thin line: wells, zero.
 pub const THIN: f64 = 1.8;
@@ -81,12 +81,12 @@ const VERMILION: Ink = Ink(0xd5, 0x5e, 0x00);
 const PURPLE: Ink = Ink(0xcc, 0x79, 0xa7);
 const PURPLE_LINE: Ink = Ink(0xb0, 0x54, 0x88);
 
-/// The look of one picture: the sheet that it is laid out for, and its colours by what they mean.
+/// The theme of a picture: its sheet of paper, and its colours by their meaning.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Theme {
     /// The sheet of paper; none for a screen.
     pub sheet: Option<Sheet>,
-    /// Behind everything.
+    /// Background.
     pub paper: Ink,
     /// Text, frames, motion and force.
     pub ink: Ink,
@@ -96,7 +96,7 @@ pub struct Theme {
     pub grid: Ink,
     /// Velocity, and the way down of a walk.
     pub second: Ink,
-    /// The shaking.
+    /// Acceleration of the base.
     pub shaking: Ink,
     /// Stops.
     pub wall: Ink,
@@ -182,14 +182,14 @@ impl Theme {
         Self { sheet, ..if dark { Self::DARK } else { Self::LIGHT } }
     }
 
-    /// Whether the canvas is so narrow that what else stands side by side is stacked.
+    /// Whether the canvas is so narrow that columns of panels are stacked.
     pub fn is_narrow(&self) -> bool {
         canvas_width(self.sheet.as_ref()) < NARROW
     }
 }
 
-/// Colours of kinds that have none of their own, such as attractors, the first ones farthest apart in
-/// lightness, so that they are told apart without colour too.
+/// Colours of kinds without a fixed colour, such as attractors. The first ones differ most in lightness, so
+/// that they can be distinguished without colour.
 pub const KINDS: [Ink; 8] = [
     Ink(0x1e, 0x52, 0x8c),
     Ink(0xf3, 0xb6, 0x40),
@@ -208,15 +208,15 @@ pub fn kind_hatch(place: usize) -> Option<Ink> {
     (place >= KINDS.len()).then_some(if is_dark { WHITE } else { BLACK })
 }
 
-/// White, for what lies over a map in either theme.
+/// White, for lines over a map in both themes.
 pub const WHITE: Ink = Ink(0xff, 0xff, 0xff);
-/// Black, as the outline of what lies over a map.
+/// Black, for outlines over a map.
 pub const BLACK: Ink = Ink(0, 0, 0);
 /// Interwell motion over a map.
 pub const OVER_MAP: Ink = VERMILION;
 
-/// The colour of `share` from 0 to 1 on the map's scale: viridis (van der Walt and Smith 2015), even steps of
-/// lightness that survive every kind of colour blindness and a black and white copy.
+/// The colour of `share` from 0 to 1 on the map's scale: viridis (van der Walt and Smith 2015), whose
+/// lightness increases evenly, so that it can be read with any colour blindness and in black and white.
 pub fn viridis(share: f64) -> Ink {
     const STOPS: [Ink; 16] = [
         Ink(0x44, 0x01, 0x54),

@@ -1,4 +1,4 @@
-//! TrueType font cut down to the outlines of some of its glyphs, which keep their numbers.
+//! Subset of a TrueType font with the outlines of some glyphs, which keep their numbers.
 
 /// The tables that a PDF needs (ISO 32000-1, 9.9), in the order of the file.
 const TABLES: [&[u8; 4]; 6] = [b"glyf", b"head", b"hhea", b"hmtx", b"loca", b"maxp"];
@@ -10,7 +10,7 @@ const MORE: u16 = 0x0020;
 const TWO_SCALES: u16 = 0x0040;
 const MATRIX: u16 = 0x0080;
 
-/// The font in `bytes` with the outlines of `glyphs` alone, and of what they are composed of.
+/// The font in `bytes` with only the outlines of `glyphs` and of their components.
 pub fn subset(bytes: &[u8], glyphs: impl IntoIterator<Item = usize>) -> Vec<u8> {
     let table = |name: &[u8; 4]| {
         let found = (0..short(bytes, 4)).map(|i| 12 + 16 * i).find(|at| bytes.get(*at..at + 4) == Some(name));

@@ -7,13 +7,13 @@ use super::font;
 use super::projection::{AXIS_EDGES, BACK_EDGES, BoxPlace, Face, Projection, SIDES, faces, wall_lines};
 use super::style::{self, Ink, Theme, viridis};
 
-/// The most cells that are drawn as faces.
+/// Largest number of cells that are drawn as faces.
 pub const MAX_SURFACE_CELLS: u64 = 60_000;
 
 /// Room for the numbers left and right of the box.
 const BESIDE: (f64, f64) = (130.0, 30.0);
 
-/// A box in projection with an axis to the right, one to the back and one upward.
+/// A box in projection with three axes: to the right, to the back and upward.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SurfaceFrame {
     /// The rectangle that it fills.
@@ -27,19 +27,19 @@ pub struct SurfaceFrame {
 }
 
 impl SurfaceFrame {
-    /// Where a place in the box, each axis from 0 to 1, stands on the canvas.
+    /// Position on the canvas of a point in the box, with coordinates from 0 to 1.
     fn place(&self, at: BoxPlace) -> Point {
         let Area { left, top, right, bottom } = self.area;
         Projection { left, top, right, bottom }.place(at)
     }
 
-    /// Where values of the three axes stand on the canvas.
+    /// Position on the canvas of values of the three axes.
     pub fn point(&self, (x, y, z): (f64, f64, f64)) -> Point {
         self.place((self.x.share(x), self.y.share(y), self.z.share(z)))
     }
 
-    /// The column and row of the cell whose value is nearest to a place on the canvas, of those on the
-    /// frontmost face there.
+    /// The column and row of the cell of the frontmost face at a point of the canvas whose value is nearest
+    /// to that point.
     pub fn cell_at(&self, cells: &Cells, at: Point) -> Option<(usize, usize)> {
         let is_inside = |corners: [Point; 3]| {
             let side = |i: usize| {
@@ -118,7 +118,7 @@ impl SurfaceFrame {
                     down.abs() >= 0.8 * style::TICK || across.abs() >= width + 12.0
                 })
             };
-            // as many numbers as stand apart
+            // as many numbers as have room
             let every = (1..=places.len()).find(apart).unwrap_or(1);
             for (i, (at, (_, words))) in places.iter().zip(&axis.ticks).enumerate() {
                 figure.line(&[*at, (at.0 + 0.6 * out, at.1 + 9.0)], style::FRAME, theme.ink, canvas);

@@ -4,10 +4,10 @@ use super::figure::{Align, Area, Figure, Point, Shape, Text};
 use super::style::Ink;
 use crate::numeric::short;
 
-/// The fonts that an SVG asks its reader for.
+/// The font families that an SVG requests.
 const FAMILY: &str = "Inter, Helvetica, Arial, sans-serif";
 
-/// Units of the SVG's coordinates, which are whole numbers, in one of the canvas.
+/// Number of units of the SVG coordinates, which are whole numbers, per unit of the canvas.
 const UNITS: f64 = 8.0;
 
 /// The picture as SVG.
@@ -28,7 +28,7 @@ pub fn svg(figure: &Figure) -> String {
         units(bottom - top),
         escaped(&figure.made()),
     );
-    // Shapes of the same kind and colour that follow each other are one path.
+    // consecutive shapes of the same kind and colour become one path
     for shapes in figure.shapes.chunk_by(|a, b| brush(a).is_some() && brush(a) == brush(b)) {
         match brush(&shapes[0]) {
             Some(brush) => path(&mut svg, shapes, brush),
@@ -46,7 +46,7 @@ pub fn svg(figure: &Figure) -> String {
 /// How a path is painted.
 #[derive(Clone, Copy, PartialEq)]
 enum Brush {
-    /// Filled without smooth edges: else the paper shines through between the cells of a map.
+    /// Filled without antialiasing, so that the background does not show between the cells of a map.
     Crisp(Ink),
     Fill(Ink),
     Stroke(Ink, i64),
@@ -91,15 +91,14 @@ fn path(svg: &mut String, shapes: &[Shape], brush: Brush) {
     *svg += "\"/>\n";
 }
 
-/// A polygon of which the inside is to the same hand for all: the parts of a path that lie on each other then
-/// leave no hole.
+/// A polygon with a fixed orientation, so that overlapping parts of a path leave no hole.
 fn polygon(svg: &mut String, points: &[Point]) {
     let ends = points.iter().zip(points.iter().cycle().skip(1));
     let area: f64 = ends.map(|(a, b)| a.0 * b.1 - b.0 * a.1).sum();
     if area < 0.0 { line(svg, points.iter().rev()) } else { line(svg, points.iter()) }
 }
 
-/// A line through points, each after the first by its distance from the one before.
+/// A line through points in relative coordinates.
 fn line<'a>(svg: &mut String, points: impl Iterator<Item = &'a Point>) {
     let mut last: Option<(i64, i64)> = None;
     let mut moved = false;
@@ -107,7 +106,7 @@ fn line<'a>(svg: &mut String, points: impl Iterator<Item = &'a Point>) {
         match last {
             None => *svg += &format!("M{x} {y}"),
             Some((from_x, from_y)) if (x, y) != (from_x, from_y) => {
-                // a sign parts two numbers too
+                // a sign also separates two numbers
                 let (dx, dy) = (x - from_x, y - from_y);
                 let before = if !moved {
                     "l"

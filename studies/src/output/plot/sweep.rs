@@ -1,4 +1,4 @@
-//! Picture of a sweep: lines over one field, maps over two, both ways of a walk, surfaces and cuts.
+//! Picture of a sweep: lines over one field, maps over two, both directions of a walk, surfaces and cuts.
 
 use super::axis::PlotAxis;
 use super::cells::{Cell, Cells, Colours};
@@ -13,7 +13,7 @@ use crate::numeric::short;
 use crate::scene::{Excitation, Scene, Start};
 use crate::study::{DIRECTION, Direction, Grid, SUMMARY_FIELDS, Table};
 
-/// The most cells that a picture shows: more than it has pixels to tell apart.
+/// Largest number of cells in a picture: more than its pixels can distinguish.
 pub const MAX_PICTURE_CELLS: u64 = 500_000;
 
 /// Why a sweep has no picture.
@@ -39,10 +39,10 @@ pub enum NoPicture {
         "--plot shows at most {MAX_PICTURE_CELLS} cells, not {0}: take longer steps, or sweep without --plot"
     )]
     Cells(u64),
-    /// More starts than a picture tells apart.
+    /// More starts than a picture can distinguish.
     #[error("--plot shows at most {MAX_PICTURE_CELLS} starts, not {0}: take fewer, or leave --plot out")]
     Starts(u64),
-    /// No map that a surface or a cut could be of.
+    /// A surface or a cut needs a map.
     #[error(
         "--surface and --cut show a sweep over two fields, each of two values or more, without --carry: give \
          two --over"
@@ -51,7 +51,7 @@ pub enum NoPicture {
     /// Words instead of heights.
     #[error("--surface shows heights, and --quantity {0} has words: name a column of numbers")]
     FlatWords(String),
-    /// More faces than can be told apart.
+    /// More faces than can be distinguished.
     #[error("--surface shows at most {MAX_SURFACE_CELLS} cells, not {0}: take longer steps, or leave it out")]
     SurfaceCells(u64),
     /// No column that can be shown.
@@ -59,13 +59,13 @@ pub enum NoPicture {
     Quantity {
         /// The column as given.
         name: String,
-        /// Those that there are.
+        /// The columns that exist.
         known: String,
     },
 }
 
-/// Whether the column `quantity` of a sweep of this grid can be shown in this way; `table` is that of its
-/// rows, which may be missing.
+/// Checks that the column `quantity` of a sweep of this grid can be shown in this way; `table` is that of its
+/// rows, which may still be empty.
 pub fn can_show(grid: &Grid, quantity: &str, view: &View, table: &Table) -> Result<(), NoPicture> {
     if !quantities(table, grid).any(|column| column == quantity) {
         let mut known: Vec<&str> = quantities(table, grid).collect();
@@ -94,18 +94,19 @@ pub fn can_show(grid: &Grid, quantity: &str, view: &View, table: &Table) -> Resu
     }
 }
 
-/// A field with at most so many values, each with many of the other field, is a line a value and not a map.
+/// Largest number of values of a field that are shown as lines, one per value, instead of a map.
 const FEW: usize = 6;
 const MANY: usize = 3;
 
-/// The most values without a quantity that have a line each; of more each has a tick at the lower edge.
-const MOST_LINES: usize = 20;
+/// Largest number of values without a result that are marked by lines; more of them are marked by ticks at
+/// the lower edge.
+const MAX_LINES: usize = 20;
 
-/// The distance between two lines as a share of the axis upward from which on they are seen apart.
+/// Distance above which two lines are visibly separate, as a share of the vertical axis.
 const VISIBLE: f64 = 2e-3;
 
-/// The picture of a sweep: over one field a line, over two a map, or a line for each value of a field that
-/// has few.
+/// The picture of a sweep: a line over one field; over two fields a map, or one line per value of a field
+/// with few values.
 pub fn sweep_chart(picture: &SweepPicture) -> Result<Chart, NoPicture> {
     let SweepPicture { rows, grid, scene, until_settled, .. } = *picture;
     can_show(grid, picture.quantity, &picture.view, rows)?;
@@ -125,13 +126,14 @@ pub fn sweep_chart(picture: &SweepPicture) -> Result<Chart, NoPicture> {
     chart.subtitle = sweep_about(grid, scene, &walked, until_settled);
     let quantity = Quantity::of(rows, picture.quantity);
     if grid.axes().len() > 1 && quantity.kinds.is_some() {
-        // the colours of kinds have no axis that says what they are of
+        // the colours of kinds have no axis that names the quantity
         chart.subtitle = format!("{}: {}", quantity.label, chart.subtitle);
     }
     Ok(chart)
 }
 
-/// Of two swept fields the one to the right and the one of which each value has a line, where one has few.
+/// Of two swept fields, the one on the horizontal axis and the one with a line per value, if one has few
+/// values.
 pub(super) fn few_lines<'a>(rows: &Table, grid: &'a Grid) -> Option<(&'a str, &'a str)> {
     let [a, b] = grid.columns() else { return None };
     let count = |name: &str| distinct(rows.numbers(name).unwrap_or_default()).len();
@@ -151,8 +153,8 @@ pub(super) fn distinct(values: &[f64]) -> Vec<f64> {
     values
 }
 
-/// What was run, in one line; in which directions it was `walked`, where each run went on from the one
-/// before, and up to when in s runs went on until they repeat, where they did.
+/// A description of the runs in one line, with the directions in which they were `walked`, if each continued
+/// from the one before, and the time in s up to which runs continued until they repeat, if they did.
 pub fn sweep_about(grid: &Grid, scene: &Scene, walked: &[Direction], until_settled: Option<f64>) -> String {
     let lengths = grid.axes().iter().map(|axis| axis.values.len());
     let counts: Vec<String> = Some(walked.len())
@@ -186,7 +188,7 @@ fn lines(picture: &SweepPicture, x: &str, series: Option<&str>) -> Chart {
     let SweepPicture { rows, ranges, .. } = *picture;
     let places = rows.numbers(x).unwrap_or_default();
     let quantity = Quantity::of(rows, picture.quantity);
-    // Most quantities are never negative; the little room below 0 is for the markers.
+    // most quantities are never negative; the room below 0 is for the markers
     let mut panel = Panel::new(swept_axis(rows, x, ranges.x), quantity.axis(0.05).or_given(ranges.y));
     let regimes = rows.words("regime");
     let rests = |row: usize| quantity.rests && regimes.get(row) == Some(&"rest");
@@ -199,21 +201,21 @@ fn lines(picture: &SweepPicture, x: &str, series: Option<&str>) -> Chart {
         panel.layer(Role::Regime(0), "at rest", Marks::Ticks(resting, Side::Bottom));
     }
     if !missing.is_empty() {
-        // Many lines from edge to edge would be all that is seen.
-        let marks = match missing.len() <= MOST_LINES {
+        // many full-height lines would hide everything else
+        let marks = match missing.len() <= MAX_LINES {
             true => Marks::Verticals(missing),
             false => Marks::Ticks(missing, Side::Bottom),
         };
         panel.layer(Role::Missing, quantity.missing(rows), marks);
     }
-    // One seed has nothing between it and the next, nor has one regime.
+    // values between two seeds or two regimes have no meaning
     let joined = !(x == "seed" || x.ends_with(".seed") || quantity.kinds.is_some());
     let mut all = Vec::new();
     let mut panels = Vec::new();
     for line in each_line(rows, series) {
         let order = ascending(places, |row| line.has(row));
         if series.is_some() && !joined {
-            // marks without lines are told apart by panels
+            // marks without lines are distinguished by panels
             let mut panel = Panel { heading: line.name, ..panel.clone() };
             let marks = marks(&order, places, &quantity.values, regimes);
             panel.draw(Role::Motion, Marks::Regimes(marks, false));
@@ -234,7 +236,7 @@ fn lines(picture: &SweepPicture, x: &str, series: Option<&str>) -> Chart {
     Chart::stack(panels, "", drawn(picture, &[(x, ranges.x)]).table())
 }
 
-/// One of several lines: its rows, its words and its role.
+/// One of several lines: its rows, its name and its role.
 pub(super) struct SeriesLine<'a> {
     values: Option<(&'a [f64], f64)>,
     pub name: String,
@@ -264,8 +266,8 @@ pub(super) fn each_line<'a>(rows: &'a Table, series: Option<&str>) -> Vec<Series
     each.iter().copied().zip(of_each(name, &each)).enumerate().map(line).collect()
 }
 
-/// The quantity over the field `x` on the way up and on the way down, each value marked with its regime: two
-/// lines, or of kinds two panels.
+/// The quantity over the field `x` on the way up and on the way down, each value marked with its regime: as
+/// two lines, or for kinds as two panels.
 fn walked_lines(picture: &SweepPicture, x: &str) -> Chart {
     let SweepPicture { rows, ranges, .. } = *picture;
     let places = rows.numbers(x).unwrap_or_default();
@@ -301,7 +303,8 @@ fn walked_lines(picture: &SweepPicture, x: &str) -> Chart {
     Chart::stack(vec![panel], "", data)
 }
 
-/// The quantity over two fields on the way up and on the way down, and what the way down has more.
+/// The quantity over two fields on the way up and on the way down, and the difference of the second from the
+/// first.
 fn walked_maps(picture: &SweepPicture, (x, y): (&str, &str)) -> Chart {
     let SweepPicture { rows, ranges, .. } = *picture;
     let quantity = Quantity::of(rows, picture.quantity);
@@ -334,7 +337,7 @@ fn walked_maps(picture: &SweepPicture, (x, y): (&str, &str)) -> Chart {
     Chart { columns: columns.collect(), subtitle: String::new(), data }
 }
 
-/// What the one cell has more than the other; of kinds, whether they differ.
+/// The difference of two cells; for kinds, whether they differ.
 fn difference(down: Cell, up: Cell, has_kinds: bool) -> Cell {
     match (down, up) {
         (Cell::Missing | Cell::Blank, _) | (_, Cell::Missing | Cell::Blank) => Cell::Missing,

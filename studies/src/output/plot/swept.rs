@@ -1,4 +1,4 @@
-//! Rows of a sweep as its pictures need them: what a picture is drawn from, cells, words.
+//! Rows of a sweep in the form that its pictures need.
 
 use super::axis::{PlotAxis, Ranges};
 use super::cells::{Cell, Cells, Colours};
@@ -10,7 +10,7 @@ use crate::numeric::short;
 use crate::scene::Scene;
 use crate::study::{Column, DIRECTION, Edges, Grid, Table, first_crossing, label_and_unit, release_line};
 
-/// The lines over a map, each where it makes sense.
+/// The lines over a map, as far as they apply.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Overlay {
     /// The release in closed form, with the swept columns of the map.
@@ -20,7 +20,7 @@ pub struct Overlay {
 }
 
 impl Overlay {
-    /// The lines over the rows of a sweep of this scene, where runs begin at rest and the cells have one
+    /// The lines over the rows of a sweep of this scene, if runs begin at rest and all cells have the same
     /// mechanism.
     pub fn of(scene: &Scene, mechanism: Option<&Mechanism>, grid: &Grid, rows: &Table) -> Self {
         Self {
@@ -33,34 +33,34 @@ impl Overlay {
 /// How a sweep over two fields is shown.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub enum View {
-    /// From the top, the quantity as colour, or as a line for each value of a field that has few.
+    /// As a map with the quantity as colour, or as one line per value of a field with few values.
     #[default]
     Top,
     /// As a surface whose height is the quantity.
     Surface,
-    /// From the top, with lines through it beside it.
+    /// As a map with cuts beside it.
     Cuts(Vec<Cut>),
 }
 
-/// A line through a map along which one of its fields has a value.
+/// A cut through a map at a value of one of its fields.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cut {
     /// Column of that field.
     pub column: String,
-    /// Its value, one of the map's.
+    /// The value, which is one of those of the map.
     pub value: f64,
 }
 
-/// What the picture of a sweep is drawn from.
+/// The data of the picture of a sweep.
 #[derive(Debug, Clone)]
 pub struct SweepPicture<'a> {
     /// All rows.
     pub rows: &'a Table,
-    /// Of which grid.
+    /// The grid.
     pub grid: &'a Grid,
-    /// Over which scene.
+    /// The scene.
     pub scene: &'a Scene,
-    /// Up to when in s runs went on until they repeat, where they did.
+    /// Time in s up to which runs continued until they repeat, if they did.
     pub until_settled: Option<f64>,
     /// The column that is shown.
     pub quantity: &'a str,
@@ -68,11 +68,11 @@ pub struct SweepPicture<'a> {
     pub overlay: Overlay,
     /// How a sweep over two fields is shown.
     pub view: View,
-    /// The axes of the fields, and over one field that of the quantity upward.
+    /// Ranges of the axes of the fields and, over one field, of the vertical axis.
     pub ranges: Ranges,
 }
 
-/// The cells with the quantity and their words, only those whose fields lie in `ranges`.
+/// The cells with the quantity and their words, if their fields lie in `ranges`.
 pub(super) fn drawn(picture: &SweepPicture, ranges: &[(&str, Option<(f64, f64)>)]) -> Drawn {
     let SweepPicture { rows, grid, quantity, .. } = picture;
     let fields = grid.columns();
@@ -102,20 +102,20 @@ pub(super) fn label(rows: &Table, name: &str) -> String {
     rows.column(name).map_or_else(|| name.to_owned(), Column::label)
 }
 
-/// The axis to the right over the swept field `x`.
+/// The horizontal axis of the swept field `x`.
 pub(super) fn swept_axis(rows: &Table, x: &str, range: Option<(f64, f64)>) -> PlotAxis {
     let values = rows.numbers(x).unwrap_or_default();
     PlotAxis::around(values.iter().copied(), 0.02, &label(rows, x)).or_given(range)
 }
 
-/// The rows in ascending order of these values, of those that are `shown`.
+/// The rows that are `shown`, in ascending order of these values.
 pub(super) fn ascending(values: &[f64], shown: impl Fn(usize) -> bool) -> Vec<usize> {
     let mut order: Vec<usize> = (0..values.len()).filter(|row| shown(*row)).collect();
     order.sort_by(|a, b| values[*a].total_cmp(&values[*b]));
     order
 }
 
-/// Points of these rows with their regimes, where they have values.
+/// Points of the rows that have values, with their regimes.
 pub(super) fn marks(
     order: &[usize],
     places: &[f64],
@@ -126,7 +126,7 @@ pub(super) fn marks(
     finite.map(|&row| ((places[row], values[row]), regimes.get(row).copied().unwrap_or(""))).collect()
 }
 
-/// The cells of those rows over the fields `x` and `y` that are to be `shown`.
+/// The cells over the fields `x` and `y` of the rows that are `shown`.
 pub(super) fn cells(
     rows: &Table,
     (x, y): (&str, &str),
@@ -160,7 +160,7 @@ pub(super) fn cells(
     Cells { across, up, cells, colours, missing: quantity.missing(rows) }
 }
 
-/// The values of the field `name`, for each of which there is a line, as a legend names them.
+/// The names in the legend of the lines for the values of the field `name`.
 pub(super) fn of_each(name: &str, each: &[f64]) -> Vec<String> {
     let (words, unit) = label_and_unit(name);
     let named = |(i, value): (usize, &f64)| {

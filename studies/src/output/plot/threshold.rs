@@ -11,20 +11,20 @@ use super::swept::{Overlay, SweepPicture, View, ascending, swept_axis};
 use crate::scene::{Scene, column_names};
 use crate::study::{Column, Grid, Onset, Table, Values};
 
-/// What the picture of thresholds is drawn from.
+/// The data of the picture of thresholds.
 #[derive(Debug, Clone, Copy)]
 pub struct ThresholdPicture<'a> {
-    /// As [`threshold_table`](crate::study::threshold_table) gives them.
+    /// The rows of [`threshold_table`](crate::study::threshold_table).
     pub rows: &'a Table,
-    /// The fields that they are over.
+    /// The grid of the thresholds.
     pub grid: &'a Grid,
-    /// Over which scene.
+    /// The scene.
     pub scene: &'a Scene,
     /// Dotted path of the field whose threshold is shown.
     pub field: &'a str,
     /// What begins at it.
     pub onset: Onset,
-    /// The axes, upward that of the threshold over one field.
+    /// Ranges of the axes; over one field, the vertical axis is that of the threshold.
     pub ranges: Ranges,
 }
 
@@ -37,8 +37,8 @@ pub fn can_show_thresholds(grid: &Grid) -> Result<(), NoPicture> {
     }
 }
 
-/// The picture of thresholds: over one field a line, over two a line for each value of the one that has few,
-/// else a map.
+/// The picture of thresholds: a line over one field; over two fields one line per value of a field with few
+/// values, otherwise a map.
 pub fn threshold_chart(picture: &ThresholdPicture) -> Result<Chart, NoPicture> {
     can_show_thresholds(picture.grid)?;
     let ThresholdPicture { rows, grid, scene, onset, ranges, .. } = *picture;

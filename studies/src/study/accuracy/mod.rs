@@ -2,8 +2,8 @@
 //!
 //! - Any scene ([`scene`]): the error of its run, the time up to which its path can be trusted, and the
 //!   effect of a fixed step.
-//! - Three problems ([`PROBLEMS`]): work against precision, beside the methods that people use instead
-//!   ([`methods`]). The error is measured against the program's own integrator in double-double arithmetic.
+//! - Three problems ([`PROBLEMS`]): work against precision, compared with other common methods ([`methods`]).
+//!   The error is measured against the program's own integrator in double-double arithmetic.
 //! - Hard cases ([`HARD_CASES`]), which break integrators of impacts: each has its answer ([`exact`] where
 //!   there is a closed form) and the digits that its conditioning allows.
 

@@ -15,7 +15,7 @@ pub(super) const TOLERANCE: f64 = 1e-14;
 /// Why the study has no result.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum Stopped {
-    /// It was told to stop.
+    /// It was cancelled.
     #[error("told to stop")]
     Cancelled,
     /// A scene of the study cannot be run: a fault of the program.

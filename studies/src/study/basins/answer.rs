@@ -1,4 +1,5 @@
-//! Answer of a map of basins: its attractors, numbered by the first start that goes to each, and the rows.
+//! Result of a map of basins: the attractors, numbered in the order of the first start that goes to each, and
+//! the rows.
 
 use super::Basins;
 use super::rounds::{Fate, Kind, Way};
@@ -6,16 +7,16 @@ use crate::dynamics::{Model, Outcome, Place, Regime, Request, Side, Summary};
 use crate::numeric::decimals;
 use crate::study::{State, Table, Task};
 
-/// The quantile of the normal distribution that leaves 95 % within.
+/// Quantile of the normal distribution for a two-sided 95 % interval.
 const NORMAL_95: f64 = 1.959_963_984_540_054;
 
-/// Forcing periods over which an attractor is described: two of the longest period that is recognised.
+/// Number of forcing periods over which an attractor is described: twice the longest recognised period.
 const WINDOW: u32 = 24;
 
-/// Relative difference from which two RMS velocities tell two attractors apart.
-const FASTER: f64 = 0.02;
+/// Relative difference of RMS velocities above which they distinguish two attractors.
+const MIN_DIFFERENCE: f64 = 0.02;
 
-/// A share with its 95 % interval (Wilson 1927).
+/// A share with its 95 % confidence interval (Wilson 1927).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shares {
     /// The share.
@@ -27,7 +28,7 @@ pub struct Shares {
 }
 
 impl Shares {
-    /// The share of `some` in `all`, which is at least 1.
+    /// The share `some` / `all`; `all` must be at least 1.
     pub fn of(some: u64, all: u64) -> Self {
         let (n, share, square) = (all as f64, some as f64 / all as f64, NORMAL_95 * NORMAL_95);
         let middle = (share + square / (2.0 * n)) / (1.0 + square / n);
@@ -40,24 +41,25 @@ impl Shares {
 /// One attractor.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Attractor {
-    /// What the motion is.
+    /// The regime of the motion.
     pub regime: Regime,
-    /// Its period in forcing periods, where it moves and repeats.
+    /// Its period in forcing periods, if it moves and repeats.
     pub period: Option<u32>,
-    /// On which side of the barrier it is, where there is one.
+    /// Its side of the barrier, if there is one.
     pub side: Option<Place>,
     /// Its RMS velocity in m/s.
     pub rms_velocity: Option<f64>,
-    /// Its states in m and m/s at the starts' phase of the drive: one for each of its periods, else one.
+    /// Its states in m and m/s at the phase of the drive at which motions start: one per forcing period of
+    /// its period, or a single one without a period.
     pub states: Vec<(f64, f64)>,
     /// The number of starts that go to it.
     pub starts: u64,
-    /// Their share of all that lie in the room of the mass.
+    /// Their share of all starts between the limits of displacement.
     pub share: Shares,
 }
 
 impl Attractor {
-    /// Its regime, side and period in words.
+    /// A text with its regime, side and period.
     fn kind(&self) -> String {
         let mut words = match self.regime.name() {
             "" => "one well",
@@ -79,20 +81,20 @@ impl Attractor {
 /// Results of a map of basins so far.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Answer {
-    /// The attractors, the one numbered 1 first.
+    /// The attractors in the order of their numbers, which begin at 1.
     pub attractors: Vec<Attractor>,
-    /// For each start the number of its attractor and the periods that it took; `None` if it has not been
-    /// run, lies outside the room, or goes to none.
+    /// For each start the number of its attractor and the forcing periods that it took to get there; `None`
+    /// if it has not been run, lies outside the limits, or reaches no attractor.
     pub rows: Vec<Option<(u32, u32)>>,
-    /// Starts outside the room of the mass.
+    /// Number of starts outside the limits of displacement.
     pub outside: u64,
     /// Whether the answer of each row is sure, see [`Basins::check`]; empty if it was not checked.
     pub sure: Vec<bool>,
-    /// Starts whose run ended early.
+    /// Number of starts whose run ended early.
     pub lost: u64,
-    /// Those of them that used up the work of one start.
+    /// Number of those that used up the work allowed for one start.
     pub spent: u64,
-    /// Starts whose attractor is not known.
+    /// Number of starts whose attractor is not known.
     pub undecided: u64,
 }
 
@@ -108,8 +110,8 @@ impl Answer {
             .each("sure", &rows, |row| self.rows[*row].and_then(|_| self.sure.get(*row).copied()))
     }
 
-    /// What each attractor is, in words that no other one has: its regime, side and period, and where these
-    /// are those of another one its RMS velocity, or where it is when a period begins.
+    /// A distinct description of each attractor: regime, side and period and, if another one has the same,
+    /// its RMS velocity or its displacement at the beginning of a period.
     pub fn words(&self) -> Vec<String> {
         let speed = |attractor: &Attractor| attractor.rms_velocity.unwrap_or(0.0);
         let three = |value: f64| format!("{value:.0$}", decimals(value.abs(), 3));
@@ -118,7 +120,7 @@ impl Answer {
             let is_other = |other: &&Attractor| !std::ptr::eq(*other, attractor) && other.kind() == kind;
             let others: Vec<&Attractor> = self.attractors.iter().filter(is_other).collect();
             let velocity = speed(attractor);
-            let differs = |other: &&Attractor| (speed(other) - velocity).abs() > FASTER * velocity;
+            let differs = |other: &&Attractor| (speed(other) - velocity).abs() > MIN_DIFFERENCE * velocity;
             match others.is_empty() {
                 true => kind,
                 false if others.iter().all(differs) => format!("{kind}, {} mm/s", three(1e3 * velocity)),
@@ -131,12 +133,12 @@ impl Answer {
         self.attractors.iter().map(words).collect()
     }
 
-    /// How many rows have an answer that is not sure.
+    /// Number of rows whose answer is not sure.
     pub fn unsure(&self) -> u64 {
         self.rows.iter().zip(&self.sure).filter(|(row, sure)| row.is_some() && !**sure).count() as u64
     }
 
-    /// The attractors, a row each.
+    /// The attractors, one row each.
     pub fn attractors_table(&self) -> Table {
         let all = &self.attractors;
         let numbers: Vec<u64> = (1..=all.len() as u64).collect();
@@ -159,7 +161,7 @@ impl Answer {
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Key {
     Kind(u32),
-    /// A cycle of releases, by the least of their numbers.
+    /// A cycle of releases, by the smallest of their indices.
     Cycle(u32),
 }
 
@@ -168,7 +170,7 @@ impl Basins {
     pub fn answer(&self, task: &Task) -> Option<Answer> {
         let after: Vec<Option<(Key, Way)>> =
             (0..self.rounds.releases.len()).map(|place| self.after(place as u32)).collect();
-        // each with the first row that goes to it, and how many do
+        // each with the first row that goes to it and the number of such rows
         let mut keys: Vec<(Key, usize, u64)> = Vec::new();
         let (mut outside, mut lost, mut spent, mut undecided) = (0, 0, 0, 0);
         let mut rows = Vec::with_capacity(self.rounds.fates.len());
@@ -215,7 +217,8 @@ impl Basins {
         Some(Answer { attractors, rows, sure: Vec::new(), outside, lost, spent, undecided })
     }
 
-    /// The releases that follow each other from `release` on, and the first fate that is none or repeats one.
+    /// The sequence of releases from `release` on, and the fate that ends it: one that is not a release, or a
+    /// release of the sequence.
     pub(super) fn chain(&self, release: u32) -> (Vec<(u32, Way)>, Fate) {
         let (mut passed, mut at, mut way) = (Vec::new(), release, Way::default());
         loop {
@@ -230,7 +233,7 @@ impl Basins {
         }
     }
 
-    /// The attractor that follows a release, and the way to it.
+    /// The attractor reached after a release, and the length of the motion to it.
     fn after(&self, release: u32) -> Option<(Key, Way)> {
         let (passed, end) = self.chain(release);
         match end {
@@ -244,8 +247,8 @@ impl Basins {
         }
     }
 
-    /// The summary and the states of an attractor: of an orbit from one of its states, else from the start
-    /// `row`, which settles after `settled` periods.
+    /// The summary and the states of an attractor, from a run that begins in a state of the orbit or, without
+    /// one, at the start `row`, which settles after `settled` periods.
     fn describe(&self, key: Key, row: usize, settled: u32, task: &Task) -> Option<(Summary, Vec<State>)> {
         let period = self.model.forcing_period().unwrap_or(1.0);
         let (x_mm, v) = self.starts.at(row);
@@ -269,14 +272,15 @@ impl Basins {
         }
         let window = self.model.with_start(start).with_duration(settle + f64::from(WINDOW) * period, settle);
         let summary = window.run(&Request { cancel: Some(task.cancel), ..Request::default() }).summary;
-        task.go_on().ok()?;
+        task.check_cancelled().ok()?;
         let state = (summary.final_x, summary.final_v);
         let states = states(&self.model, state, summary.period.unwrap_or(1), period);
         (!task.is_cancelled()).then_some((summary, states))
     }
 }
 
-/// The state of a settled motion after each of `count` forcing periods, the one farthest right first.
+/// The states of a settled motion after each of `count` forcing periods, beginning with the one farthest to
+/// the right.
 fn states(model: &Model, state: State, count: u32, period: f64) -> Vec<State> {
     let times: Vec<f64> = (0..count).map(|number| f64::from(number) * period).collect();
     let request = Request { sample_times: &times, ..Request::default() };

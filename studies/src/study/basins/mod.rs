@@ -1,19 +1,19 @@
-//! Basins of attraction: which motion each start of a scene goes to.
+//! Basins of attraction: the attractor that each start of a scene reaches.
 //!
-//! Each start begins at time 0, where the drive has its phase, and is followed until one of these is known:
+//! Each start begins at time 0 and is followed until one of the following holds:
 //!
-//! - A mass at rest on a rigid stop is released at an instant that the drive alone decides, so motions that
-//!   share a release are equal from there on, to the last bit. What follows a release is computed once.
-//! - Without rest its states once a period come within a thousandth of the scene's scales of a known stable
-//!   orbit, inside an ellipse around it from which all motions go there (see `orbit`). A start that repeats
-//!   only proposes an orbit, so that a transient near a saddle is followed on. (Datseris and Wagemakers
-//!   (2022) also recognise a motion by its return to known ones, there on a grid of cells.)
-//! - It does neither for a thousand periods: a `Verdict` says whether it is irregular for good. Around the
-//!   first such motions a region is looked for that no motion leaves (see `region`); later ones that enter it
-//!   need not be followed on.
+//! - The mass rests on a rigid stop. The drive alone determines when it is released, so motions that share a
+//!   release are identical from then on, to the last bit. What follows a release is computed once.
+//! - A stroboscopic state comes within a thousandth of the scene's scales of a known stable orbit, inside an
+//!   ellipse around it from which all motions go to the orbit (see `orbit`). A motion that repeats only
+//!   proposes an orbit, so that a transient near a saddle is followed further. (Datseris and Wagemakers
+//!   (2022) also recognise a motion by its return to known ones, on a grid of cells.)
+//! - Neither happens for a thousand periods. A `Verdict` then says whether the motion is irregular. Around
+//!   the first such motions the study looks for a region that no motion leaves (see `region`); later motions
+//!   that enter it need not be followed further.
 //!
-//! All starts have the scales of the one farthest from the barrier, and what is known grows between rounds
-//! alone, so that neither batches nor threads change a bit.
+//! All starts use the scales of the start farthest from the barrier, and the known attractors change only
+//! between rounds, so that the result has the same bits for any number of batches and threads.
 
 mod answer;
 mod orbit;
@@ -55,30 +55,30 @@ pub enum NoBasins {
          such as damping=Ratio(0.02)"
     )]
     NoLoss,
-    /// No start lies in the room that the mass has.
+    /// No start lies between the limits of displacement.
     #[error("all starts lie beyond {what} at {at_mm} mm; start between {from_mm} and {to_mm} mm")]
     Beyond {
         /// `the left stop`, or `the end of the force curve`.
         what: &'static str,
-        /// Where that is, in mm.
+        /// Its position in mm.
         at_mm: f64,
-        /// Where the room of the mass begins, in mm.
+        /// Smallest possible displacement in mm.
         from_mm: f64,
-        /// Where it ends.
+        /// Largest possible displacement in mm.
         to_mm: f64,
     },
 }
 
-/// Small oscillations over which the cost of a forcing period is measured.
+/// Number of small oscillations over which the cost of a forcing period is measured.
 const MEASURED: f64 = 300.0;
 
-/// A map of basins, coarse first.
+/// A map of basins, computed from coarse to fine.
 #[derive(Debug)]
 pub struct Basins {
     model: Model,
     starts: Starts,
     levels: Levels,
-    /// How many of the levels have been run.
+    /// Number of levels that have been run.
     done: usize,
     room: (f64, f64),
     rounds: Rounds,
@@ -86,11 +86,11 @@ pub struct Basins {
 }
 
 impl Basins {
-    /// Forcing periods after which a motion that reaches no known attractor is judged.
+    /// Number of forcing periods after which a motion that has reached no known attractor is classified.
     pub const PATIENCE: u64 = PATIENCE;
 
-    /// The map of a scene from these starts, none of which has been run; the start of the scene is ignored.
-    /// States are taken once a period of the excitation; without one, of small oscillations.
+    /// The map of a scene over these starts, before any run; the start of the scene is ignored. States are
+    /// taken once per forcing period or, without a drive, once per period of small oscillations.
     pub fn new(scene: &Scene, mechanism: Arc<Mechanism>, starts: Starts) -> Result<Self, NoBasins> {
         if scene.transducer.has_state() {
             return Err(NoBasins::ElectricalState);
@@ -134,7 +134,7 @@ impl Basins {
         Ok(basins)
     }
 
-    /// The error for starts that all lie outside the room.
+    /// The error for starts that all lie outside the limits of displacement.
     fn beyond(&self) -> NoBasins {
         let (from, to) = self.room;
         let is_left = self.starts.at(0).0 / 1e3 < from;
@@ -153,22 +153,22 @@ impl Basins {
         &self.starts
     }
 
-    /// The model that follows them; it begins at the farthest of them.
+    /// The model of their motions; its own start is the farthest one.
     pub fn model(&self) -> &Model {
         &self.model
     }
 
-    /// Displacements in m that the mass may have.
+    /// Smallest and largest displacement in m that the mass can have.
     pub fn room(&self) -> (f64, f64) {
         self.room
     }
 
-    /// The levels of their order, and how many of them have been run.
+    /// The levels of the map, and how many of them have been run.
     pub fn levels(&self) -> (&Levels, usize) {
         (&self.levels, self.done)
     }
 
-    /// Approximate steps and CPU time in s of a forcing period, measured by a run of the model.
+    /// Approximate number of steps and CPU time in s of a forcing period, measured in a run of the model.
     pub fn cost_of_a_period(&self) -> (f64, f64) {
         let period = self.model.forcing_period().unwrap_or(1.0);
         let time = period.min(MEASURED * self.model.natural_time());
@@ -183,12 +183,12 @@ impl Basins {
     }
 }
 
-/// Whether a displacement in mm lies in a room in m.
+/// Whether a displacement in mm lies between limits in m.
 fn is_inside(room: (f64, f64), x_mm: f64) -> bool {
     (room.0..=room.1).contains(&(x_mm / 1e3))
 }
 
-/// Whether damping or a stop takes energy.
+/// Whether damping or a stop dissipates energy.
 fn loses_energy(scene: &Scene) -> bool {
     let damped = match scene.damping {
         Damping::None => false,
@@ -200,7 +200,7 @@ fn loses_energy(scene: &Scene) -> bool {
         || matches!(scene.stops, Stops::Hertz { loss_s_per_m, .. } if loss_s_per_m > 0.0)
 }
 
-/// The excitation of a constant scene and a sine of amplitude 0, with the period of small oscillations.
+/// A constant excitation with an additional sine of amplitude 0, which has the period of small oscillations.
 fn shaken(scene: &Scene, model: &Model) -> Option<Excitation> {
     if model.forcing_period().is_some() || !model.excitation().is_constant() {
         return None;

@@ -1,11 +1,12 @@
-//! Stable periodic orbits of the stroboscopic map, and ellipses around their states that all lead to them.
+//! Stable periodic orbits of the stroboscopic map, with ellipses around their states from which all motions
+//! go to the orbit.
 //!
-//! A proposal comes from a motion whose states repeat. Newton's method on the map of `period` forcing periods
-//! finds the orbit near by, and the Lyapunov equation M = J^T M J + I gives a norm in which the linear map
-//! shrinks everything; without a solution the orbit is unstable, as near a saddle. How far from the orbit the
-//! map itself shrinks in that norm is then measured, on circles of growing radius, and the largest one up to
-//! which all do is the ellipse: every motion that enters it goes to the orbit. If there is none, the map over
-//! multiples of the period is tried.
+//! A motion whose states repeat proposes an orbit. Newton's method on the map over `period` forcing periods
+//! finds the orbit nearby, and the Lyapunov equation M = J^T M J + I gives a norm in which the linearised map
+//! is a contraction; without a solution the orbit is unstable. The contraction of the full map in that norm
+//! is then measured on circles of growing radius. The largest circle up to which all of them contract is the
+//! ellipse: every motion that enters it goes to the orbit. If there is none, the map over multiples of the
+//! period is tried.
 
 use super::stroboscopic::{Point, Stroboscope};
 use crate::dynamics::{Capture, Jacobian, Outcome};
@@ -13,47 +14,50 @@ use crate::study::{Cancelled, State};
 
 type Matrix = [[f64; 2]; 2];
 
-const MOST_STEPS: usize = 12;
-/// The longest step of it, in units of the scales.
+/// Largest number of steps of Newton's method.
+const MAX_STEPS: usize = 12;
+/// Longest step of Newton's method, in units of the scales.
 const LONGEST_STEP: f64 = 0.1;
-/// The length of a step that ends it, in units of the scales.
+/// Length of a step at which Newton's method has converged, in units of the scales.
 const LAST_STEP: f64 = 1e-8;
 
 /// States of an orbit closer than this share of the scales are the same.
 const SAME: f64 = 1e-6;
 
-/// The least radius that is measured, in the norm, which is never less than the distance.
-const LEAST_RADIUS: f64 = 2e-5;
+/// Smallest radius of a circle in the norm, in which lengths are never below those in units of the scales.
+const MIN_RADIUS: f64 = 2e-5;
+/// Number of circles.
 const RADII: usize = 34;
-/// Ratio of each radius to the one before.
+/// Ratio of consecutive radii.
 const GROWTH: f64 = std::f64::consts::SQRT_2;
-/// Starts on a circle.
+/// Number of starts on a circle.
 const AROUND: usize = 16;
 
-/// States nearer to an orbit than this share of the scales have arrived, as for a repetition of states.
+/// Distance to an orbit below which a state has arrived there, as a share of the scales: the same as for a
+/// repetition of states.
 const NEAR: f64 = 1e-3;
 
-/// Multiples of the period over which the map around an orbit is taken.
+/// Multiples of the period that are tried for the map around an orbit.
 const TIMES: [u32; 6] = [1, 2, 4, 8, 16, 32];
 
-/// Doublings of the series of the norm; a contraction by 1e-9 a period takes half of them.
+/// Number of doublings of the series of the norm; a contraction by only 1e-9 per period needs half of them.
 const DOUBLINGS: usize = 60;
 
 /// Result of the search for an orbit near a proposal.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Found {
-    /// A stable one: its states, each with its ellipse.
+    /// A stable orbit: its states, each with its ellipse.
     Stable(Vec<Capture>),
-    /// An unstable one, through this state in m and m/s.
+    /// An unstable orbit through this state in m and m/s.
     Unstable(State),
     /// No orbit, or none with an ellipse from which all motions go to it.
     Nothing,
 }
 
-/// The orbit of the proposed period, or twice that, near a state in m and m/s.
+/// The orbit of the proposed or twice the proposed period near a state in m and m/s.
 pub(super) fn find(scope: &Stroboscope, period: u32, state: State) -> Result<Found, Cancelled> {
     let first = of_period(scope, period, state)?;
-    // Soon after a period doubling the two halves of the doubled orbit are nearly equal.
+    // shortly after a period doubling the two halves of the doubled orbit are nearly equal
     if let Found::Unstable(_) = first
         && let doubled @ Found::Stable(_) = of_period(scope, 2 * period, state)?
     {
@@ -84,10 +88,11 @@ fn of_period(scope: &Stroboscope, period: u32, state: State) -> Result<Found, Ca
     Ok(Found::Stable(captures))
 }
 
-/// The ellipse around a fixed point of the map of `period` forcing periods, by the least multiple with one.
+/// The ellipse around a fixed point of the map over `period` forcing periods, for the smallest multiple of
+/// the period that has one.
 ///
-/// Where a motion passes a kink of the force the map bends sharply, so near an orbit it need not shrink at
-/// once in the norm of its derivative; after some more periods it does.
+/// If a motion passes a kink of the force, the derivative of the map changes rapidly, and near an orbit the
+/// map need not contract at once in the norm of its derivative; over several periods it does.
 fn ellipse(
     scope: &Stroboscope,
     period: u32,
@@ -115,7 +120,7 @@ fn distance(a: &Point, b: &Point) -> f64 {
 /// A fixed point of the map of `period` forcing periods near `from`.
 fn newton(scope: &Stroboscope, period: u32, from: Point) -> Option<Point> {
     let mut point = from;
-    for _ in 0..MOST_STEPS {
+    for _ in 0..MAX_STEPS {
         let (image, [[a, b], [c, d]]) = jacobian(scope, period, point)?;
         let (a, d, rest) = (a - 1.0, d - 1.0, [point[0] - image[0], point[1] - image[1]]);
         let determinant = a * d - b * c;
@@ -132,7 +137,8 @@ fn newton(scope: &Stroboscope, period: u32, from: Point) -> Option<Point> {
     None
 }
 
-/// The image of a point and the map's derivative, in units of the scales; `None` if the motion ends early.
+/// The image of a point and the derivative of the map there, in units of the scales; `None` if the motion
+/// ends early.
 fn jacobian(scope: &Stroboscope, period: u32, at: Point) -> Option<(Point, Matrix)> {
     let ((length, speed), map) =
         (scope.units(), scope.model.stroboscopic_map(scope.model.drive_phase(0.0)?)?);
@@ -141,8 +147,8 @@ fn jacobian(scope: &Stroboscope, period: u32, at: Point) -> Option<(Point, Matri
     whole.then(|| (scope.point(passage.state), [[a, b * speed / length], [c * length / speed, d]]))
 }
 
-/// M = sum of (J^k)^T J^k over all k from 0 on, where the sum is finite: a, b and c of the rows (a, b) and
-/// (b, c). Summed by doubling (Smith 1968).
+/// M = sum of (J^k)^T J^k over k >= 0, if the sum is finite, as a, b and c of the rows (a, b) and (b, c).
+/// Summed by doubling (Smith 1968).
 fn lyapunov(jacobian: &Matrix) -> Option<[f64; 3]> {
     let mut power = *jacobian;
     let mut sum = [1.0, 0.0, 1.0];
@@ -166,19 +172,19 @@ fn lyapunov(jacobian: &Matrix) -> Option<[f64; 3]> {
     None
 }
 
-/// The square of a vector's length in a norm.
+/// The squared length of a vector in a norm.
 fn square([a, b, c]: &[f64; 3], [x, v]: Point) -> f64 {
     a * x * x + 2.0 * b * x * v + c * v * v
 }
 
-/// The largest radius around a fixed point up to which the map shrinks every circle in the norm, by at least
-/// half as much as its derivative; `None` if it does not shrink even the smallest.
+/// The largest radius around a fixed point up to which the map contracts every circle in the norm, at least
+/// half as strongly as its derivative does; `None` if it does not contract even the smallest one.
 fn radius(scope: &Stroboscope, period: u32, at: Point, norm: &[f64; 3]) -> Result<Option<f64>, Cancelled> {
     let [a, b, c] = *norm;
     // the unit circle of the norm is (u, w) by M = L L^T
     let (l, m) = (a.sqrt(), b / a.sqrt());
     let n = (c - m * m).sqrt();
-    let radii = || (0..RADII).map(|step| LEAST_RADIUS * GROWTH.powi(step as i32));
+    let radii = || (0..RADII).map(|step| MIN_RADIUS * GROWTH.powi(step as i32));
     let away = |radius: f64, part: usize| {
         let (sine, cosine) = (std::f64::consts::TAU * part as f64 / AROUND as f64).sin_cos();
         let v = radius * sine / n;

@@ -1,9 +1,9 @@
-//! Absorbing regions: cells of the plane of states around an irregular attractor that no motion leaves.
+//! Absorbing regions: cells of the phase plane around an irregular attractor that no motion leaves.
 //!
-//! The cells that long motions visit once a period, and their neighbours, are followed by the stroboscopic
-//! map: a cell into which a corner or the middle of another one is mapped is added, until none is missing.
-//! Where that ends, all motions in the cells stay there; where it does not, what looked like an attractor
-//! has a way out, as a long irregular transient has, and there is no region.
+//! The region begins with the cells that long motions visit at the strobes, and their neighbours. Each cell
+//! into which the stroboscopic map takes a corner or the centre of a known cell is added, until no further
+//! cell is found. If this terminates, all motions in the cells stay there. If it does not, the motion can
+//! escape, as a long irregular transient does, and there is no region.
 
 use std::collections::BTreeSet;
 
@@ -12,24 +12,26 @@ use crate::dynamics::{Capture, Region};
 use crate::numeric::extent;
 use crate::study::{Cancelled, State};
 
-/// Motions that are followed to find an attractor.
+/// Number of motions that are followed to find an attractor.
 const MOTIONS: usize = 16;
-/// Forcing periods that each is followed.
+/// Number of forcing periods of each motion.
 const PERIODS: u32 = 500;
-/// First periods that are left out.
+/// Number of first periods that are left out.
 const SKIPPED: usize = 50;
 
-/// Distance of their starts, as a share of the scales; they diverge by themselves.
+/// Distance of their starts, as a share of the scales; irregular motions diverge from it.
 const APART: f64 = 1e-6;
 
-/// Cells along each side of the extent of an attractor, coarse ones first.
+/// Numbers of cells along each side of the extent of an attractor that are tried.
 const ALONG: [f64; 3] = [48.0, 96.0, 192.0];
-const MOST_CELLS: usize = 20_000;
+/// Largest number of cells of a region.
+const MAX_CELLS: usize = 20_000;
 
-/// Rounds in which cells may be added.
+/// Largest number of rounds in which cells are added.
 const ROUNDS: usize = 40;
 
-/// A region around the irregular motion through `state`; `None` without one, or if it comes to a known orbit.
+/// A region around the irregular motion through `state`; `None` if there is none, or if a motion reaches a
+/// known orbit.
 pub(super) fn absorbing(
     scope: &Stroboscope,
     state: State,
@@ -60,7 +62,7 @@ pub(super) fn absorbing(
     Ok(None)
 }
 
-/// A region with the cells of these states and all that motions in them reach.
+/// The region of the cells of these states and all cells that motions from there reach.
 fn closed(
     scope: &Stroboscope,
     region: Region,
@@ -102,7 +104,7 @@ fn closed(
         if new.is_empty() {
             return Ok(Some(Region { cells: cells.into_iter().collect(), ..region }));
         }
-        if cells.len() > MOST_CELLS {
+        if cells.len() > MAX_CELLS {
             break;
         }
     }

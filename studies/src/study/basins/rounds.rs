@@ -1,4 +1,4 @@
-//! Rounds of a map of basins: starts are followed in rounds, and what is known grows between them.
+//! Rounds of a map of basins: starts are followed in rounds, between which the known attractors are updated.
 
 use super::orbit::{Found, find};
 use super::region::absorbing;
@@ -10,10 +10,10 @@ use crate::dynamics::{
 use crate::study::{Cancelled, State, Task, settled};
 use crate::system::threads::Pool;
 
-/// Forcing periods after which a motion that reaches no known attractor is judged.
+/// Number of forcing periods after which a motion that has reached no known attractor is classified.
 pub(super) const PATIENCE: u64 = settled::PATIENCE as u64;
 
-/// Length of a motion until its attractor is known.
+/// Length of a motion up to its attractor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(super) struct Way {
     pub periods: u32,
@@ -29,7 +29,7 @@ impl Way {
         }
     }
 
-    /// This way followed by another.
+    /// The sum of both counts.
     pub fn and(self, next: Self) -> Self {
         Self {
             periods: self.periods.saturating_add(next.periods),
@@ -38,12 +38,12 @@ impl Way {
     }
 }
 
-/// A motion to follow: a start, or what comes after a release, as the start's motion past some releases.
+/// A motion to follow: that of a start, or its continuation after a number of releases.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Item {
     pub row: usize,
     pub releases: u32,
-    /// The release that it continues, and the way up to there.
+    /// The release that it continues, and the length of the motion up to there.
     pub after: Option<(u32, Way)>,
     pub repeats_from: u64,
 }
@@ -53,14 +53,14 @@ impl Item {
         Self { row, releases: 0, after: None, repeats_from: 0 }
     }
 
-    /// The way of a pursuit, counted from where it continues another one.
+    /// The length of a pursuit, counted from the release that it continues.
     pub fn way(&self, periods: u64, crossings: u64) -> Way {
         let count = |number: u64| u32::try_from(number).unwrap_or(u32::MAX);
         let whole = Way { periods: count(periods), crossings: count(crossings) };
         whole.since(self.after.map_or(Way::default(), |(_, before)| before))
     }
 
-    /// The item as a pursuit of at most `max_work` units.
+    /// The pursuit of the motion with at most `max_work` units of work.
     pub fn pursuit<'a>(
         &self,
         starts: &Starts,
@@ -81,20 +81,21 @@ impl Item {
     }
 }
 
-/// Starts of the first round of a map: while little is known, rounds are short.
+/// Number of starts in the first round of a map: rounds are short while few attractors are known.
 const FIRST_ROUND: usize = 64;
-/// Most starts of a round.
-pub(super) const LONGEST_ROUND: usize = 8192;
+/// Largest number of starts in a round.
+pub(super) const MAX_ROUND: usize = 8192;
 
-/// Most searches for regions around motions of one kind.
-const MOST_SEARCHES: usize = 4;
+/// Largest number of searches for regions around motions of one kind.
+const MAX_SEARCHES: usize = 4;
 
-/// Motions of one verdict whose exponents may fail to confirm it before others are no longer tested.
-const MOST_DOUBTS: usize = 4;
+/// Number of motions of one verdict that may fail to be confirmed by their exponents, before others are no
+/// longer tested.
+const MAX_UNCONFIRMED: usize = 4;
 
-/// Proposals closer than this share of the scales count as one.
+/// Distance below which two proposals count as one, as a share of the scales.
 const SAME_PROPOSAL: f64 = 1e-3;
-/// A state closer than this share of the scales to an unstable orbit lies on it.
+/// Distance below which a state lies on an unstable orbit, as a share of the scales.
 const ON_ORBIT: f64 = 1e-6;
 
 /// Classification of a motion.
@@ -104,7 +105,7 @@ pub(super) enum Verdict {
     Settled {
         regime: Regime,
         side: Option<Place>,
-        /// Its period, where no ellipse could be found around it.
+        /// Its period, if no ellipse could be found around it.
         period: Option<u32>,
     },
     /// It ended early.
@@ -113,12 +114,13 @@ pub(super) enum Verdict {
     Undecided,
 }
 
-/// The verdict by the summary of a pursuit, whose window is its last hundred forcing periods, and whether it
-/// ended on an unstable orbit. The exponent of one motion of a kind confirms a verdict without a period.
+/// The verdict from the summary of a pursuit, whose window is its last hundred forcing periods; `on_unstable`
+/// says whether it ended on an unstable orbit. A verdict without a period must be confirmed by the Lyapunov
+/// exponent of one such motion.
 ///
-/// An exponent tells irregular motion from motion that is slow to settle, but not from a long transient,
-/// which is itself irregular in a double well and ends by chance. So a motion is called irregular only after
-/// a thousand periods in which it found no other.
+/// An exponent distinguishes irregular motion from motion that settles slowly, but not from a long irregular
+/// transient, whose length in a double well is random. So a motion is called irregular only after a thousand
+/// periods without another attractor.
 pub(super) fn verdict(summary: &Summary, on_unstable: bool) -> Verdict {
     match summary.outcome {
         Outcome::Done if on_unstable || summary.steady != Some(true) => Verdict::Undecided,
@@ -129,29 +131,29 @@ pub(super) fn verdict(summary: &Summary, on_unstable: bool) -> Verdict {
     }
 }
 
-/// What is known of a start. Indices are those of the lists of [`Rounds`].
+/// What is known of the motion of a start. Indices are those of the lists of [`Rounds`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Fate {
     NotRun,
     Outside,
-    /// Its run ended early; by its budget where `spent`.
+    /// Its run ended early; `spent` if it used up its budget of work.
     Lost {
         spent: bool,
     },
     Undecided,
-    /// Goes to this kind of motion.
+    /// It reaches this kind of motion.
     Kind(u32, Way),
-    /// Comes to this release.
+    /// It reaches this release.
     Release(u32, Way),
 }
 
-/// A kind of motion that a start goes to, other than by a release.
+/// A kind of motion that a start reaches without a release.
 #[derive(Debug, Clone)]
 pub(super) enum Kind {
-    /// A stable orbit, by its number.
+    /// A stable orbit, by its index.
     Orbit(u32),
     Rest(Side),
-    /// What [`verdict`] says, and the summary of the first one.
+    /// A verdict of [`verdict`], and the summary of the first motion with it.
     Judged(Verdict, Box<Summary>),
 }
 
@@ -173,7 +175,7 @@ pub(super) struct Release {
     pub next: Fate,
 }
 
-/// What is known of a map.
+/// The known results of a map.
 #[derive(Debug, Default)]
 pub(super) struct Rounds {
     pub fates: Vec<Fate>,
@@ -183,7 +185,7 @@ pub(super) struct Rounds {
     pub captures: Vec<Capture>,
     /// The orbit of each capture.
     pub orbit_of: Vec<u32>,
-    /// States that proposed no stable orbit.
+    /// States from which no stable orbit was found.
     rejected: Vec<State>,
     /// States of unstable orbits.
     unstable: Vec<State>,
@@ -196,7 +198,7 @@ pub(super) struct Rounds {
     /// Verdicts on motions without a period that the exponent did not confirm.
     doubted: Vec<Verdict>,
     next_round: usize,
-    /// Starts that have not been followed.
+    /// Number of starts that have not been followed.
     remaining: usize,
 }
 
@@ -217,7 +219,7 @@ impl Rounds {
         })
     }
 
-    /// The place of a release, and whether it is new.
+    /// The index of a release, and whether it is new.
     fn release(&mut self, identity: ReleaseIdentity) -> (u32, bool) {
         let place = self.known_release(identity);
         if place.is_none() {
@@ -230,7 +232,7 @@ impl Rounds {
         self.releases.iter().position(|release| release.identity == identity).map(|place| place as u32)
     }
 
-    /// Records the result of an item; returns what to follow next for it.
+    /// Records the result of an item; returns the item that continues it, if its fate depends on one.
     fn note(&mut self, item: Item, pursued: Pursued, scope: &Stroboscope) -> Option<Item> {
         let way = item.way(pursued.arrival.periods().unwrap_or(PATIENCE), pursued.crossings);
         let fate = match pursued.arrival {
@@ -256,7 +258,7 @@ impl Rounds {
         None
     }
 
-    /// The fate of an item that was followed once more; `None` if it is not among the known ones.
+    /// The fate of an item that was followed once more; `None` if its attractor is not among the known ones.
     pub fn known_fate(&self, item: &Item, pursued: &Pursued, scope: &Stroboscope) -> Option<Fate> {
         let way = item.way(pursued.arrival.periods().unwrap_or(PATIENCE), pursued.crossings);
         let kind = match &pursued.arrival {
@@ -280,15 +282,15 @@ impl Rounds {
         verdict(summary, self.unstable.iter().any(|state| is_near(scope, *state, end, ON_ORBIT)))
     }
 
-    /// The kind of a motion that was judged. The first one without a period, or one of the next few, must be
-    /// irregular by its exponent, since it may only be slow to settle.
+    /// The fate of a motion that was classified. The exponent of the first motion without a period, or of one
+    /// of the next few, must confirm that it is irregular, since it may only settle slowly.
     fn judged(&mut self, verdict: Verdict, summary: Box<Summary>, scope: &Stroboscope, way: Way) -> Fate {
         let repeats = matches!(verdict, Verdict::Settled { period: Some(_), .. });
         let state = (summary.final_x, summary.final_v);
         let kind = Kind::Judged(verdict, summary);
         if !repeats && self.known_kind(&kind).is_none() {
             let doubts = self.doubted.iter().filter(|other| **other == verdict).count();
-            if doubts >= MOST_DOUBTS || !scope.is_irregular(state) {
+            if doubts >= MAX_UNCONFIRMED || !scope.is_irregular(state) {
                 self.doubted.push(verdict);
                 return Fate::Undecided;
             }
@@ -303,7 +305,7 @@ impl Rounds {
         }
     }
 
-    /// Looks for an orbit near a state that proposed one.
+    /// Searches for an orbit near a proposed state.
     fn propose(&mut self, scope: &Stroboscope, period: u32, state: State) -> Result<(), Cancelled> {
         let known = self.captures.iter().any(|capture| capture.holds(state));
         let tried = self.rejected.iter().any(|rejected| is_near(scope, *rejected, state, SAME_PROPOSAL));
@@ -330,7 +332,8 @@ impl Rounds {
         Ok(())
     }
 
-    /// Looks for a region around the irregular motion to which an item goes and which passes `state`.
+    /// Searches for a region around the irregular motion that an item reaches and that passes through
+    /// `state`.
     fn surround(&mut self, scope: &Stroboscope, item: Item, state: State) -> Result<(), Cancelled> {
         let fate = item.after.map_or(self.fates[item.row], |after| self.releases[after.0 as usize].next);
         let Fate::Kind(kind, _) = fate else { return Ok(()) };
@@ -339,7 +342,7 @@ impl Rounds {
             _ => false,
         };
         let searches = self.searches.iter().filter(|searched| **searched == kind).count();
-        if !irregular || searches >= MOST_SEARCHES || self.is_surrounded(state) {
+        if !irregular || searches >= MAX_SEARCHES || self.is_surrounded(state) {
             return Ok(());
         }
         self.searches.push(kind);
@@ -361,7 +364,7 @@ fn is_near(scope: &Stroboscope, a: State, b: State, share: f64) -> bool {
     (a.0 - b.0).abs() <= share * length && (a.1 - b.1).abs() <= share * speed
 }
 
-/// Follows items with what is known now, then adds the results to it; returns what to follow next.
+/// Follows items with the attractors known so far, then adds the results; returns the items to follow next.
 fn round(
     rounds: &mut Rounds,
     scope: &Stroboscope,
@@ -397,15 +400,15 @@ fn round(
     for (item, state) in &unsettled {
         rounds.surround(scope, *item, *state)?;
     }
-    // Followed again, each enters the region at its own time.
+    // each is followed again, since it enters the region at a different time
     next.extend(
         unsettled.into_iter().filter(|(_, state)| rounds.is_surrounded(*state)).map(|(item, _)| item),
     );
-    task.go_on().map(|()| next)
+    task.check_cancelled().map(|()| next)
 }
 
 impl Basins {
-    /// Runs the starts of the next level, each with a tick. False if cancelled; the map is then unusable.
+    /// Runs the starts of the next level, with a tick for each. False if cancelled; the map is then unusable.
     pub fn run_level(&mut self, pool: &Pool, task: &Task) -> bool {
         let Self { model, starts, levels, done, room, rounds, effort } = self;
         let scope = Stroboscope { model, room: *room, pool, cancel: task.cancel, effort };
@@ -413,7 +416,7 @@ impl Basins {
         let Some(end) = levels.ends.get(*done).copied() else { return true };
         while begin < end {
             let last = (begin + rounds.next_round).min(end);
-            rounds.next_round = (2 * rounds.next_round).min(LONGEST_ROUND);
+            rounds.next_round = (2 * rounds.next_round).min(MAX_ROUND);
             let mut items = Vec::with_capacity(last - begin);
             for row in levels.order[begin..last].iter().map(|row| *row as usize) {
                 if is_inside(*room, starts.at(row).0) {

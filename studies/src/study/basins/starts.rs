@@ -6,13 +6,14 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 use crate::numeric::{Decimal, extent};
 use crate::study::{Levels, even_positions};
 
-/// The most starts of one map: minutes of a core where the mass comes to rest on stops, many hours elsewhere.
+/// Largest number of starts of one map: minutes on one core if the mass comes to rest on stops, many hours
+/// otherwise.
 pub const MAX_STARTS: u64 = 10_000_000;
 
-/// The largest displacement in mm and velocity in m/s, those of a scene.
+/// Largest displacement in mm and velocity in m/s, as in a scene.
 const LARGEST: f64 = 1e15;
 
-/// What is wrong about a range or a number of starts, as a sentence.
+/// What is wrong with a range or a number of starts.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum StartsError {
     /// An invalid range.
@@ -23,21 +24,21 @@ pub enum StartsError {
     TooMany(String),
 }
 
-/// Values of one axis of a grid: `count`, evenly spaced from `from` to `to`, both included.
+/// The values of one axis of a grid: `count` even values from `from` to `to` inclusive.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EvenRange {
-    /// The first, in mm or m/s.
+    /// First value, in mm or m/s.
     pub from: f64,
-    /// The last.
+    /// Last value.
     pub to: f64,
-    /// How many.
+    /// Number of values.
     pub count: u64,
 }
 
 impl EvenRange {
-    /// What is wrong about it, as a sentence.
+    /// Checks the ends and the number of values.
     pub fn check(&self) -> Result<(), StartsError> {
-        within((self.from, self.to))?;
+        check_ends((self.from, self.to))?;
         let wrong = |what| Err(StartsError::Range(what));
         match self.count {
             0 => wrong("no values: N counts them, both ends included, such as -5:5:101"),
@@ -60,7 +61,7 @@ impl EvenRange {
         let last = i128::from(self.count.saturating_sub(1).max(1));
         let below = last.checked_mul(10_i128.checked_pow(exponent.unsigned_abs())?)?;
         let (from, to) = (from.in_units(exponent)?, to.in_units(exponent)?);
-        // The quotient of whole numbers that doubles hold exactly is rounded once.
+        // a quotient of integers that are exact as doubles is rounded only once
         let whole = |number: i128| (number.unsigned_abs() <= 1 << 53).then_some(number as f64);
         let below = whole(below)?;
         let value = |place: i128| {
@@ -71,8 +72,8 @@ impl EvenRange {
     }
 }
 
-/// Whether two ends make a range.
-fn within((from, to): (f64, f64)) -> Result<(), StartsError> {
+/// Checks that two ends make a range.
+fn check_ends((from, to): (f64, f64)) -> Result<(), StartsError> {
     let wrong = |what| Err(StartsError::Range(what));
     match (from, to) {
         _ if !(from.abs() <= LARGEST && to.abs() <= LARGEST) => wrong("give finite numbers, at most 1e15"),
@@ -81,17 +82,18 @@ fn within((from, to): (f64, f64)) -> Result<(), StartsError> {
     }
 }
 
-/// Starts in the order of their rows, displacement in mm and velocity in m/s.
+/// The starts of a map in the order of their rows, with displacement in mm and velocity in m/s.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Starts {
     x_mm: Vec<f64>,
     v: Vec<f64>,
-    /// Whether they are all pairs of the values, displacement the slower; else one for each index.
+    /// Whether the starts are all pairs of the values, the displacement changing slower; otherwise start i
+    /// has the i-th values.
     product: bool,
 }
 
 impl Starts {
-    /// A grid; preconditions: the [checks](EvenRange::check) of both ranges.
+    /// A grid. Precondition: both ranges passed [`EvenRange::check`].
     pub fn grid(x_mm: &EvenRange, v: &EvenRange) -> Result<Self, StartsError> {
         match x_mm.count.checked_mul(v.count) {
             Some(count) if count <= MAX_STARTS => {
@@ -104,7 +106,7 @@ impl Starts {
     /// `count` starts drawn uniformly from two ranges by ChaCha8 seeded with `seed`: for each start first the
     /// displacement, then the velocity, each from the upper 53 bits of 64.
     pub fn random(x_mm: (f64, f64), v: (f64, f64), count: u64, seed: u64) -> Result<Self, StartsError> {
-        within(x_mm).and(within(v))?;
+        check_ends(x_mm).and(check_ends(v))?;
         match count {
             0 => return Err(StartsError::Range("no starts: give how many to draw, such as 1000")),
             1..=MAX_STARTS => {}
@@ -119,12 +121,12 @@ impl Starts {
         Ok(Self { x_mm, v, product: false })
     }
 
-    /// How many there are.
+    /// Number of starts.
     pub fn count(&self) -> usize {
         if self.product { self.x_mm.len() * self.v.len() } else { self.x_mm.len() }
     }
 
-    /// Start `row`, displacement in mm and velocity in m/s.
+    /// Displacement in mm and velocity in m/s of start `row`.
     pub fn at(&self, row: usize) -> (f64, f64) {
         match self.product {
             true => (self.x_mm[row / self.v.len()], self.v[row % self.v.len()]),
@@ -132,17 +134,18 @@ impl Starts {
         }
     }
 
-    /// Whether they are a grid.
+    /// Whether the starts are a grid.
     pub fn is_grid(&self) -> bool {
         self.product
     }
 
-    /// Values on the axes of a grid.
+    /// The values on the axes of a grid.
     pub fn axes(&self) -> Option<(&[f64], &[f64])> {
         self.product.then_some((&self.x_mm, &self.v))
     }
 
-    /// Their order, coarse first; random ones come in the order in which they were drawn.
+    /// The order of the runs, from coarse to fine; random starts are run in the order in which they were
+    /// drawn.
     pub(super) fn levels(&self) -> Levels {
         match self.product {
             true => Levels::of_lengths(vec![self.x_mm.len(), self.v.len()]),
@@ -150,7 +153,7 @@ impl Starts {
         }
     }
 
-    /// Displacements in mm and largest velocity in m/s either way.
+    /// Smallest and largest displacement in mm, and largest speed in m/s.
     pub(super) fn extent(&self) -> ((f64, f64), f64) {
         let ends = |values: &[f64]| extent(values.iter().copied());
         let (slow, fast) = ends(&self.v);
@@ -177,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_range_is_told() {
+    fn invalid_ranges_are_refused() {
         for (wrong, word) in [
             (range(0.0, 1.0, 0), "no values"),
             (range(0.0, 1.0, 1), "A:A:1"),

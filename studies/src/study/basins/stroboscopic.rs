@@ -1,4 +1,5 @@
-//! The stroboscopic map of a model by runs of whole forcing periods, and the work that a map of basins takes.
+//! The stroboscopic map of a model, computed by runs of whole forcing periods, and the budget of work of a
+//! map of basins.
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
@@ -9,13 +10,13 @@ use crate::system::threads::{Pool, UnderWay, share};
 /// A displacement and a velocity in units of the scene's scales.
 pub(super) type Point = [f64; 2];
 
-/// Cost of a forcing period with its derivatives, in periods without.
+/// Cost of a forcing period with derivatives, relative to one without.
 const WITH_DERIVATIVES: u64 = 4;
 
-/// A model, its range, and the threads that run it.
+/// A model, its limits of displacement, and the threads that run it.
 pub(super) struct Stroboscope<'a> {
     pub model: &'a Model,
-    /// Displacements in m that the mass may have.
+    /// Smallest and largest displacement in m that the mass can have.
     pub room: (f64, f64),
     pub pool: &'a Pool,
     pub cancel: &'a AtomicBool,
@@ -23,7 +24,7 @@ pub(super) struct Stroboscope<'a> {
 }
 
 impl Stroboscope<'_> {
-    /// Length and speed that points are measured in.
+    /// Units of length and speed of points.
     pub fn units(&self) -> (f64, f64) {
         let scales = self.model.scales();
         (scales.length, scales.speed)
@@ -40,14 +41,14 @@ impl Stroboscope<'_> {
         (x * length, v * speed)
     }
 
-    /// Whether a motion may begin in a point.
+    /// Whether a point lies between the limits of displacement.
     pub fn has(&self, point: Point) -> bool {
         let (x, v) = self.state(point);
         x >= self.room.0 && x <= self.room.1 && v.is_finite()
     }
 
-    /// The images of points after a number of forcing periods each; `None` for those that begin outside the
-    /// room, end early or come to rest, and for all if they take more work than is left.
+    /// The images of points, each after its number of forcing periods. `None` for motions that begin outside
+    /// the limits, end early or come to rest, and for all if they need more work than is left.
     pub fn map(&self, starts: &[(Point, u32)]) -> Result<Vec<Option<Point>>, Cancelled> {
         let mut images = vec![None; starts.len()];
         if !self.effort.has_room_for(starts.iter().map(|(_, periods)| u64::from(*periods)).sum()) {
@@ -77,8 +78,8 @@ impl Stroboscope<'_> {
         Ok(images)
     }
 
-    /// States of motions once a period for `periods`, without the first `skipped` ones; `None` if a motion
-    /// ends early or they take more work than is left.
+    /// Stroboscopic states of motions over `periods` forcing periods, without the first `skipped` ones;
+    /// `None` if a motion ends early or they need more work than is left.
     pub fn paths(
         &self,
         starts: &[State],
@@ -106,7 +107,8 @@ impl Stroboscope<'_> {
         Ok(all.map(|paths| paths.iter().flatten().map(|sample| (sample.x, sample.v)).collect()))
     }
 
-    /// Whether the motion through a state is irregular by its exponent; false if too little work is left.
+    /// Whether the Lyapunov exponent of the motion through a state shows that it is irregular; false if too
+    /// little work is left.
     pub fn is_irregular(&self, state: State) -> bool {
         if !self.effort.has_room_for(WITH_DERIVATIVES * u64::from(ExponentOptions::PERIODS)) {
             return false;
@@ -116,7 +118,7 @@ impl Stroboscope<'_> {
         found.is_ok_and(|exponents| exponents.is_irregular())
     }
 
-    /// Results of pursuits, in their order; `tick` is called for each.
+    /// The results of pursuits in order, with a `tick` for each.
     pub fn pursue(
         &self,
         pursuits: &[Pursuit],
@@ -147,36 +149,38 @@ impl Stroboscope<'_> {
     }
 }
 
-/// Units of the orbits and regions of a map: some ellipses of an orbit of 12 periods past a kink take that.
-const OF_THE_MAP: u64 = 20_000_000_000;
+/// Units of work for the orbits and regions of a map: enough for some ellipses of an orbit of 12 periods that
+/// passes a kink.
+const MAP_WORK: u64 = 20_000_000_000;
 
-/// Units of each start: four times those of the prototype followed for 1000 forcing periods.
-const OF_A_START: u64 = 20_000_000;
+/// Units of work per start: four times those of the prototype over 1000 forcing periods.
+const START_WORK: u64 = 20_000_000;
 
-/// Starts differ in work: one may take this many times its share of what is left.
-const SHARES: u64 = 4;
-/// Units that a start may take in any case.
-const LEAST: u64 = 2_000_000;
+/// Number of equal shares of the remaining work that one start may take, since starts differ in work.
+const MAX_SHARES: u64 = 4;
+/// Units of work that a start may take in any case.
+const MIN_START_WORK: u64 = 2_000_000;
 
-/// Work of one map, in the units of a [`Pursuit`].
+/// Budget of work of one map, in the units of a [`Pursuit`].
 ///
-/// A well may swing ten thousand times in a forcing period, and a map would then take days. How far a start
-/// is followed depends on what is left between rounds, and so not on the number of threads.
+/// If a forcing period contains ten thousand oscillations in a well, a map without a budget would take days.
+/// The work allowed for a start depends on what is left between rounds, and therefore not on the number of
+/// threads.
 #[derive(Debug)]
 pub(super) struct Effort {
     budget: u64,
     done: AtomicU64,
-    /// Forcing periods that were followed for it.
+    /// Number of forcing periods that this work covered.
     periods: AtomicU64,
 }
 
 impl Effort {
     pub fn of_starts(count: usize) -> Self {
-        let budget = OF_THE_MAP + OF_A_START.saturating_mul(count as u64);
+        let budget = MAP_WORK + START_WORK.saturating_mul(count as u64);
         Self { budget, done: AtomicU64::new(0), periods: AtomicU64::new(0) }
     }
 
-    /// Adds a pursuit whose forcing period in s is given.
+    /// Adds the work of a pursuit; `period` is the forcing period in s.
     pub fn add(&self, pursuit: &Pursuit, pursued: &Pursued, period: f64) {
         let ended = || match &pursued.arrival {
             Arrival::Unsettled(summary) => summary.outcome.ended_at().map(|at| (at / period) as u64),
@@ -191,12 +195,12 @@ impl Effort {
         self.budget.saturating_sub(self.done.load(Ordering::Relaxed))
     }
 
-    /// Units that each start may take while `remaining` starts are still to be followed.
+    /// Units of work allowed for each start while `remaining` starts are still to be followed.
     pub fn of_one(&self, remaining: usize) -> u64 {
-        (SHARES * (self.left() / remaining.max(1) as u64)).max(LEAST)
+        (MAX_SHARES * (self.left() / remaining.max(1) as u64)).max(MIN_START_WORK)
     }
 
-    /// Whether `periods` more forcing periods of the mean work fit into what is left.
+    /// Whether the work left is enough for `periods` more forcing periods of average work.
     pub fn has_room_for(&self, periods: u64) -> bool {
         let (done, before) = (self.done.load(Ordering::Relaxed), self.periods.load(Ordering::Relaxed));
         done as f64 / before.max(1) as f64 * periods as f64 <= self.left() as f64
@@ -210,7 +214,7 @@ mod tests {
     #[test]
     fn a_start_may_take_some_shares_of_what_is_left_and_a_search_what_fits() {
         let effort = Effort::of_starts(100);
-        assert_eq!(effort.of_one(100), SHARES * (OF_THE_MAP / 100 + OF_A_START));
+        assert_eq!(effort.of_one(100), MAX_SHARES * (MAP_WORK / 100 + START_WORK));
         assert!(effort.has_room_for(u64::MAX), "nothing is known of the work of a period yet");
         let pursuit = Pursuit {
             start: (0.0, 0.0),
@@ -223,11 +227,11 @@ mod tests {
         };
         let arrival = Arrival::Captured { which: 0, periods: 1000 };
         let pursued = |work| Pursued { arrival: arrival.clone(), crossings: 0, work };
-        effort.add(&pursuit, &pursued(OF_THE_MAP), 1.0);
+        effort.add(&pursuit, &pursued(MAP_WORK), 1.0);
         // 2e7 units a period, and 2e9 are left
         assert!(effort.has_room_for(100) && !effort.has_room_for(101));
-        effort.add(&pursuit, &pursued(OF_THE_MAP), 1.0);
+        effort.add(&pursuit, &pursued(MAP_WORK), 1.0);
         assert!(!effort.has_room_for(1));
-        assert_eq!(effort.of_one(3), LEAST);
+        assert_eq!(effort.of_one(3), MIN_START_WORK);
     }
 }

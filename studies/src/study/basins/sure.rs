@@ -1,12 +1,12 @@
-//! Sure answers of a map of basins: those that stay the same at ten times the error of the integration.
+//! Sure answers of a map of basins: those that do not change at ten times the error of the integration.
 //!
-//! A start near the border of a basin, or in a long irregular transient, goes where the last digits of the
-//! integration send it. Such a start is followed once more at another tolerance. By chance it may come to the
-//! same attractor, but hardly after as many crossings of the barrier and as many periods.
+//! The attractor of a start near a basin boundary, or with a long irregular transient, depends on the
+//! integration error. Such a start is followed once more at another tolerance. It may reach the same
+//! attractor by chance, but hardly after the same number of crossings and periods.
 
 use std::collections::BTreeMap;
 
-use super::rounds::{Fate, Item, Kind, LONGEST_ROUND, PATIENCE, Way};
+use super::rounds::{Fate, Item, Kind, MAX_ROUND, PATIENCE, Way};
 use super::stroboscopic::Stroboscope;
 use super::{Answer, Basins};
 use crate::dynamics::{Place, Pursuit};
@@ -14,12 +14,14 @@ use crate::scene::TOLERANCES;
 use crate::study::{Cancelled, Task};
 use crate::system::threads::Pool;
 
-/// Factor on the tolerance at which starts are followed once more; its inverse beyond the largest tolerance.
+/// Factor on the tolerance for the second run of a start; its inverse if the product exceeds the largest
+/// tolerance.
 const FACTOR: f64 = 10.0;
 
 impl Basins {
-    /// The rows that [`check`](Self::check) follows once more: those of a grid whose up to eight neighbours
-    /// do not all go to the same attractor in as many periods, else all. Precondition: the map is whole.
+    /// The rows that [`check`](Self::check) follows once more: in a grid those whose neighbours (up to eight)
+    /// do not all reach the same attractor after the same number of periods, otherwise all. Precondition: the
+    /// map is complete.
     pub fn rows_to_check(&self, answer: &Answer) -> Vec<usize> {
         let rows = &answer.rows;
         let settled = (0..rows.len()).filter(|row| rows[*row].is_some());
@@ -35,12 +37,13 @@ impl Basins {
         settled.filter(|row| is_line || !alike(row)).collect()
     }
 
-    /// Marks which answers are sure, with a tick for each start followed once more; false if cancelled.
+    /// Marks the answers that are sure, with a tick for each start that is followed once more; false if
+    /// cancelled.
     ///
-    /// A start is sure if it goes to the same attractor at ten times the tolerance, after as many crossings
-    /// of the barrier and, unless that is the only attractor in one of two wells, as many periods; or if
-    /// [`rows_to_check`](Self::rows_to_check) found that its neighbours all do the same. If it comes to a
-    /// release, all that follows it must be sure as well.
+    /// A start is sure if at ten times the tolerance it reaches the same attractor after the same number of
+    /// crossings and, unless that is the only attractor in one of two wells, the same number of periods; or
+    /// if it is not among [`rows_to_check`](Self::rows_to_check). If it reaches a release, everything after
+    /// the release must be sure as well.
     pub fn check(&self, answer: &mut Answer, pool: &Pool, task: &Task) -> bool {
         let finer = FACTOR * self.model.tolerance() > TOLERANCES.1;
         let factor = if finer { 1.0 / FACTOR } else { FACTOR };
@@ -49,7 +52,7 @@ impl Basins {
         let scope = Stroboscope { model: &model, room: *room, pool, cancel: task.cancel, effort };
         let mut sure = vec![true; answer.rows.len()];
         let items: Vec<Item> = self.rows_to_check(answer).into_iter().map(Item::of_start).collect();
-        for part in items.chunks(LONGEST_ROUND) {
+        for part in items.chunks(MAX_ROUND) {
             let Ok(fates) = self.follow_again(&scope, part, &|| (task.tick)()) else { return false };
             for (item, again) in part.iter().zip(fates) {
                 let first = self.rounds.fates[item.row];
@@ -70,7 +73,7 @@ impl Basins {
         true
     }
 
-    /// For each release, whether what follows it is sure as the continuation of a sure start.
+    /// For each release, whether the motion after it is sure, as the continuation of a sure start.
     fn sure_releases(
         &self,
         scope: &Stroboscope,
@@ -78,7 +81,7 @@ impl Basins {
         sure: &[bool],
     ) -> Result<Vec<bool>, Cancelled> {
         let mut known = vec![false; self.rounds.releases.len()];
-        // By release: the continuation of a start that comes to it.
+        // for each release, the continuation of a start that reaches it
         let mut next: BTreeMap<u32, Item> = BTreeMap::new();
         for (row, fate) in self.rounds.fates.iter().enumerate().filter(|(row, _)| sure[*row]) {
             if let Fate::Release(place, way) = *fate {
@@ -89,7 +92,7 @@ impl Basins {
         let mut tried = vec![false; known.len()];
         while !next.is_empty() {
             let items: Vec<Item> = std::mem::take(&mut next).into_values().collect();
-            for part in items.chunks(LONGEST_ROUND) {
+            for part in items.chunks(MAX_ROUND) {
                 for (item, again) in part.iter().zip(self.follow_again(scope, part, &|| ())?) {
                     let Some((place, before)) = item.after else { continue };
                     tried[place as usize] = true;
@@ -110,7 +113,7 @@ impl Basins {
         Ok(known)
     }
 
-    /// The fates of items followed again in a scope, as far as known.
+    /// The fates of items that are followed again in `scope`; `None` if not known.
     fn follow_again(
         &self,
         scope: &Stroboscope,
@@ -126,13 +129,14 @@ impl Basins {
         Ok(items.iter().zip(&all).map(|(item, end)| self.rounds.known_fate(item, end, scope)).collect())
     }
 
-    /// Whether a motion does the same again after `before`; if `alone` in its well, equal crossings suffice.
+    /// Whether the second run of a motion agrees with the first one after `before`; if its attractor is
+    /// `alone` in its well, equal numbers of crossings suffice.
     fn is_same(&self, first: Fate, before: Way, again: Option<Fate>, alone: bool) -> bool {
         match (first, again) {
             (Fate::Kind(kind, way), Some(Fate::Kind(other, now))) if kind == other => {
                 let judged = matches!(self.rounds.kinds[kind as usize], Kind::Judged(..));
                 let longest = way.periods.max(now.periods).saturating_add(before.periods);
-                // The counts of an irregular motion that was followed to the end mean nothing.
+                // the counts of an irregular motion that was followed to the end have no meaning
                 let ended = judged && u64::from(longest) >= PATIENCE;
                 ended || way.crossings == now.crossings && (alone || way.periods == now.periods)
             }

@@ -1,4 +1,4 @@
-//! Runs of designs in their environments, many at once.
+//! Runs of designs in their environments, several at a time.
 
 use std::sync::Arc;
 
@@ -13,11 +13,11 @@ use crate::system::threads::Pool;
 /// Result of one design.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Judged {
-    /// It is no valid scene.
+    /// It is not a valid scene.
     Invalid(Vec<Fault>),
     /// A result is missing, or a run ended early.
     Missing,
-    /// Constraints are broken: the sum of the excesses, each relative to its limit, and the results.
+    /// Constraints are violated: the sum of the relative violations, and the results.
     Broken(f64, Vec<f64>),
     Value(f64, Vec<f64>),
 }
@@ -27,14 +27,14 @@ impl Judged {
         if let Self::Value(value, _) = self { Some(*value) } else { None }
     }
 
-    /// The place `at` as an optimum, where it has a value.
+    /// The design `at` as an optimum, if it has a value.
     pub fn optimum(&self, at: &[f64]) -> Option<Optimum> {
         let Self::Value(value, of_each) = self else { return None };
         Some(Optimum { at: at.to_vec(), value: *value, of_each: of_each.clone() })
     }
 }
 
-/// A varied design: values of its fields, then of those that vary.
+/// A varied design: the values of its fields, and those of the fields that vary.
 pub(super) type Design = (Vec<f64>, Vec<f64>);
 
 /// The summary of a run, or what is wrong with its scene.
@@ -42,7 +42,7 @@ type Ran = Result<Box<Summary>, Vec<Fault>>;
 
 pub(super) struct Evaluator<'a> {
     pub question: &'a BestQuestion,
-    /// The ranges of the question, with the fields of whole numbers marked.
+    /// The ranges of the question, in which fields of whole numbers are marked.
     pub over: Vec<DesignRange>,
     pub pool: &'a Pool,
     task: &'a Task<'a>,
@@ -93,7 +93,7 @@ impl<'a> Evaluator<'a> {
         self.judge_varied(&designs)
     }
 
-    /// Results of designs with values of the varied fields.
+    /// The results of varied designs.
     pub fn judge_varied(&self, designs: &[Design]) -> Result<Vec<Judged>, NoBest> {
         let each = self.question.environments.len();
         let constraints = self.question.subject_to.iter().map(|constraint| constraint.of);
@@ -133,7 +133,7 @@ impl<'a> Evaluator<'a> {
         Model::build(&scene, mechanism)
     }
 
-    /// One design from its runs in each environment.
+    /// The result of one design from its runs in all environments.
     fn judged(&self, runs: &[Ran]) -> Judged {
         let summaries = match runs.iter().map(Result::as_ref).collect::<Result<Vec<_>, _>>() {
             Ok(summaries) => summaries,
@@ -170,7 +170,7 @@ impl<'a> Evaluator<'a> {
     }
 }
 
-/// Puts a design into a scene that has the fields.
+/// Sets the fields of a design in a scene that has them.
 fn apply(paths: &[FieldPath], at: &[f64], scene: &mut Scene) {
     for (path, value) in paths.iter().zip(at) {
         let known = path.set(scene, *value);

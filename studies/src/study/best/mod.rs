@@ -1,9 +1,9 @@
-//! Best design for an environment: the place in some fields at which a result is largest.
+//! Best design for an environment: the values of some fields that maximise a result.
 //!
-//! Results of a mass with stops over a design have cliffs (one step further out the mass rests) and windows
-//! (values that do between values that do not), so nothing is followed by its slope. The whole range is
-//! scanned first, coarsely and then finely; around each of the best places the scan is repeated in an ever
-//! smaller box. What lies between two places of the scan and is narrower than its step may be missed.
+//! Results of a mass with stops are discontinuous functions of the design (a small change may bring the mass
+//! to rest) and have isolated windows, so gradients are not used. The whole range is scanned first, coarsely
+//! and then finely; then the scan is repeated in ever smaller boxes around the best designs. A maximum that
+//! is narrower than the step of the scan may be missed.
 
 mod evaluate;
 mod search;
@@ -17,7 +17,7 @@ use evaluate::Evaluator;
 pub use varied::SAMPLES;
 pub use words::{names, place, quantity};
 
-/// A field that the design may change, and between which values, in its own unit.
+/// A field of the design with its range, in the unit of the field.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DesignRange {
     /// Dotted path of the field.
@@ -26,19 +26,19 @@ pub struct DesignRange {
     pub low: f64,
     /// Largest value, above the least.
     pub high: f64,
-    /// Intervals of the scan: at least 1, and of whole numbers no more than the range holds.
+    /// Number of intervals of the scan: at least 1, and for whole numbers at most the length of the range.
     pub intervals: usize,
     /// Whether only whole numbers are tried: as the field of the scene has it.
     whole: bool,
 }
 
 impl DesignRange {
-    /// Of a field called `field`, from `low` to `high`.
+    /// The range of `field` from `low` to `high`.
     pub fn new(field: impl Into<String>, (low, high): (f64, f64), intervals: usize) -> Self {
         Self { field: field.into(), low, high, intervals, whole: false }
     }
 
-    /// Distance of two places of the scan.
+    /// Step of the scan.
     pub fn step(&self) -> f64 {
         (self.high - self.low) / self.intervals as f64
     }
@@ -49,7 +49,7 @@ impl DesignRange {
 pub struct Constraint {
     /// The result.
     pub of: &'static SummaryField,
-    /// Whether it must be at most the limit; else at least.
+    /// Whether the result must be at most the limit; otherwise it must be at least the limit.
     pub at_most: bool,
     /// The limit, in the unit of the result.
     pub limit: f64,
@@ -60,7 +60,7 @@ pub struct Constraint {
 pub struct Environment {
     /// What it is called.
     pub name: String,
-    /// How much it counts, above 0.
+    /// Its weight, above 0.
     pub weight: f64,
     /// The scene under its excitation.
     pub scene: Scene,
@@ -92,16 +92,16 @@ pub struct BestQuestion {
     pub environments: Vec<Environment>,
     /// Fields that vary about the design.
     pub vary: Vec<Variation>,
-    /// Seed of the samples of what varies.
+    /// Seed of the samples of the fields that vary.
     pub seed: u64,
-    /// Time in s up to which runs are followed until they repeat; by default 1000 periods beyond the run.
+    /// Time in s up to which runs may continue until they repeat; by default 1000 periods beyond the run.
     pub until_settled: Option<f64>,
 }
 
-/// The most fields of a design: the scan grows exponentially with them.
+/// Largest number of fields of a design; the scan grows exponentially with it.
 pub const MOST_FIELDS: usize = 4;
 
-/// Intervals of the scan for one field, two, three and four.
+/// Numbers of intervals of the scan for one to four fields.
 pub const INTERVALS: [usize; MOST_FIELDS] = [256, 32, 12, 8];
 
 /// A design and its results.
@@ -115,7 +115,7 @@ pub struct Optimum {
     pub of_each: Vec<f64>,
 }
 
-/// The value under variation. Missing (NaN) where a sample has none.
+/// The value under variation. NaN if a sample has no value.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Spread {
     /// The worst of the samples.
@@ -130,30 +130,31 @@ pub struct BestDesign {
     /// The place.
     pub optimum: Optimum,
     /// For each field, the distance below and above at which the value has fallen by a tenth or a constraint
-    /// is broken, with the other fields fixed; `None` if that is nowhere in its range.
+    /// is violated, with the other fields fixed; `None` if this does not happen within its range.
     pub margins: Vec<[Option<f64>; 2]>,
     /// Which fields are best at an end of their range.
     pub at_border: Vec<bool>,
-    /// How closely each field is located.
+    /// Resolution of each field.
     pub resolution: Vec<f64>,
     /// The value under variation; if nothing varies, the value itself.
     pub spread: Spread,
-    /// The place with the largest worst case of those inward of the optimum along the first field.
+    /// The design with the largest worst case among those inward of the optimum along the first field.
     pub stepped_back: Option<(Optimum, Spread)>,
-    /// Whether every place that was tried gives the same value.
+    /// Whether all designs that were tried have the same value.
     pub flat: bool,
 }
 
 /// Why there is no best design.
 #[derive(Debug, Clone, PartialEq)]
 pub enum NoBest {
-    /// It was told to stop.
+    /// It was cancelled.
     Cancelled,
-    /// No design of the scan makes a valid scene; what is wrong with the first.
+    /// No design of the scan is a valid scene; these are the faults of the first one.
     Invalid(Vec<Fault>),
-    /// No design has the result and those of the constraints.
+    /// No design has the maximised result and those of the constraints.
     NoValue,
-    /// No design meets the constraints; the nearest one, and its results in the environment furthest off.
+    /// No design meets the constraints; the nearest one, and its results in the environment with the largest
+    /// violation.
     NoneMeets {
         /// The fields' values.
         nearest: Vec<f64>,
@@ -194,8 +195,8 @@ impl BestDesign {
     }
 }
 
-/// Searches for the best design. `preview` gets the best place of the coarse scan, and the best place when it
-/// is found, before margins and samples. The result is the same for any number of threads.
+/// Searches for the best design. `preview` gets the best design of the coarse scan, then the best design
+/// before margins and samples are computed. The result is the same for any number of threads.
 pub fn best(
     question: &BestQuestion,
     pool: &Pool,

@@ -1,5 +1,5 @@
-//! Scan of the whole range, ever smaller scans around its best places, and the distance from the best one to
-//! where its value falls or a constraint breaks.
+//! Scan of the whole range, refinement around its best designs, and the margins of the best one: the
+//! distances at which its value falls or a constraint is violated.
 
 use super::evaluate::{Evaluator, Judged};
 use super::{DesignRange, NoBest, Optimum};
@@ -10,24 +10,25 @@ use crate::study::grid::places;
 /// Stride of the coarse scan before the full one.
 const COARSE: usize = 4;
 
-/// How many of the best places are refined: a window that the scan has only grazed may hold a higher one.
+/// Number of best designs that are refined, since a narrow window may have a higher maximum than the scan
+/// shows.
 const REFINED: usize = 5;
 
-/// Intervals to each side of the middle in a refinement, for one field, two, three and four.
+/// Numbers of intervals on each side of the middle in a refinement, for one to four fields.
 const SIDES: [usize; 4] = [4, 2, 1, 1];
 
-/// Parts of a field's range to which a place is located.
+/// Inverse of the resolution of a field relative to its range.
 const PARTS: f64 = 5e3;
 
 /// Result of the search.
 #[derive(Debug)]
 pub(super) struct Found {
     pub optimum: Optimum,
-    /// Whether all places have the same value.
+    /// Whether all designs have the same value.
     pub flat: bool,
 }
 
-/// How closely a field is located: 1, 2 or 5 of a decimal place, and no closer than 1 among whole numbers.
+/// Resolution of a field: 1, 2 or 5 times a power of ten, and at least 1 for whole numbers.
 pub(super) fn resolution(range: &DesignRange) -> f64 {
     let parts = round_down((range.high - range.low) / PARTS, &ONE_TWO_FIVE);
     if range.whole { parts.max(1.0) } else { parts }
@@ -42,7 +43,7 @@ fn place(over: &[DesignRange], indices: &[usize]) -> Vec<f64> {
     over.iter().zip(indices).map(at).collect()
 }
 
-/// A value as it is tried: within the range, and a multiple of the resolution unless at an end.
+/// A value limited to the range and rounded to a multiple of the resolution, except at the ends.
 pub(super) fn rounded(range: &DesignRange, value: f64) -> f64 {
     multiple(value, resolution(range)).clamp(range.low, range.high)
 }
@@ -53,7 +54,7 @@ fn indices(lengths: &[usize]) -> Vec<Vec<usize>> {
     (0..count).map(|index| places(lengths.iter().copied(), index as u64).collect()).collect()
 }
 
-/// The best of some places that were judged, the first of equal ones.
+/// The best of some evaluated designs, the first of equal ones.
 fn highest(places: &[Vec<f64>], judged: &[Judged]) -> Option<Optimum> {
     let optima = places.iter().zip(judged).filter_map(|(at, design)| design.optimum(at));
     optima.reduce(|best, next| if next.value > best.value { next } else { best })
@@ -77,7 +78,7 @@ pub(super) fn search(evaluator: &Evaluator, preview: &mut dyn FnMut(&Optimum)) -
     let all_equal = judged.iter().all(|design| design.value() == Some(best.value));
     let mut order: Vec<usize> = (0..places.len()).filter(|i| judged[*i].value().is_some()).collect();
     order.sort_by(|a, b| judged[*b].value().partial_cmp(&judged[*a].value()).unwrap_or(a.cmp(b)));
-    // only the best place of a plateau begins a box
+    // a plateau starts only one box, at its best design
     let mut begins: Vec<usize> = Vec::new();
     for i in order {
         let apart = |other: &usize| {
@@ -99,14 +100,14 @@ pub(super) fn search(evaluator: &Evaluator, preview: &mut dyn FnMut(&Optimum)) -
     Ok(Found { optimum: best, flat: all_equal })
 }
 
-/// A box that shrinks around its best place.
+/// A box that shrinks around its best design.
 struct Closer {
     best: Optimum,
-    /// Places that have been tried; none of them is better.
+    /// Designs that have been tried and are not better.
     tried: Vec<Vec<f64>>,
 }
 
-/// Scans a box around each place, moves it to the best in it and halves it or less, down to the resolution.
+/// Scans a box around each design, moves it to its best design and shrinks it, down to the resolution.
 fn refine(evaluator: &Evaluator, starts: Vec<Optimum>) -> Result<Vec<Optimum>, NoBest> {
     let over = &evaluator.over;
     let sides = SIDES[over.len() - 1];
@@ -115,7 +116,7 @@ fn refine(evaluator: &Evaluator, starts: Vec<Optimum>) -> Result<Vec<Optimum>, N
     let mut boxes: Vec<Closer> = starts.into_iter().map(closer).collect();
     let grid = indices(&vec![2 * sides + 1; over.len()]);
     loop {
-        // all boxes together, so that no thread waits
+        // the boxes are scanned together, so that no thread is idle
         let places: Vec<Vec<Vec<f64>>> = boxes.iter().map(|area| around(area, over, &grid, &half)).collect();
         let judged = evaluator.judge(&places.concat())?;
         let mut rest = judged.as_slice();
@@ -128,7 +129,7 @@ fn refine(evaluator: &Evaluator, starts: Vec<Optimum>) -> Result<Vec<Optimum>, N
             area.tried.extend(places);
         }
         let finest = half.iter().zip(over).all(|(half, range)| half / sides as f64 <= resolution(range));
-        // with one place to each side the best may lie anywhere in the box, so that it is only halved
+        // with one interval on each side the maximum may lie anywhere in the box, so that it is only halved
         let smaller = if sides == 1 { 0.5 } else { 1.0 / sides as f64 };
         for (half, range) in half.iter_mut().zip(over) {
             *half = (*half * smaller).max(resolution(range));
@@ -155,7 +156,7 @@ fn around(area: &Closer, over: &[DesignRange], grid: &[Vec<usize>], half: &[f64]
     places
 }
 
-/// Why no place has a value.
+/// Why no design has a value.
 fn none(places: &[Vec<f64>], judged: &[Judged]) -> NoBest {
     let broken = places.iter().zip(judged).filter_map(|(at, design)| match design {
         Judged::Broken(by, results) => Some((by, at, results)),
@@ -179,13 +180,13 @@ fn none(places: &[Vec<f64>], judged: &[Judged]) -> NoBest {
 /// Relative fall of the value that ends the margin.
 const FALL: f64 = 0.1;
 
-/// Steps of the walk outward in one step of the scan.
+/// Number of outward steps per step of the scan.
 const FINER: f64 = 4.0;
 
-/// Places that are tried together.
+/// Number of designs that are evaluated together.
 const TOGETHER: usize = 16;
 
-/// Of each field, the distance below and above.
+/// The margins of each field, below and above.
 pub(super) fn margins(evaluator: &Evaluator, found: &Found) -> Result<Vec<[Option<f64>; 2]>, NoBest> {
     let fields = 0..evaluator.over.len();
     fields
@@ -193,7 +194,7 @@ pub(super) fn margins(evaluator: &Evaluator, found: &Found) -> Result<Vec<[Optio
         .collect()
 }
 
-/// The least distance in direction `way` at which the value has fallen; every finer step is tried.
+/// The smallest distance in the direction `way` (-1 or 1) at which the value has fallen; every step is tried.
 fn side(evaluator: &Evaluator, found: &Found, field: usize, way: f64) -> Result<Option<f64>, NoBest> {
     let range = &evaluator.over[field];
     let (best, middle) = (&found.optimum, found.optimum.at[field]);

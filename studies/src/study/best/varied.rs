@@ -1,4 +1,4 @@
-//! Robustness of a design whose fields vary, and the step back that improves it.
+//! Robustness of a design under tolerances, and a more robust design inward of it.
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
@@ -7,20 +7,20 @@ use super::evaluate::{Design, Evaluator};
 use super::search::{Found, rounded};
 use super::{NoBest, Optimum, Spread, Variation};
 
-/// Samples of what varies.
+/// Number of samples of the fields that vary.
 pub const SAMPLES: usize = 200;
 
 /// The share of the samples below the quantile.
 const QUANTILE: f64 = 0.05;
 
-/// Places from the optimum inward at which the samples are taken.
+/// Number of designs from the optimum inward that are sampled.
 const PLACES: usize = 16;
 
-/// Least reach of the search inward, in steps of the scan, such as when the first field does not vary.
-const LEAST_BACK: f64 = 16.0;
+/// Smallest distance of the inward search in steps of the scan, as when the first field does not vary.
+const MIN_REACH: f64 = 16.0;
 
-/// The spread at the optimum, and the place with the largest worst case of those inward of it along the first
-/// field, away from the nearer cliff; `None` if the optimum is that place, or nothing varies.
+/// The spread at the optimum, and the design with the largest worst case among those inward along the first
+/// field, away from the nearer margin; `None` if that is the optimum itself, or if nothing varies.
 pub(super) fn robust(
     evaluator: &Evaluator,
     found: &Found,
@@ -31,7 +31,7 @@ pub(super) fn robust(
         return Ok((Spread { worst: best.value, quantile_5: best.value }, None));
     }
     let range = &evaluator.over[0];
-    // the nearer cliff is the one to step back from
+    // inward is away from the nearer margin
     let [low, high] = margins[0].map(|margin| margin.unwrap_or(f64::INFINITY));
     let way = if high <= low { -1.0 } else { 1.0 };
     let shift = |variation: &Variation| {
@@ -39,10 +39,10 @@ pub(super) fn robust(
         if variation.field == range.field { variation.by * size } else { 0.0 }
     };
     let shifts: f64 = evaluator.question.vary.iter().map(shift).sum();
-    let reach = (3.0 * shifts).max(LEAST_BACK * range.step());
+    let reach = (3.0 * shifts).max(MIN_REACH * range.step());
     let mut places: Vec<Vec<f64>> = Vec::new();
     for i in 0..=PLACES {
-        // closer together near the optimum
+        // designs are closer together near the optimum
         let share = (i as f64 / PLACES as f64).powi(2);
         let mut at = best.at.clone();
         if i > 0 {
@@ -58,8 +58,8 @@ pub(super) fn robust(
         std::iter::once(best.clone()).chain(back).map(|optimum| Sampled::new(evaluator, optimum)).collect();
     let everything: Vec<usize> = (0..SAMPLES).collect();
     evaluate(evaluator, &mut all[..1], &everything)?;
-    // Samples that are bad here are usually bad elsewhere, and the worst known sample of a place bounds its
-    // worst case: few places need all samples to be ruled out.
+    // samples that are bad here are usually bad elsewhere, and the worst known sample bounds the worst case
+    // of a design, so that few designs need all samples
     let mut order = everything;
     order.sort_by(|a, b| all[0].values[*a].total_cmp(&all[0].values[*b]));
     evaluate(evaluator, &mut all[1..], &order[..TOGETHER])?;
@@ -77,10 +77,10 @@ pub(super) fn robust(
     }
 }
 
-/// Samples that are evaluated together at a place.
+/// Number of samples that are evaluated together for a design.
 const TOGETHER: usize = 8;
 
-/// A place and its samples: the same at each.
+/// A design with its samples; the deviations are the same for all designs.
 struct Sampled {
     at: Optimum,
     /// Values of the varied fields in each sample.

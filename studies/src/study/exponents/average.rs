@@ -1,4 +1,4 @@
-//! Exponents of any motion, as averages over forcing periods.
+//! Lyapunov exponents of any motion, as averages over forcing periods.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -8,15 +8,17 @@ use crate::dynamics::Model;
 use crate::numeric::CompensatedSum;
 use crate::study::State;
 
-/// Forcing periods in which a change turns into the direction that grows most, before anything is averaged.
-const TURNING: u32 = 20;
+/// Number of forcing periods before the average, in which a perturbation turns into the direction of fastest
+/// growth.
+const ALIGNMENT: u32 = 20;
 
 /// The exponents of the motion through `state`, in m and m/s at a [`phase`](Model::drive_phase) of the drive
-/// from 0 to 1, over `periods` forcing periods, without waiting for a transient or looking for a periodic
-/// motion. Without a drive a period is the natural time of the mechanism. At least one period.
+/// from 0 to 1, averaged over `periods` forcing periods, at least 1, from this state on: transients are
+/// included, and periodic orbits get no special treatment. Without a drive, a period is the natural time of
+/// the mechanism.
 ///
-/// The standard errors are those of the means of batches, whose number is the root of that of the periods
-/// (Flegal and Jones 2010): they cover the scatter of a motion whose correlations decay within a batch.
+/// Standard errors are those of batch means, with the square root of the number of periods as the number of
+/// batches (Flegal and Jones 2010). They are valid if correlations decay within a batch.
 pub fn average_exponents(
     model: &Model,
     state: State,
@@ -27,7 +29,7 @@ pub fn average_exponents(
     average(&Tangent::of(model, phase)?, state, periods, cancel)
 }
 
-/// The same of a map.
+/// Like [`average_exponents`], for a map.
 pub(super) fn average(
     tangent: &Tangent,
     mut state: State,
@@ -40,7 +42,7 @@ pub(super) fn average(
     let (mut first, mut second) = (Batches::new(periods), Batches::new(periods));
     let mut measured = CompensatedSum::<f64>::new();
     let mut exact = Some(CompensatedSum::<f64>::new());
-    for number in 0..TURNING + periods {
+    for number in 0..ALIGNMENT + periods {
         if cancel.load(Ordering::Relaxed) {
             return Err(NoExponents::Cancelled);
         }
@@ -53,7 +55,7 @@ pub(super) fn average(
         }
         change = [x / growth, v / growth];
         state = passed.state;
-        if number >= TURNING {
+        if number >= ALIGNMENT {
             first.add(growth.ln());
             second.add(passed.log_determinant() - growth.ln());
             measured.add(passed.measured);
@@ -65,9 +67,9 @@ pub(super) fn average(
     }
     let exact_sum = exact.map(|sum| sum.value() / time + 0.0);
     let (first, second) = (first.estimate(tangent.period()), second.estimate(tangent.period()));
-    // The sum less the first exponent adds no rounding.
+    // the difference of the exact sum and the first exponent has no further rounding error
     let second = Estimate { per_s: exact_sum.map_or(second.per_s, |sum| sum - first.per_s), ..second };
-    // If the two differ only by their scatter, either may come out as the larger.
+    // if the two differ by less than their scatter, the second one may be larger
     let (first, second) = if second.per_s > first.per_s { (second, first) } else { (first, second) };
     Ok(Exponents {
         first,
@@ -79,7 +81,7 @@ pub(super) fn average(
     })
 }
 
-/// Sums over consecutive parts of a series of known length.
+/// Sums over consecutive batches of a series of known length.
 struct Batches {
     sums: Vec<f64>,
     added: u64,

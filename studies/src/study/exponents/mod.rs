@@ -1,15 +1,15 @@
-//! Lyapunov exponents of a settled motion: rates in 1/s at which small changes of it grow or die away.
+//! Lyapunov exponents of a settled motion: rates in 1/s at which small perturbations grow or decay.
 //!
-//! Where the motion repeats they are ln|multiplier| over its period, of the periodic motion itself, which
-//! Newton's method finds. Elsewhere they are averages over forcing periods (Benettin et al. 1980): a change
-//! is carried along by the derivatives of the stroboscopic map, which hold through impacts (Müller 1995),
-//! and is made a unit long once a period. The map of a phase plane has two; the third one of the driven
-//! motion, along its own path, is 0.
+//! If the motion repeats, they are ln|multiplier| / period of the periodic orbit, which Newton's method
+//! finds. Otherwise they are averages over forcing periods (Benettin et al. 1980): a perturbation is mapped
+//! by the derivatives of the stroboscopic map, which include those of impacts (Müller 1995), and is
+//! normalised once per period. The map of the phase plane has two exponents; the third exponent of the driven
+//! system, along the trajectory, is 0.
 //!
-//! Both together have an exact value, since damping and impacts alone shrink areas:
-//! -c/m + 2 ln(restitution) times the rate of impacts, of each stop. The second exponent is this sum less the
-//! first, so that it keeps its digits however far they lie apart. After a rest on a stop nothing is left of a
-//! change: both are minus infinity.
+//! Their sum has an exact value, since only damping and impacts contract areas: -c/m + 2 ln(restitution)
+//! times the rate of impacts, summed over the stops. The second exponent is computed as this sum minus the
+//! first, so that it is accurate even if it is much smaller. A rest on a stop removes every perturbation;
+//! both exponents are then minus infinity.
 
 mod average;
 mod orbit;
@@ -28,14 +28,14 @@ pub use average::average_exponents;
 use orbit::of_orbit;
 use tangent::Tangent;
 
-/// Forcing periods of a window in which a motion that repeats after up to 12 of them is recognised.
+/// Number of forcing periods of a window in which a repetition after up to 12 of them is recognised.
 const WINDOW: f64 = 36.0;
 
 /// The exponents of the settled motion of `model`.
 ///
-/// Its run goes on, window after window, until it repeats or the time of the options is over. If it repeats,
-/// the exponents are those of the periodic motion; else averages over the periods that follow. Without a
-/// drive the mass is followed for 1000 periods of its small oscillations.
+/// The run continues window by window until the motion repeats, or up to the time in the options. If it
+/// repeats, the exponents are those of the periodic orbit; otherwise they are averages over the periods that
+/// follow. Without a drive the motion is followed for 1000 periods of small oscillations.
 pub fn exponents(
     model: &Model,
     options: &ExponentOptions,
@@ -62,7 +62,7 @@ pub fn exponents(
     let state = (summary.final_x, summary.final_v);
     let phase = model.drive_phase(summary.window.1).unwrap_or(0.0);
     let tangent = Tangent::of(model, phase)?;
-    // a motion that has not settled may pass near a periodic one that it does not go to
+    // a motion that has not settled may pass near a periodic orbit that does not attract it
     let found = match model.repeats() && summary.settled != Some(true) {
         true => None,
         false => of_orbit(&tangent, state, summary.period.unwrap_or(1))?,
@@ -73,7 +73,7 @@ pub fn exponents(
 /// The exponents of every cell of a grid.
 pub type ExponentCells = GridStudy<ExponentOptions>;
 
-/// The exponents of a cell; `None` if it has none.
+/// The exponents of a cell, if it has any.
 type Found = Option<Exponents>;
 
 impl Question for ExponentOptions {
@@ -111,7 +111,7 @@ impl Question for ExponentOptions {
     }
 }
 
-/// The fault of an excitation that changes and does not repeat, so that there are no exponents.
+/// The fault of an excitation that changes in time and does not repeat, for which there are no exponents.
 pub fn drive_fault(model: &Model, scene: &Scene) -> Option<Fault> {
     let suits = model.excitation().is_constant();
     if suits { None } else { without_a_period(model, scene, "an exponent") }
@@ -134,17 +134,18 @@ fn with_columns(table: Table, found: &[Found]) -> Table {
         .each("dimension", found, number(Exponents::dimension))
 }
 
-/// How exponents are measured.
+/// How exponents are computed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ExponentOptions {
-    /// Forcing periods over which a motion without a period is averaged.
+    /// Number of forcing periods over which exponents of a motion without a period are averaged, at least 1.
     pub periods: u32,
-    /// Time in s up to which a motion is followed until it repeats; by default 1000 periods beyond the run.
+    /// Time in s up to which a run may continue until its motion repeats; by default 1000 periods beyond the
+    /// run.
     pub until_settled: Option<f64>,
 }
 
 impl ExponentOptions {
-    /// Periods averaged over where none are named.
+    /// Default number of periods of an average.
     pub const PERIODS: u32 = 1000;
 }
 
@@ -157,9 +158,10 @@ impl Default for ExponentOptions {
 /// An average with its standard error.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Estimate {
-    /// The value in 1/s; minus infinity where nothing is left of a change, NaN where it is not known.
+    /// The value in 1/s; minus infinity if perturbations vanish completely, NaN if it is not known.
     pub per_s: f64,
-    /// Its standard error in 1/s: 0 of a periodic motion or of minus infinity, NaN of too few periods.
+    /// Its standard error in 1/s: 0 for a periodic orbit or a value of minus infinity, NaN for too few
+    /// periods.
     pub error: f64,
 }
 
@@ -176,43 +178,46 @@ impl Estimate {
 pub struct Exponents {
     /// The larger one.
     pub first: Estimate,
-    /// The smaller one. NaN where stops are compliant and the derivatives do not show so strong a loss.
+    /// The smaller one. NaN if stops are compliant and the contraction is too strong to be computed from the
+    /// derivatives.
     pub second: Estimate,
-    /// Their sum in 1/s by the determinants of the derivatives. NaN where a forcing period shrinks areas so
-    /// much that a determinant, the difference of two products, has lost its digits.
+    /// Their sum in 1/s from the determinants of the derivatives. NaN if areas contract so much in a forcing
+    /// period that a determinant, the difference of two products, is lost in rounding.
     pub sum: f64,
-    /// Their sum in 1/s by damping and impacts; `None` with compliant stops, whose loss varies.
+    /// Their sum in 1/s from damping and impacts; `None` with compliant stops, whose loss is not known in
+    /// advance.
     pub exact_sum: Option<f64>,
-    /// Forcing periods after which the motion repeats, where they are those of a periodic motion.
+    /// Period of the orbit in forcing periods; `None` for averages.
     pub period: Option<u32>,
-    /// Forcing periods that they are of, and the time in s that those take.
+    /// Number of forcing periods to which the exponents refer, and their duration in s.
     pub span: (u32, f64),
 }
 
-/// Standard errors above 0 from which an exponent counts as positive.
+/// Number of standard errors above 0 from which an exponent counts as positive.
 const CLEAR: f64 = 3.0;
 
-/// Least growth of an irregular motion, in multiples of that of a shear: the logarithm of the periods.
+/// Smallest growth of perturbations of an irregular motion, in multiples of that of a shear, which is the
+/// logarithm of the number of periods.
 const BEYOND_SHEAR: f64 = 3.0;
 
 impl Exponents {
-    /// Of a motion that has rested on a stop within these forcing periods.
+    /// The exponents of a motion that has rested on a stop within these forcing periods.
     pub(super) fn of_rest(period: Option<u32>, span: (u32, f64), exact: bool) -> Self {
         let nothing = f64::NEG_INFINITY;
         let (first, second) = (Estimate::exact(nothing), Estimate::exact(nothing));
         Self { first, second, sum: nothing, exact_sum: exact.then_some(nothing), period, span }
     }
 
-    /// Whether the motion has rested on a stop, so that nothing was left of a change.
+    /// Whether the motion has rested on a stop, which removes every perturbation.
     pub fn rests(&self) -> bool {
         self.first.per_s == f64::NEG_INFINITY
     }
 
     /// Whether the motion is irregular: it does not repeat, the first exponent is above 0 by more than three
-    /// standard errors, and small changes have grown far more over these periods than in proportion to time,
-    /// as they do in regular motion without damping.
+    /// standard errors, and perturbations have grown much more over these periods than in proportion to time,
+    /// which is their growth in regular motion without damping.
     ///
-    /// A transient that wanders irregularly for these periods and settles later is irregular for as long.
+    /// An irregular transient that lasts longer than these periods counts as irregular.
     pub fn is_irregular(&self) -> bool {
         let (periods, time) = self.span;
         let shear = f64::from(periods.max(2)).ln();
@@ -221,9 +226,9 @@ impl Exponents {
             && self.first.per_s * time > BEYOND_SHEAR * shear
     }
 
-    /// Kaplan-Yorke dimension of the stroboscopic section (Kaplan and Yorke 1979): 0 where both exponents
-    /// are below 0, 2 where their sum is not, 1 + first/|second| between. That of the motion in time is one
-    /// more. NaN where the second exponent is not known and matters.
+    /// Kaplan-Yorke dimension of the stroboscopic section (Kaplan and Yorke 1979): 0 where both exponents are
+    /// below 0, 2 where their sum is not, 1 + first/|second| between. The dimension of the trajectory in
+    /// continuous time is larger by 1. NaN if it depends on the second exponent and that is not known.
     pub fn dimension(&self) -> f64 {
         let (first, second) = (self.first.per_s, self.second.per_s);
         match first + second {
@@ -243,13 +248,13 @@ pub enum NoExponents {
     /// Its transducer has a state of its own.
     #[error("{}", crate::study::ELECTRICAL_STATE)]
     ElectricalState,
-    /// It was told to stop.
+    /// It was cancelled.
     #[error("interrupted")]
     Cancelled,
     /// The motion ended.
     #[error("the motion ended early ({}), so it has no exponents", .0.name())]
     EndedEarly(Outcome),
-    /// The mass has touched a stop without speed to the last digit, where the map has no derivatives.
+    /// The mass has touched a stop at exactly zero speed, where the map has no derivatives.
     #[error("the mass touched a stop without speed, where a small change has no rate")]
     Grazing,
 }

@@ -1,25 +1,25 @@
-//! Exponents of a periodic motion, by its multipliers.
+//! Exponents of a periodic orbit, from its multipliers.
 
 use super::tangent::{Passed, Tangent};
 use super::{Estimate, Exponents, NoExponents};
 use crate::study::State;
 
-/// The farthest a motion that repeats is from itself a period later, in units of the scales.
+/// Largest distance of a state of a repeating motion from the state one period later, in units of the scales.
 const NEAR: f64 = 1e-2;
 
-/// Distance of a periodic motion from itself a period later, in units of the scales, that is only rounding.
+/// Such a distance that is caused by rounding only.
 const ROUNDING: f64 = 1e-13;
-/// Least and largest bound of that distance for a motion that Newton's method finds.
+/// Smallest and largest bound on that distance for an orbit found by Newton's method.
 const CLOSE: (f64, f64) = (1e-10, 1e-4);
 
-/// Steps of Newton's method: it doubles the digits.
+/// Largest number of steps of Newton's method, each of which doubles the number of digits.
 const STEPS: usize = 12;
 
-/// A growth over a period that rounding can hide.
+/// Growth over a period that may be lost in rounding.
 const NEUTRAL: f64 = 1e-6;
 
-/// The exponents of the periodic motion of `periods` forcing periods that the motion through `start` has
-/// settled on. `None` if there is none near it, or if it is unstable and the motion is not exactly on it.
+/// The exponents of the periodic orbit of `periods` forcing periods to which the motion through `start` has
+/// settled. `None` if there is no orbit near it, or if it is unstable and the motion is not exactly on it.
 pub(super) fn of_orbit(
     tangent: &Tangent,
     start: State,
@@ -48,15 +48,15 @@ pub(super) fn of_orbit(
     }))
 }
 
-/// The periodic motion near a state, how far it is from itself a period later, and whether the state had to
-/// be moved; `None` if Newton's method finds none.
+/// The periodic orbit near a state, the distance of its state from that one period later, and whether the
+/// state had to be changed; `None` if Newton's method finds none.
 fn find(tangent: &Tangent, start: State, periods: u32) -> Result<Option<(Passed, f64, bool)>, NoExponents> {
     let mut state = start;
     let mut best: Option<(Passed, f64, bool)> = None;
     for step in 0..STEPS {
         let orbit = match tangent.pass_many(state, periods) {
             Ok(orbit) => orbit,
-            Err(_) if step > 0 => break, // a step led out of where the motion goes on
+            Err(_) if step > 0 => break, // a step led to a state whose motion ends early
             Err(error) => return Err(error),
         };
         let [x, v] = tangent.scaled(state, orbit.state);

@@ -1,25 +1,26 @@
-//! Map of a forcing period, with the growth of small changes of the motion.
+//! Map over a forcing period with its derivatives.
 
 use super::NoExponents;
 use crate::dynamics::{Event, EventKind, Jacobian, Model, Outcome, Passage, Scales, Side, StroboscopicMap};
 use crate::study::State;
 
-/// Below this share of its two products a determinant has lost its digits: rounding is some 1e-15 of them.
-/// (The error of the integration is a share of the areas themselves, of the size of the tolerance.)
+/// Share of its two products below which a determinant is lost in rounding, which is about 1e-15 of the
+/// products. (The error of the integration is relative to the determinant itself, about the tolerance.)
 const LOST: f64 = 1e-12;
 
-/// Below this share the determinant of a period is the product of those of its parts. A mass that lingers
-/// near the top of a barrier turns all changes into the one that grows there, up to 1e6-fold in a period.
+/// Share below which the determinant of a period is computed as the product of those of its parts. Near the
+/// top of a barrier all perturbations turn into the unstable direction and grow up to 1e6-fold in a period.
 const FEW_LEFT: f64 = 1e-4;
+/// Number of these parts.
 const PARTS: u32 = 8;
 
-/// The stroboscopic map of a model, with changes of a state in units of its scales.
+/// The stroboscopic map of a model, with perturbations in units of its scales.
 pub(super) struct Tangent {
     map: StroboscopicMap,
     scales: Scales,
-    /// Logarithm of the share of an area that damping leaves in a period.
+    /// Logarithm of the factor by which damping contracts areas in a period.
     damped: f64,
-    /// The same of an impact on the left and the right stop; `None` if they are compliant.
+    /// The same for an impact on the left and on the right stop; `None` if they are compliant.
     struck: Option<[f64; 2]>,
 }
 
@@ -28,28 +29,29 @@ pub(super) struct Tangent {
 pub(super) struct Passed {
     /// The state at their end, in m and m/s.
     pub state: State,
-    /// Derivatives of it by that at the start, in units of the scales.
+    /// Its derivatives by the state at the start, in units of the scales.
     pub jacobian: Jacobian,
-    /// Logarithm of their determinant; NaN where its digits are lost.
+    /// Logarithm of their determinant; NaN if it is lost in rounding.
     pub measured: f64,
-    /// The same by damping and impacts; `None` with compliant stops.
+    /// The same from damping and impacts; `None` with compliant stops.
     pub exact: Option<f64>,
 }
 
 impl Passed {
-    /// Whether nothing is left of a change.
+    /// Whether perturbations have vanished completely.
     pub fn rested(&self) -> bool {
         self.jacobian.rows == [[0.0; 2]; 2]
     }
 
-    /// The exact logarithm if it is known, else the measured one.
+    /// The exact logarithm of the determinant if it is known, otherwise the computed one.
     pub fn log_determinant(&self) -> f64 {
         self.exact.unwrap_or(self.measured)
     }
 }
 
 impl Tangent {
-    /// The map from a phase of the drive on, in forcing periods; without a drive over the natural time.
+    /// The map over one period, beginning at a phase of the drive in forcing periods; without a drive, over
+    /// the natural time.
     pub fn of(model: &Model, phase: f64) -> Result<Self, NoExponents> {
         if model.has_electrical_state() {
             return Err(NoExponents::ElectricalState);
@@ -108,14 +110,15 @@ impl Tangent {
         Ok(Passed { state: passage.state, jacobian, measured, exact })
     }
 
-    /// Logarithm of the determinant of a share of a period; `None` if less than `least` of its products.
+    /// Logarithm of the determinant of a part of a period; `None` if the determinant is below the share
+    /// `least` of its products.
     fn logarithm(&self, passage: &Passage, derivative: &Jacobian, share: f64, least: f64) -> Option<f64> {
         let determinant = derivative.determinant().abs();
         let exact = passage.determinant.unwrap_or_else(|| (self.damped * share).exp());
         (exact.min(determinant) > least * products(derivative)).then(|| determinant.ln())
     }
 
-    /// The same of a period from its parts, NaN where one has lost its digits.
+    /// The same for a period, from its parts; NaN if one of them is lost in rounding.
     fn by_parts(&self, mut state: State) -> f64 {
         let share = 1.0 / f64::from(PARTS);
         let parts = (0..PARTS).map(|part| {
@@ -142,12 +145,12 @@ impl Tangent {
         Ok(all)
     }
 
-    /// A change of the state in units of the scales, from `from` to `to`.
+    /// The difference of two states in units of the scales.
     pub fn scaled(&self, from: State, to: State) -> [f64; 2] {
         [(to.0 - from.0) / self.scales.length, (to.1 - from.1) / self.scales.speed]
     }
 
-    /// A state changed so much, in units of the scales.
+    /// A state changed by this difference in units of the scales.
     pub fn changed(&self, (x, v): State, by: [f64; 2]) -> State {
         (x + by[0] * self.scales.length, v + by[1] * self.scales.speed)
     }
@@ -159,7 +162,7 @@ fn products(derivative: &Jacobian) -> f64 {
     (a * d).abs() + (b * c).abs()
 }
 
-/// A count times a logarithm, 0 where there is nothing to count however small the logarithm.
+/// A count times a logarithm; 0 for a count of 0 even if the logarithm is minus infinity.
 fn times(count: f64, logarithm: f64) -> f64 {
     if count == 0.0 { 0.0 } else { count * logarithm }
 }

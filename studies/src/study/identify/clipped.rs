@@ -1,4 +1,4 @@
-//! Flat tops of a record: swings that a converter cut off at the end of its range.
+//! Flat tops of a record: oscillations that a converter clipped at the end of its range.
 
 use std::ops::Range;
 
@@ -6,11 +6,11 @@ use super::{median, noise};
 use crate::numeric::extent;
 use crate::numeric::orthogonal::Orthogonal;
 
-/// Share of the least difference within which differences are its whole multiples. Those of a converter are;
-/// of numbers that are written in full few are.
+/// Tolerance, as a share of the smallest difference of values, for differences that are integer multiples of
+/// it. Values of a converter have such differences; numbers with all their digits have few.
 const WHOLE: f64 = 0.01;
 
-/// Times the noise within which a sample may lie at the limit.
+/// Distance from the limit, in multiples of the noise, below which a sample lies at the limit.
 const NEAR: f64 = 8.0;
 
 /// Samples after a flat top are looked at up to this many times the noise below it, and at least to this
@@ -18,42 +18,42 @@ const NEAR: f64 = 8.0;
 const FAR: f64 = 32.0;
 const FAR_OF_RANGE: f64 = 0.02;
 
-/// A flat top is cut off where the record leaves it with more than this part of its mean speed thereafter.
+/// A flat top is clipped if the record leaves it at more than this share of its mean speed thereafter.
 const SPEED: f64 = 0.25;
 
 /// The flat tops of a record.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Clipped {
-    /// The last sample of the last one.
+    /// The last sample of the last flat top.
     pub last: usize,
-    /// How many there are.
+    /// Number of flat tops.
     pub tops: usize,
-    /// The value at which the last one is cut off.
+    /// The value at which the last flat top is clipped.
     pub limit: f64,
 }
 
 /// The flat tops on one side of a record.
 struct FlatTops {
-    /// The largest value if 1, the least one if -1.
+    /// 1 for the largest value, -1 for the smallest.
     side: f64,
     limit: f64,
     /// Successive samples at the limit.
     runs: Vec<Range<usize>>,
 }
 
-/// Swings that are cut off on one side of a record.
+/// Oscillations that are clipped on one side of a record.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CutOff {
     pub limit: f64,
     pub swings: usize,
 }
 
-/// The flat tops at the largest and at the least of `values`, where there are any.
+/// The flat tops at the largest and the smallest of `values`, if there are any.
 ///
-/// The top of a swing that is not cut off, in values with a step, is a run of equal samples too, but a
-/// rounded one: within four steps of it there are twice as many samples (the width of a parabola grows like
-/// the root of the depth). It is cut off where there are fewer than 3/2 as many. In values without a step no
-/// two tops are equal unless they are cut off.
+/// In quantised values the top of an oscillation that is not clipped also is a sequence of equal samples, but
+/// there are twice as many samples within four steps of it, since the width of a parabola grows like the
+/// square root of its depth. A top with fewer than 3/2 as many is clipped. In values without quantisation no
+/// two tops are equal unless they are clipped.
 pub fn clipped(values: &[f64]) -> Option<Clipped> {
     let step = step(values);
     let on_side = |side: f64| {
@@ -69,19 +69,19 @@ pub fn clipped(values: &[f64]) -> Option<Clipped> {
     }
 }
 
-/// Where the displacements `x` over `times` of a mass that may rest on stops are cut off: at their least
-/// value (first), and at their largest.
+/// Whether the displacements `x` over `times` of a mass that may rest on stops are clipped at their smallest
+/// (first) and largest value.
 ///
-/// A rest is flat too. The mass leaves it from standstill, since the force on it changes sign there, but a
-/// top that is cut off with a speed. Where it does not leave again, ever smaller bounces came before a rest.
-/// In noise a rest is not flat: where it is cut off within the noise, samples below the limit lie between
-/// others at it.
+/// A rest is flat as well. The mass leaves a rest at zero speed, since the force on it changes sign there,
+/// but it leaves a clipped top at some speed. If it does not leave, a rest follows ever smaller bounces. With
+/// noise a rest is not flat: if the noise is clipped, samples below the limit lie between samples at the
+/// limit.
 pub fn cut_off(times: &[f64], x: &[f64]) -> [Option<CutOff>; 2] {
     let step = step(x);
     [-1.0, 1.0].map(|side| FlatTops::of(x, side, step)?.cut_off(times, x, step))
 }
 
-/// The least difference of successive values of a converter; 0 for values that have no such step.
+/// The quantisation step of the values; 0 if they are not quantised.
 fn step(values: &[f64]) -> f64 {
     let steps = || values.windows(2).map(|pair| (pair[1] - pair[0]).abs()).filter(|step| *step > 0.0);
     let least = steps().fold(f64::INFINITY, f64::min);
@@ -100,7 +100,7 @@ impl FlatTops {
             match runs.last_mut() {
                 Some(run) if run.end == i => run.end = i + 1,
                 _ if values[i - 1] != limit => runs.push(i..i + 1),
-                // a flat stretch at the start of the record is no top
+                // a flat stretch at the start of the record is not a top
                 _ => {}
             }
         }
@@ -117,7 +117,7 @@ impl FlatTops {
         cut.then_some(Self { side, limit, runs })
     }
 
-    /// The swings, if they are cut off.
+    /// The oscillations, if they are clipped.
     fn cut_off(&self, times: &[f64], x: &[f64], step: f64) -> Option<CutOff> {
         let (low, high) = extent(x.iter().copied());
         let below: Vec<f64> = x.iter().copied().filter(|x| *x != self.limit).collect();

@@ -16,27 +16,27 @@ const ENVELOPE: u32 = 400;
 /// Turning points in a row of the table.
 const GROUP: usize = 8;
 
-/// Relative change of a number up to which there is no remark.
+/// Relative change of a number below which there is no remark.
 const NEGLIGIBLE: f64 = 1e-3;
 
-/// Swings count down to this many times the reach of the noise.
+/// Smallest height of an oscillation that counts, in multiples of the range of the noise.
 const CLEAR: f64 = 1.5;
 
 /// Damping ratio, decay and frequency of a free decay, over the record and as they change with amplitude.
 ///
 /// Each turning point is fitted separately (see `peaks`) and an exponential envelope through them by weighted
-/// least squares (see [`Envelope`]), whose rate r is the decay of the amplitude a second. Over half a period
-/// of T/2 the amplitude falls by d = r T/2, half the logarithmic decrement, and the damping ratio is
-/// d/sqrt(pi^2 + d^2). Of an oscillator with mass m and damping coefficient c in a well that is straight, or
-/// straight on either side of a kink at its bottom, r is c/(2 m). The rest position need not be known, and
-/// the two sides may have unlike amplitudes. The period is the slope of a weighted straight line through the
-/// times of the turning points, with an offset between maxima and minima. Intervals are 95 %, from the
+/// least squares (see [`Envelope`]), whose rate r is the decay rate of the amplitude. Over half a period of
+/// T/2 the amplitude falls by d = r T/2, half the logarithmic decrement, and the damping ratio is d/sqrt(pi^2
+/// + d^2). For an oscillator with mass m and damping coefficient c and a linear force, or one that is linear
+/// on each side of a kink at the bottom of the well, r is c/(2 m). The rest position need not be known, and
+/// the two sides may have different amplitudes. The period is the slope of a weighted straight line through
+/// the times of the turning points, with an offset between maxima and minima. Intervals are 95 %, from the
 /// scatter of the turning points about envelope and line.
 ///
-/// Begins after the last flat top where the record is clipped, at the largest swing otherwise. Rows:
+/// The fit begins after the last flat top of a clipped record, otherwise at the largest oscillation. Rows:
 /// `turns,from_s,to_s,amplitude,damping_ratio,damping_ratio_low,damping_ratio_high,frequency_hz,
-/// frequency_low_hz,frequency_high_hz,decay_per_s,decay_low_per_s,decay_high_per_s`, each of some eight
-/// turning points in order of time; the amplitude has the ending of the channel's unit.
+/// frequency_low_hz,frequency_high_hz,decay_per_s,decay_low_per_s,decay_high_per_s`, each for about eight
+/// turning points in order of time; the name of the amplitude column ends with the unit of the channel.
 pub fn damping(times: &[f64], channel: &Channel) -> Result<Identified, Unidentified> {
     let flat = clipped(&channel.values);
     let begin = flat.map_or(0, |flat| flat.last + 1);
@@ -51,7 +51,8 @@ pub fn damping(times: &[f64], channel: &Channel) -> Result<Identified, Unidentif
     let swing = |k: usize| (values[all[k + 1].at] - values[all[k].at]).abs();
     let swings = all.len().saturating_sub(1);
     let largest = (0..swings).rev().max_by(|a, b| swing(*a).total_cmp(&swing(*b))).unwrap_or(0);
-    // a swing near the reach of the noise may be missed, and would be counted as half of a long one
+    // an oscillation near the range of the noise may be missed, and its neighbours would appear as one long
+    // oscillation
     let clear = (largest..swings).take_while(|k| swing(*k) > CLEAR * back).count();
     let turns = &all[largest.min(all.len())..(largest + clear + 1).min(all.len())];
     if turns.len() < MIN_TURNS {
@@ -76,7 +77,7 @@ pub fn damping(times: &[f64], channel: &Channel) -> Result<Identified, Unidentif
     })
 }
 
-/// Remarks on the result: where the record is cut, and what changes with the amplitude.
+/// Remarks on the result: where the record was cut, and which numbers change with the amplitude.
 fn remarks(
     rows: &[Decay],
     whole: &Decay,
@@ -212,11 +213,12 @@ fn natural(frequency: Identity, damping: Identity) -> Identity {
     Identity { name: "natural_frequency_hz", value, interval: (value - low, value + high) }
 }
 
-/// Whether the numbers of the rows differ from the whole by more than intervals explain and than counts.
+/// Whether the numbers of the rows differ from that of the whole record by more than their intervals and more
+/// than a negligible amount.
 fn differ(rows: impl ExactSizeIterator<Item = Identity>, whole: f64) -> bool {
     let chance = 1 + rows.len() / 5;
     let apart = |row: &Identity| (row.value - whole).abs() > NEGLIGIBLE * whole.abs();
-    // one in twenty of rows that agree lies outside
+    // one in twenty rows lies outside by chance
     rows.filter(|row| !(row.interval.0..=row.interval.1).contains(&whole) && apart(row)).count() > chance
 }
 

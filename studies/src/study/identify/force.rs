@@ -1,4 +1,4 @@
-//! Force curve from a slow pull, with its hysteresis, equilibria and barrier.
+//! Force curve from a slow pull test, with its hysteresis, equilibria and barrier.
 
 use super::rests::Rest;
 use super::{Identified, Identity, Unidentified, median, noise, turns, with_interval};
@@ -9,22 +9,23 @@ use crate::study::{Table, Values};
 /// Default number of points of a curve.
 pub const FORCE_POINTS: usize = 101;
 
-/// The part of the range of positions by which a pull goes back where it turns.
+/// Reversal of the position that ends a pull in one direction, as a share of the range.
 const TURN: f64 = 0.1;
 
-/// Standard deviations of the position next to a turn that are left out: there its noise has one sign.
+/// Distance from a reversal, in standard deviations of the position, below which samples are left out, since
+/// the noise of the position is biased there.
 const TURNING: f64 = 6.0;
 
-/// The part of the range after a turn that is left out if the two directions differ in its outermost quarter
-/// by less than half of what they do further in: there friction and backlash turn.
+/// Share of the range after a reversal that is left out if the directions differ in its outermost quarter by
+/// less than half of their difference further in, since friction and backlash reverse there.
 const LEFT_OUT: f64 = 0.01;
-/// End of the range further in, in multiples of that part.
+/// End of the range further in, in multiples of that share.
 const FURTHER_IN: f64 = 5.0;
 
-/// Standard errors by which the force differs from 0 on both sides of an equilibrium.
+/// Number of standard errors by which the force must differ from 0 on both sides of an equilibrium.
 const CLEAR: f64 = 3.0;
 
-/// A number with its standard error and the degrees of freedom of that.
+/// A number with its standard error and the degrees of freedom of that error.
 #[derive(Debug, Clone, Copy)]
 pub struct Known {
     pub value: f64,
@@ -138,7 +139,7 @@ impl Curve {
         Some(Self { positions, step, directions, mean })
     }
 
-    /// Where the force passes 0.
+    /// The equilibria, where the force changes sign.
     fn equilibria(&self, pulls: &[&Pull], range: f64) -> Vec<Rest> {
         let clear = |i: &usize| self.mean[*i].0.value.abs() > CLEAR * self.mean[*i].0.error;
         let signs: Vec<usize> = (0..self.positions.len()).filter(clear).collect();
@@ -228,7 +229,7 @@ impl Curve {
         })
     }
 
-    /// How well the curve is known, and the tolerance of a table that is made of it.
+    /// A text with the accuracy of the curve, and the tolerance for a table made of it.
     fn tolerance(&self, rests: &[Rest]) -> String {
         let between = |x: &f64| match (rests.first(), rests.last()) {
             (Some(first), Some(last)) if rests.len() > 1 => (first.x.0..last.x.0).contains(x),
@@ -262,7 +263,7 @@ fn hysteresis(one: &[(Known, f64)], other: &[(Known, f64)], length: f64) -> [Ide
         .map(|(name, unit)| Identity::new(name, mean.value * unit, mean.half() * unit))
 }
 
-/// The cubic through the four of `values` nearest to the place `u`, of which 0 is the first and 1 the next.
+/// The cubic through the four of `values` nearest to the index `u`, evaluated there.
 fn through_four(u: f64, values: &[f64]) -> f64 {
     let first = ((u.floor() - 1.0).max(0.0) as usize).min(values.len() - 4);
     let nodes = [0, 1, 2, 3].map(|k| (first + k) as f64);
@@ -298,7 +299,7 @@ fn directions(x: &[f64], force: &[f64]) -> [Pull; 2] {
     pulls
 }
 
-/// Whether the directions are still near each other after the turn at `end`, over a part of `range`.
+/// Whether friction still reverses after the reversal at `end`, over a share of `range`.
 fn turning(before: &Pull, after: &Pull, (end, range): (f64, f64)) -> bool {
     let apart = |(x, force): &(f64, f64)| -> Option<f64> {
         let next = before.partition_point(|sample| sample.0 < *x);

@@ -14,7 +14,7 @@ pub use restitution::{restitution, restitution_of_times};
 use super::{Table, label_and_unit};
 use crate::numeric::{MIN_TURNS, extent, short};
 pub(super) use crate::numeric::{Turn, turns};
-use peaks::FEWEST_SAMPLES;
+use peaks::MIN_SAMPLES;
 use restitution::ENOUGH;
 
 /// A number with its interval.
@@ -45,7 +45,7 @@ impl Identity {
     }
 }
 
-/// The table with three more columns: a number of each row, and the ends of its interval.
+/// The table with three more columns: a number for each row and the ends of its interval.
 fn with_interval<R>(table: Table, names: [&str; 3], rows: &[R], of: impl Fn(&R) -> Identity) -> Table {
     table.each(names[0], rows, |row| of(row).value).each(names[1], rows, |row| of(row).interval.0).each(
         names[2],
@@ -59,7 +59,7 @@ fn with_interval<R>(table: Table, names: [&str; 3], rows: &[R], of: impl Fn(&R) 
 pub struct Identified {
     /// The rows: over amplitude, impact or position.
     pub rows: Table,
-    /// The numbers that sum the record up.
+    /// The numbers for the whole record.
     pub summary: Vec<Identity>,
     /// Fitted data for a picture: of a decay `t_s,upper,lower`, its envelope; of bounces
     /// `t_s,x_m,rebound_t_s,rebound_x_m`, the impacts and how far each goes back; of a pull `x_m,residual_n`,
@@ -69,10 +69,10 @@ pub struct Identified {
     pub remarks: Vec<String>,
 }
 
-/// Why nothing is identified.
+/// Why nothing could be identified.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum Unidentified {
-    /// Too few swings stand out from the noise.
+    /// Too few oscillations stand out from the noise.
     #[error(
         "{found} turning points stand out from the noise (of standard deviation {noise}); the damping ratio \
          needs {MIN_TURNS} of a free decay: record longer, pluck harder, or widen --from and --to"
@@ -85,7 +85,7 @@ pub enum Unidentified {
     },
     /// The swing at this time in s has too few samples.
     #[error(
-        "the swing at {0} s has {1} samples near its turning point; {FEWEST_SAMPLES} are needed: \
+        "the swing at {0} s has {1} samples near its turning point; {MIN_SAMPLES} are needed: \
          sample faster"
     )]
     Sparse(String, usize),
@@ -162,11 +162,12 @@ pub enum Unidentified {
     FewSamples(usize, usize),
 }
 
-/// Noise of values that vary slowly from sample to sample: the standard deviation of what is random in each.
+/// Standard deviation of the noise of values that otherwise vary slowly from sample to sample.
 ///
-/// Third differences of a smooth record vanish, those of independent errors of standard deviation s have s
-/// sqrt(20); their median magnitude is insensitive to the few at impacts. Of values that stand still for many
-/// samples, as those of a converter with few bits do, the least change counts.
+/// Third differences of a smooth record vanish; those of independent errors of standard deviation s have the
+/// standard deviation s sqrt(20). Their median magnitude is insensitive to the few at impacts. For values
+/// that stay constant over many samples, such as those of a converter with few bits, the smallest change is
+/// used.
 pub(super) fn noise(values: &[f64]) -> f64 {
     /// Median magnitude over standard deviation of normal numbers.
     const NORMAL: f64 = 0.674_489_750_196_081_7;
@@ -179,15 +180,15 @@ pub(super) fn noise(values: &[f64]) -> f64 {
     if 10 * still > values.len() && least.is_finite() { random.max(least) } else { random }
 }
 
-/// How far values with noise of this standard deviation go back where they do not turn: the range of as many
-/// independent errors (twice their expected maximum, s sqrt(2 ln n)), and two standard deviations.
+/// Largest reversal of the values that noise of this standard deviation can cause: the range of as many
+/// independent errors (twice their expected maximum, s sqrt(2 ln n)) and two standard deviations.
 pub(super) fn reach(values: &[f64], noise: f64) -> f64 {
     let count = values.len().max(2) as f64;
     let (low, high) = extent(values.iter().copied());
     (2.0 * noise * ((2.0 * count.ln()).sqrt() + 1.0)).max(1e-9 * (high - low))
 }
 
-/// The median of some values; the greater of two middle ones.
+/// The median; for an even number of values, the larger of the two middle ones.
 pub(super) fn median(mut values: Vec<f64>) -> Option<f64> {
     let middle = values.len() / 2;
     (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)

@@ -9,38 +9,38 @@ use super::{Turn, Unidentified, median};
 use crate::numeric::regression::{Fit, least_squares};
 use crate::numeric::{Envelope, MIN_TURNS, TurningPoint, short};
 
-/// The part of a period on either side of a turning point over which it is fitted.
+/// Share of a period on each side of a turning point over which it is fitted.
 const REACH: f64 = 0.125;
 
-/// The part of a swing by which a cosine falls within that reach of its turning point.
+/// Relative fall of a cosine within that reach of its turning point.
 const DEPTH: f64 = 0.1464;
 
-/// A turning point is fitted over less where its swing falls by [`DEPTH`] within this part of the reach.
+/// Share of the reach within which an oscillation must fall by [`DEPTH`] for a narrower fit.
 const NARROW: f64 = 0.75;
 
-/// Noise, in standard deviations, that this fall must exceed for its width to be measured.
+/// Number of standard deviations of the noise that this fall must exceed for its width to be measured.
 const CLEAR: f64 = 6.0;
 
-/// Widths around a turning point whose median is taken.
+/// Number of widths around a turning point whose median is used.
 const WIDTHS: usize = 5;
-/// Periods and curvatures on either side of one whose median is taken.
+/// Number of periods and curvatures on each side of a turning point whose median is used.
 const NEIGHBOURS: usize = 3;
 
-/// Standard errors of one curvature by which the median of those around must differ from that of a cosine.
+/// Number of standard errors by which the median curvature must differ from that of a cosine to replace it.
 const DIFFERENT: f64 = 2.0;
 
-/// Turning points on either side from which the time of one follows.
+/// Number of turning points on each side from which the time of one is computed.
 const AROUND: usize = 8;
 
-/// Length of a swing, relative to those around it.
+/// Range of the duration of an oscillation, relative to those around it.
 const EVEN: std::ops::RangeInclusive<f64> = 0.6..=1.6;
-/// The part of a swing by which the middle may move within a period.
+/// Largest shift of the centre within a period, as a share of the oscillation.
 const MOVED: f64 = 0.25;
 
-/// The fewest samples of a fit.
-pub const FEWEST_SAMPLES: usize = 5;
-/// The fewest samples of a fit with the second harmonic.
-const FEWEST_OF_HARMONICS: usize = 9;
+/// Smallest number of samples of a fit.
+pub const MIN_SAMPLES: usize = 5;
+/// Smallest number of samples of a fit with the second harmonic.
+const MIN_SAMPLES_OF_HARMONICS: usize = 9;
 
 /// Number of passes: the times and the decay follow from the fits of the pass before.
 const PASSES: usize = 4;
@@ -48,15 +48,15 @@ const PASSES: usize = 4;
 /// A turning point, fitted.
 #[derive(Debug, Clone)]
 pub struct Peak {
-    /// Which one of the record: neighbours have numbers that follow each other.
+    /// Its number in the record.
     pub number: f64,
-    /// Its value at its time, which follows from those around it, and its weight.
+    /// Its value at the time that was computed from its neighbours, and the weight of the value.
     pub point: TurningPoint,
-    /// Its time as it follows from itself, and the weight of that: one over the variance, in any unit.
+    /// Its time from its own fit, and the weight of this time: one over the variance, in any unit.
     pub found: (f64, f64),
     /// Length of the period about it.
     period: f64,
-    /// The part of the usual reach over which it is fitted.
+    /// Share of the usual reach over which it is fitted.
     narrow: f64,
 }
 
@@ -77,14 +77,15 @@ struct Local {
 /// The fitted turning points `turns` of a decay, and the time from which on they have too few samples, if
 /// any. `noise` is the standard deviation of the values.
 ///
-/// Each is the extreme of a decaying oscillation and, where samples are enough, its second harmonic, about a
-/// separate centre: by least squares over an eighth of the period on either side, or less where the swing has
-/// turned sooner than a cosine would, as beyond a kink of the force. A straight line through some sixteen of
-/// the times found improves each, and the value is read there: the extreme of a noisy curve lies too far out,
-/// the value at a time that hardly depends on the same noise does not.
+/// Each is the extremum of a decaying oscillation about its own centre, with the second harmonic if there are
+/// enough samples. It is fitted by least squares over an eighth of the period on each side, or less if the
+/// oscillation turns faster than a cosine, as beyond a kink of the force. The times are then smoothed by a
+/// straight line through about sixteen of them, and the value is taken at the smoothed time: the extremum of
+/// a noisy curve is biased outward, whereas the value at a nearly independent time is not.
 ///
-/// The variance of each value follows from that of the samples: a part for all, and one that grows with the
-/// square of the amplitude, as errors of the times make it; both from the residuals of the fits.
+/// The variance of each value follows from that of the samples, which has a constant part and a part that
+/// grows with the square of the amplitude, due to errors of the times; both are estimated from the residuals
+/// of the fits.
 pub fn peaks(
     times: &[f64],
     values: &[f64],
@@ -113,7 +114,7 @@ pub fn peaks(
                     fits.push(fit);
                     kept.push(peak);
                 }
-                // the times move a little from pass to pass, which must not cut off what follows
+                // the times change slightly from pass to pass, which must not end the record early
                 Err(samples) if pass == 0 => {
                     sparse = Some((peak.point.t, samples));
                     break;
@@ -205,7 +206,7 @@ fn local(times: &[f64], values: &[f64], peak: &Peak, rate: f64) -> Result<Option
     let (centre, usual) = (peak.point.t, peak.narrow * REACH * peak.period);
     let frequency = FRAC_PI_4 / usual;
     let mut samples = 0;
-    // twice as far where samples are few
+    // twice as far if there are few samples
     for reach in [usual, 2.0 * usual] {
         if !(centre - reach >= times[0] && centre + reach <= times[times.len() - 1]) {
             return Ok(None);
@@ -213,10 +214,10 @@ fn local(times: &[f64], values: &[f64], peak: &Peak, rate: f64) -> Result<Option
         let range = within(times, centre - reach, centre + reach);
         samples = range.len();
         let near = times[range.clone()].iter().map(|t| t - centre).zip(values[range].iter().copied());
-        if samples >= FEWEST_OF_HARMONICS {
+        if samples >= MIN_SAMPLES_OF_HARMONICS {
             return Ok(swing::<5>(near, frequency, rate));
         }
-        if samples >= FEWEST_SAMPLES {
+        if samples >= MIN_SAMPLES {
             return Ok(swing::<3>(near, frequency, rate));
         }
     }
@@ -273,8 +274,8 @@ fn weigh(peaks: &mut [Peak], fits: &[Local]) -> Result<f64, Unidentified> {
     peaks.iter_mut().zip(&weights).for_each(|(peak, weight)| peak.point.weight = weight / mean);
     let envelope = envelope(peaks)?;
     let sizes = sizes(&envelope, peaks);
-    // the curvature over the amplitude is that of a cosine, or that of those around if it clearly differs: a
-    // noisy one would make the scatter of the times too small or too large
+    // the relative curvature is that of a cosine, or the median of the neighbours if that clearly differs; a
+    // noisy curvature would make the scatter of the times too small or too large
     let side = |k: usize| if peaks[k].point.maximum { 1.0 } else { -1.0 };
     let bend = |k: usize| -side(k) * fits[k].curvature / sizes[k];
     let mut curvatures = vec![0.0; peaks.len()];

@@ -1,4 +1,4 @@
-//! Equilibria of a measured force curve: where they are and how stiff, also beside a kink.
+//! Equilibria of a measured force curve: position and stiffness, also near a kink.
 
 use nalgebra::SVector;
 
@@ -7,28 +7,28 @@ use super::force::{Known, Pull, within};
 use crate::numeric::regression::{Fit, least_squares};
 use crate::numeric::{bisect, golden_section};
 
-/// The parts of the range, on either side of an equilibrium, over which the force is fitted.
+/// Shares of the range, on each side of an equilibrium, over which the force is fitted.
 const REACHES: [f64; 6] = [0.04, 0.02, 0.01, 0.005, 0.0025, 0.001];
-/// The same where samples are too few.
+/// Wider ones, if there are too few samples.
 const WIDE: [f64; 2] = [0.08, 0.16];
 
-/// A smaller reach, or a kink, is taken if it shortens the interval of the force to less than this share.
+/// A smaller reach, or a kink, is used if it reduces the interval of the force to less than this share.
 const BETTER: f64 = 0.5;
 
-/// The fewest degrees of freedom of a fit.
-const FEWEST: usize = 4;
+/// Smallest number of degrees of freedom of a fit.
+const MIN_FREEDOM: usize = 4;
 
-/// The part of the slope by which it jumps at a kink.
+/// Smallest relative jump of the slope at a kink.
 const JUMP: f64 = 0.01;
 
-/// Places of a kink that are tried.
+/// Number of positions of a kink that are tried.
 const TRIED: usize = 40;
-/// Most samples that are used for that.
+/// Largest number of samples that are used for that.
 const LOOKED_AT: usize = 1000;
-/// The fewest samples on either side of a kink.
+/// Smallest number of samples on each side of a kink.
 const BESIDE: usize = 4;
 
-/// Places at which the sign of the force is taken.
+/// Number of positions at which the sign of the force is evaluated.
 const PLACES: u32 = 64;
 const HALVINGS: u32 = 60;
 
@@ -48,9 +48,9 @@ pub struct Rest {
 impl Rest {
     /// The equilibrium of the mean of pulls near a place where it changes sign, in a curve of length `range`.
     ///
-    /// To each direction a cubic, or a cubic with another added from a kink on (whose place is found by least
-    /// squares), is fitted over some part of the range on either side: the largest without a kink, unless
-    /// another halves the interval of the force, as where the force is known well.
+    /// For each direction a cubic, or two cubics that join at a kink (whose position is found by least
+    /// squares), is fitted over a share of the range on each side. The largest share without a kink is used,
+    /// unless another fit halves the interval of the force, as it does if the force is known accurately.
     pub fn near(place: f64, pulls: &[&Pull], range: f64) -> Option<Self> {
         let mut best: Option<Self> = None;
         let fitted = |reach: f64, kinked: bool| {
@@ -101,7 +101,7 @@ impl Rest {
         let kink = fits.first().and_then(|fit| fit.kink);
         let sides = kink.and_then(|kink| Some([beside(kink, -1.0)?, beside(kink, 1.0)?]));
         if let (Some(kink), Some(sides)) = (kink, &sides)
-            // the kink has an error as well
+            // the position of the kink has an error as well
             && (2.0 * ends[0] - x..=2.0 * ends[1] - x).contains(&kink)
         {
             let low = sides.iter().map(|slope| slope.value - slope.half());
@@ -109,7 +109,7 @@ impl Rest {
             stiffness.1 = [low.fold(stiffness.1[0], f64::min), high.fold(stiffness.1[1], f64::max)];
         }
         let kink = kink.zip(sides).map(|(kink, [left, right])| [kink, left.value, right.value]);
-        // the second cubic may serve a smooth force as well
+        // the second cubic may also fit a smooth force
         let jumps = |[_, left, right]: &[f64; 3]| (left - right).abs() > JUMP * left.abs().max(right.abs());
         let kink = kink.filter(jumps);
         Some(Self { x: (x, ends), stiffness, kink, half, fits })
@@ -168,17 +168,17 @@ impl Near {
         let Some(kink) = kink else {
             let smooth = |(u, force): &(f64, f64)| (std::array::from_fn(|k| u.powi(k as i32)), *force);
             let fit = least_squares(&samples.iter().map(smooth).collect::<Vec<_>>())?;
-            let enough = fit.freedom >= FEWEST;
+            let enough = fit.freedom >= MIN_FREEDOM;
             let fit = Polynomial::Smooth(Box::new(fit));
             return enough.then_some(Self { centre, reach, kink: None, beyond: [0.0; 3], fit });
         };
-        if samples.len() < FEWEST + 8 {
+        if samples.len() < MIN_FREEDOM + 8 {
             return None;
         }
         let cubics = joined(samples.iter(), kink)?.coefficients;
         let beyond = [cubics[4], cubics[5], cubics[6]];
         let row = |(u, force): &(f64, f64)| (terms(*u, kink, &beyond, 0).into(), *force);
-        // the place of the kink is that of least squares: its own term is for the errors
+        // the kink is already at its least-squares position; its term only contributes to the errors
         let moved: Fit<8> = least_squares(&samples.iter().map(row).collect::<Vec<_>>())?;
         let coefficients = SVector::<f64, 8>::from_fn(|k, _| if k < 7 { cubics[k] } else { 0.0 });
         let fit = Polynomial::Kinked(Box::new(Fit { coefficients, ..moved }));

@@ -29,17 +29,17 @@ impl Unjudged {
     }
 }
 
-/// A condition that does not hold, and the value of the field that it names.
+/// A condition that does not hold, with the value of the field that it names.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Lack {
-    /// The condition; of an `All`, the first part that does not hold.
+    /// The condition; for an `All`, the first part that does not hold.
     pub asked: Condition,
     /// The value of its field; missing if it names none.
     pub found: Value,
 }
 
-/// The first condition of the goal of a step that `subject` does not meet; `before` is the scene at its
-/// begin.
+/// The first condition of the goal of a step that `subject` does not meet; `before` is the scene at the start
+/// of the step.
 pub fn goal_lack(step: &Step, subject: &Subject, before: &Subject) -> Result<Option<Lack>, Unjudged> {
     match step {
         Step::Do { goal, .. } => Judge { subject, before, from: None }.lack(goal),
@@ -61,7 +61,7 @@ pub(super) fn holds(condition: &Condition, subject: &Subject, before: &Subject) 
     Judge { subject, before, from: None }.holds(condition)
 }
 
-/// The scene, the one before, and, in a condition over starts, the run from the present start.
+/// The scene, the scene before and, in a condition over starts, the run from the current start.
 struct Judge<'a> {
     subject: &'a Subject<'a>,
     before: &'a Subject<'a>,
@@ -115,7 +115,8 @@ impl Judge<'_> {
         Ok(Some(Lack { asked: condition.clone(), found }))
     }
 
-    /// How many of these hold. All are evaluated, so that the runs of each are made whatever the others give.
+    /// Number of these conditions that hold. All are evaluated, so that the runs do not depend on the
+    /// results.
     fn count(&self, parts: &[Condition]) -> Result<usize, Unjudged> {
         let verdicts = parts.iter().map(|part| self.holds(part)).collect::<Result<Vec<_>, _>>()?;
         Ok(verdicts.into_iter().filter(|holds| *holds).count())
@@ -161,7 +162,7 @@ impl Judge<'_> {
     }
 }
 
-/// The mean of some values and its standard error; NaN where one of them is.
+/// The mean of some values and its standard error; NaN if one of them is NaN.
 fn mean(values: &[f64]) -> (f64, f64) {
     let count = values.len() as f64;
     let mean = values.iter().sum::<f64>() / count;
@@ -191,7 +192,7 @@ impl Value {
     }
 }
 
-/// Forcing periods after which the motion repeats, 0 where no period was found.
+/// Forcing periods after which the motion repeats; 0 if no period was found.
 const PERIOD_MULTIPLE: &str = "period_multiple";
 
 /// The fields of a summary that conditions may name: those of `simulate` and `period_multiple`.

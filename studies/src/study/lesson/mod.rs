@@ -1,4 +1,4 @@
-//! Verdicts of lessons: whether a task is done, which option holds, and whether a whole lesson is right.
+//! Evaluation of lessons: whether a task is done, which options hold, and whether a lesson is consistent.
 
 mod judge;
 mod subject;
@@ -16,7 +16,7 @@ pub use subject::Subject;
 /// Relative change of a bound that shows whether a verdict is close to it.
 const MOVED: f64 = 0.01;
 
-/// Something that is wrong with a lesson, or close to it.
+/// A fault of a lesson, or a bound that is close to one.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LessonFinding {
     /// Number of the step, from 0.
@@ -30,19 +30,19 @@ pub struct LessonFinding {
 /// Result of the check of a lesson.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct LessonReport {
-    /// Predictions that were asked.
+    /// Number of predictions.
     pub predictions: usize,
-    /// Tasks that were tried.
+    /// Number of tasks.
     pub tasks: usize,
-    /// What is wrong: a start that meets its goal, a solution that does not, not one right option.
+    /// Faults: a start that meets its goal, a solution that does not, or not exactly one right option.
     pub wrong: Vec<LessonFinding>,
-    /// Bounds that turn a verdict where they are moved by 1 %.
+    /// Bounds for which a change by 1 % changes a verdict.
     pub warnings: Vec<LessonFinding>,
 }
 
-/// Runs a lesson: the start of every task must fail, its solution must pass, of the options of every
-/// prediction exactly one must hold; then with each bound moved by 1 % up and down, except bounds on fields
-/// of the scene that no control of the lesson changes: they are exact settings.
+/// Checks a lesson: the start of every task must fail, its solution must pass, and exactly one option of
+/// every prediction must hold. This is repeated with each bound changed by 1 % up and down, except bounds on
+/// fields of the scene that no control of the lesson changes, which are exact settings.
 pub fn check_lesson(
     document: &LessonDocument,
     pool: Option<&Pool>,
@@ -51,7 +51,7 @@ pub fn check_lesson(
     let mut report = LessonReport::default();
     let mut last: Option<Rc<Subject>> = None;
     for number in 0..document.lesson.steps.len() {
-        // a step begins with the scene with which the one before ended, unless it changes that
+        // a step begins with the final scene of the step before, unless it sets another one
         let [begin, end] = [document.begin(number), document.end(number)].map(|stage| {
             let same = last.take().filter(|last| last.is_of(&stage.scene, &stage.files));
             let new = || Rc::new(Subject::new(&stage.scene, &stage.files, &document.lesson, task).on(pool));
@@ -62,7 +62,7 @@ pub fn check_lesson(
     Ok(report)
 }
 
-/// The same for one step, by its number from 0, between two scenes.
+/// Checks one step, by its index, between two scenes.
 fn check_step(
     report: &mut LessonReport,
     document: &LessonDocument,
@@ -113,7 +113,7 @@ fn check_step(
     Ok(())
 }
 
-/// The bounds of a condition that turn its verdict where they are moved, a sentence each.
+/// The bounds of a condition whose change changes its verdict, one sentence each.
 fn turned_by(
     condition: &Condition,
     controls: &[String],

@@ -1,4 +1,4 @@
-//! A scene whose runs are made once, when a condition first asks for them.
+//! A scene whose runs are computed once, when a condition first needs them.
 
 use std::cell::{OnceCell, RefCell};
 use std::sync::Arc;
@@ -13,7 +13,7 @@ use crate::study::walk::walk_over;
 use crate::study::{Family, SummaryField, Task};
 use crate::system::threads::Pool;
 
-/// What is judged: a scene, and what it is compared with.
+/// A scene to which conditions apply.
 pub struct Subject<'a> {
     scene: &'a Scene,
     files: &'a Files,
@@ -28,7 +28,7 @@ pub struct Subject<'a> {
     turns: OnceCell<Turns>,
 }
 
-/// Values at which the motion begins to cross on the way up and ceases to on the way down.
+/// Values at which the motion starts to cross on the upward walk and stops crossing on the downward walk.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Turns {
     pub up_crosses_from: Option<f64>,
@@ -53,13 +53,13 @@ impl<'a> Subject<'a> {
         }
     }
 
-    /// The same with a mechanism that is built already.
+    /// The subject with a mechanism that has already been built.
     #[must_use]
     pub fn with_mechanism(self, mechanism: Arc<Mechanism>) -> Self {
         Self { mechanism: OnceCell::from(mechanism), ..self }
     }
 
-    /// The same with the threads of a pool to run it.
+    /// The subject with the threads of a pool for its runs.
     #[must_use]
     pub fn on(self, pool: Option<&'a Pool>) -> Self {
         Self { pool, ..self }
@@ -109,7 +109,7 @@ impl<'a> Subject<'a> {
         runs.map(Vec::as_slice)
     }
 
-    /// The runs at the scene's own value of the walked field, up to it and down to it.
+    /// The runs at the scene's own value of the walked field, reached on the upward and on the downward walk.
     pub(super) fn walked_to(&self) -> Result<&[Summary; 2], Unjudged> {
         once(&self.ends, || {
             let axis = self.axis()?;
@@ -128,7 +128,7 @@ impl<'a> Subject<'a> {
         })
     }
 
-    /// Where the motion begins and ceases to cross, over the whole walk.
+    /// The values at which the motion starts and stops crossing, over the whole walk.
     pub(super) fn turns(&self) -> Result<Turns, Unjudged> {
         let turns = once(&self.turns, || {
             let Axis { field, values, .. } = self.axis()?;
@@ -151,8 +151,8 @@ impl<'a> Subject<'a> {
         Axis::from_scene(axis, self.scene).map_err(|(_, problem)| Unjudged::of("walk", &problem))
     }
 
-    /// Runs the scene over two rows of values side by side, each run from where the one before ended, until
-    /// `each` returns false; returns the states that `each` made for each row.
+    /// Walks the scene over two sequences of values at the same time, each run from the final state of the
+    /// one before, until `each` returns false; returns the states that `each` accumulated for each sequence.
     fn walks<S: Default + Send>(
         &self,
         field: &str,

@@ -12,22 +12,22 @@ use crate::numeric::{alignment, short};
 use crate::scene::{Channel, Quantity, Scene, Timing};
 use numbers::{assembled, rms, statistics};
 
-/// A measured motion, and how it is laid over a run.
+/// A measured motion, and how it is aligned with a run.
 #[derive(Debug, Clone, Copy)]
 pub struct MeasuredMotion<'a> {
     /// Times in s, increasing.
     pub times: &'a [f64],
     /// Displacement, velocity, or acceleration of the base.
     pub channel: &'a Channel,
-    /// What is added to its values, SI: where the sensor has another zero.
+    /// Offset added to its values, SI, for a sensor with a different zero.
     pub offset: f64,
-    /// What its times are multiplied by.
+    /// Factor on its times.
     pub time_scale: f64,
-    /// What is added to the scaled times, in s; if `None`, it is found by least squares.
+    /// Shift of the scaled times in s; if `None`, it is found by least squares.
     pub shift: Option<f64>,
 }
 
-/// A measured motion beside the computed one.
+/// Comparison of a measured motion with the computed one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Comparison {
     /// `quantity,unit,measured,computed,difference,difference_percent`.
@@ -40,7 +40,7 @@ pub struct Comparison {
     pub computed: Vec<f64>,
     /// The shift in s.
     pub shift: f64,
-    /// RMS of the difference, SI, and in percent of the RMS of what was measured.
+    /// RMS of the difference in SI, and in percent of the measured RMS.
     pub rms: (f64, f64),
     /// Remarks, each a sentence.
     pub remarks: Vec<String>,
@@ -49,7 +49,7 @@ pub struct Comparison {
 /// Why there is nothing to compare.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum NoComparison {
-    /// It was told to stop.
+    /// It was cancelled.
     #[error("interrupted")]
     Cancelled,
     /// The record and the run have no time in common.
@@ -69,23 +69,24 @@ pub enum NoComparison {
     },
 }
 
-/// The most values that are compared to find the shift.
-const MOST: f64 = (1_u64 << 18) as f64;
+/// Largest number of values that are compared to find the shift.
+const MAX_COMPARED: f64 = (1_u64 << 18) as f64;
 
-/// Steps of Gauss and Newton by which a shift is made more accurate.
+/// Number of Gauss-Newton steps that refine a shift.
 const STEPS: usize = 8;
 
-/// Roundings of a time that was scaled and shifted.
+/// Rounding error of a scaled and shifted time, in units of the last place.
 const ROUNDINGS: f64 = 4.0;
 
-/// Which measured samples lie within the run, their times there, and the run at them.
-type Laid = (Range<usize>, Vec<f64>, Vec<Sample>);
+/// Range of the measured samples within the run, their times in the run, and the computed samples at these
+/// times.
+type Aligned = (Range<usize>, Vec<f64>, Vec<Sample>);
 
-/// Lays a measured motion over the run of `model`, which is that of `scene`.
+/// Compares a measured motion with the run of `model`, the model of `scene`.
 ///
-/// Without a given shift it is the one with the least mean square difference, where at least half of the
-/// shorter of record and run overlaps: first on an even grid, then, for a displacement, by Gauss-Newton steps
-/// on the run itself, whose velocity is the derivative.
+/// If no shift is given, it is the one with the smallest mean square difference for which at least half of
+/// the shorter of record and run overlaps. It is searched on an even grid first; for a displacement it is
+/// then refined by Gauss-Newton steps on the run itself, whose velocity is the derivative.
 pub fn compare(
     scene: &Scene,
     model: &Model,
@@ -111,7 +112,7 @@ pub fn compare(
     let mut shift = motion.shift.unwrap_or(0.0);
     if motion.shift.is_none() {
         let length = timing.span.1 - timing.span.0;
-        let step = timing.step.max(model.duration().max(length) / MOST);
+        let step = timing.step.max(model.duration().max(length) / MAX_COMPARED);
         let even = |length: f64| (0..=(length / step) as u32).map(move |k| f64::from(k) * step);
         let computed: Vec<f64> = run(&even(model.duration()).collect::<Vec<_>>())?.iter().map(of).collect();
         let measured: Vec<f64> = even(length).map(|t| between(&scaled, &values, timing.span.0 + t)).collect();
@@ -123,8 +124,8 @@ pub fn compare(
             }
         }
     }
-    let at = |shift: f64| -> Result<Laid, NoComparison> {
-        // a sample at the begin or the end of the run is within it, however its time was rounded
+    let at = |shift: f64| -> Result<Aligned, NoComparison> {
+        // a sample at the start or the end of the run counts as within it despite rounding of its time
         let (first, last) = timing.span;
         let end = model.duration();
         let rounding = ROUNDINGS * f64::EPSILON * end.max(first.abs()).max(last.abs()).max(shift.abs());
@@ -175,14 +176,14 @@ pub fn compare(
     Ok(Comparison { table, times, measured, computed, shift, rms, remarks })
 }
 
-/// The value of a record at a time: linear between its samples, that of the end beyond it.
+/// The value of a record at a time, by linear interpolation, and constant beyond its ends.
 fn between(times: &[f64], values: &[f64], t: f64) -> f64 {
     let after = times.partition_point(|time| *time <= t).clamp(1, times.len() - 1);
     let share = ((t - times[after - 1]) / (times[after] - times[after - 1])).clamp(0.0, 1.0);
     values[after - 1] + share * (values[after] - values[after - 1])
 }
 
-/// A measured force beside the computed one, at the measured positions on the force curve.
+/// Comparison of a measured force with the computed one at the measured positions on the force curve.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ForceComparison {
     /// `quantity,unit,measured,computed,difference,difference_percent`.
@@ -193,9 +194,9 @@ pub struct ForceComparison {
     pub measured: Vec<f64>,
     /// The computed one.
     pub computed: Vec<f64>,
-    /// RMS of the difference in N, and in percent of the RMS of what was measured.
+    /// RMS of the difference in N, and in percent of the measured RMS.
     pub rms: (f64, f64),
-    /// Where the two differ most: the position in m, and computed less measured there in N.
+    /// Position in m of the largest difference, and the difference (computed minus measured) in N.
     pub largest: (f64, f64),
     /// Remarks, each a sentence.
     pub remarks: Vec<String>,
@@ -215,7 +216,7 @@ pub struct OffTheCurve {
     domain: (String, String),
 }
 
-/// Compares the force `force` in N that was measured at `x` in m with the one that holds the mass there.
+/// Compares the force `force` in N measured at `x` in m with the computed holding force.
 pub fn compare_force(
     mechanism: &Mechanism,
     x: &[f64],

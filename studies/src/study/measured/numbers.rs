@@ -1,11 +1,12 @@
-//! Numbers in which a measured motion differs from the computed one.
+//! Characteristic numbers of a measured and of the computed motion.
 
 use crate::dynamics::Model;
 use crate::scene::{Excitation, Quantity, Scene};
 use crate::study::identify::{Turn, noise, reach, turns};
 use crate::study::{Table, Values};
 
-/// The part of the way between the stops within which a turning point is an impact.
+/// Distance from a stop within which a turning point counts as an impact, as a share of the distance of the
+/// stops.
 const AT_STOP: f64 = 0.1;
 
 /// A row: quantity, unit, measured, computed.
@@ -75,12 +76,12 @@ pub(super) fn assembled(rows: &[Row], rms_difference: f64, of_measured: f64) -> 
         .each("difference_percent", rows, percent)
 }
 
-/// Where a crossing counts in m, as in a summary; `None` without a barrier.
+/// Displacement in m at which a crossing counts, as in a summary; `None` without a barrier.
 fn barrier(model: &Model) -> Option<f64> {
     model.crossing_level().filter(|_| model.mechanism().landscape.barrier.is_some())
 }
 
-/// The first crossing of the barrier: when, and of an amplitude ramp at which amplitude.
+/// The first crossing of the barrier: its time and, for an amplitude ramp, its amplitude.
 fn crossing(scene: &Scene, model: &Model, times: &[f64], measured: &[f64], computed: &[f64]) -> Vec<Row> {
     let Some(barrier) = barrier(model) else { return Vec::new() };
     let back = 0.5 * reach(measured, noise(measured));
@@ -105,15 +106,15 @@ fn crossing(scene: &Scene, model: &Model, times: &[f64], measured: &[f64], compu
     rows
 }
 
-/// A rebound: when the mass struck, and how far it went back.
+/// A rebound: the time of the impact, and its height.
 #[derive(Clone, Copy)]
 struct Rebound {
     t: f64,
     height: f64,
 }
 
-/// Heights of the first rebounds from each stop after a swing from the other side of the barrier, of which
-/// each measured one is compared with the computed one nearest in time.
+/// Heights of the first rebound from each stop after a motion from the other side of the barrier. Each
+/// measured one is compared with the computed one nearest in time.
 fn rebounds(model: &Model, times: &[f64], measured: &[f64], computed: &[f64]) -> Vec<Row> {
     let Some(stops) = model.stops() else { return Vec::new() };
     let sides = [stops.left.map(|stop| stop.x), stops.right.map(|stop| stop.x)];
@@ -155,7 +156,8 @@ fn rebounds(model: &Model, times: &[f64], measured: &[f64], computed: &[f64]) ->
     rows
 }
 
-/// The heights of rebounds nearest in time, and nearer than half the shortest time between measured ones.
+/// Pairs of heights of the rebounds nearest in time, if closer than half the shortest interval of measured
+/// ones.
 fn paired(measured: &[Rebound], computed: &[Rebound]) -> Vec<(f64, f64)> {
     let apart = measured.windows(2).map(|pair| pair[1].t - pair[0].t).fold(f64::INFINITY, f64::min);
     let partner = |rebound: &Rebound| {

@@ -1,4 +1,5 @@
-//! Points of a branch of periodic motions, by Newton's method across it (pseudo-arclength; Keller 1977).
+//! Points of a branch of periodic orbits, by Newton's method in planes across the branch (pseudo-arclength
+//! continuation; Keller 1977).
 
 use nalgebra::{Matrix3, Vector2, Vector3};
 
@@ -6,40 +7,44 @@ use super::{Orbit, allowed, map_of};
 use crate::dynamics::{Event, EventKind, Jacobian, Outcome, Passage, Side, StroboscopicMap};
 use crate::study::{Family, State};
 
-const MOST_STEPS: usize = 24;
+/// Largest number of steps of Newton's method.
+const MAX_STEPS: usize = 24;
 
-/// Half the distance over which the map is differenced by the field, as a share of its range: the error of
-/// the quotient grows with the square of the distance, that of the map's rounding with its inverse. It is
-/// less where the map stretches by more than `STRETCHED`, and where the motions beside it do not strike all
-/// stops as hard: near a touch the map changes as the root of the distance.
+/// Half the step of the central difference of the map by the field, as a share of its range. The truncation
+/// error grows with the square of the step, the effect of rounding with its inverse.
 const DIFFERENCE: f64 = 3e-8;
-const STRETCHED: f64 = 1e3;
-const AS_HARD: f64 = 0.1;
-const SMALLEST_DIFFERENCE: f64 = 1e-14;
+/// Stretching of the map by the state above which a smaller step is used.
+const MAX_STRETCH: f64 = 1e3;
+/// Relative difference of impact speeds between both sides above which a smaller step is used: near a grazing
+/// contact the map changes like the square root of the distance.
+const SAME_SPEED: f64 = 0.1;
+/// Smallest half step.
+const MIN_DIFFERENCE: f64 = 1e-14;
 
-/// The time in forcing periods up to which an event at a stop is near, and the phases that are looked at.
+/// Time in forcing periods below which an event at a stop is too near to a strobe.
 const NEAR_AN_EVENT: f64 = 0.02;
-const CHOICES: u32 = 64;
+/// Number of phases among which that farthest from all events is chosen.
+const PHASES: u32 = 64;
 
-/// Parts of a forcing period at which a motion is compared with another.
+/// Parts of a forcing period at which two motions are compared.
 const QUARTERS: [f64; 3] = [0.25, 0.5, 0.75];
 
-/// The largest correction of a predicted point.
-const LARGEST: f64 = 0.2;
+/// Largest correction of a predicted point, in the units.
+const MAX_CORRECTION: f64 = 0.2;
 
-/// The change of a point by the map, in its units, that is close to none; and how good all points are.
+/// Residual or step, in the units, below which Newton's method ends as soon as steps no longer shrink.
 const CLOSE: f64 = 1e-10;
+/// Accuracy of the points of a branch.
 const GOOD: Accuracy = Accuracy { change: 1e-12, step: 1e-10 };
 
-/// Where Newton's method ends: at a change of the point or a step, in the units, or where steps stop
-/// shrinking.
+/// Residual and step, in the units, below each of which Newton's method ends at once.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Accuracy {
     pub change: f64,
     pub step: f64,
 }
 
-/// What a point's coordinates are measured in: length in m, speed in m/s, and the range of the field.
+/// Units of the coordinates of a point: length in m, speed in m/s, and the range of the field.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Units {
     pub length: f64,
@@ -47,10 +52,10 @@ pub(super) struct Units {
     pub range: f64,
 }
 
-/// A periodic motion on a branch.
+/// A periodic orbit on a branch.
 #[derive(Debug, Clone)]
 pub(super) struct Point {
-    /// Displacement, velocity and field in their units.
+    /// Displacement, velocity and field in the units.
     pub at: Vector3<f64>,
     pub value: f64,
     pub orbit: Orbit,
@@ -62,35 +67,35 @@ pub(super) struct Point {
 }
 
 impl Point {
-    /// Whether the mass rests on its way and so forgets its past: a motion that depends on the field alone.
+    /// Whether the mass rests during the motion, which then no longer depends on its initial state.
     pub fn forgets(&self) -> bool {
         self.orbit.jacobian.rows == [[0.0; 2]; 2]
     }
 }
 
-/// Two equations at a guess of three numbers, with what belongs to them.
+/// Two equations in three unknowns, evaluated at a guess.
 pub(super) struct Equations<T> {
-    /// Where they are looked at: the guess, or what of it is allowed.
+    /// Where they are evaluated: at the guess, or at the nearest admissible point.
     pub at: Vector3<f64>,
-    /// What is to be 0.
+    /// Residuals, which must become 0.
     pub off: [f64; 2],
-    /// Its derivatives by the three numbers.
+    /// Derivatives of the residuals by the unknowns.
     pub slopes: [Vector3<f64>; 2],
     pub of: T,
 }
 
-/// The solution of two equations in the plane through a guess of three numbers across a direction, by
-/// Newton's method, with the length of the step that was left; `None` if it does not converge.
+/// The solution of two equations in three unknowns in the plane through a guess and normal to `across`, by
+/// Newton's method, with the length of the last step; `None` if it does not converge.
 pub(super) fn newton<T>(
     guess: Vector3<f64>,
     across: &Vector3<f64>,
     accuracy: Accuracy,
-    look: impl Fn(&Vector3<f64>) -> Option<Equations<T>>,
+    evaluate: impl Fn(&Vector3<f64>) -> Option<Equations<T>>,
 ) -> Option<(T, Vector3<f64>, f64)> {
     let mut at = guess;
     let mut best = f64::INFINITY;
-    for _ in 0..MOST_STEPS {
-        let equations = look(&at)?;
+    for _ in 0..MAX_STEPS {
+        let equations = evaluate(&at)?;
         at = equations.at;
         let off = equations.off;
         let [first, second] = equations.slopes.map(|row| row.transpose());
@@ -103,7 +108,7 @@ pub(super) fn newton<T>(
         if exact || length <= accuracy.step || (close || length <= CLOSE) && length >= 0.5 * best {
             return Some((equations.of, at, length));
         }
-        if !(length.is_finite() && (at + step - guess).amax() <= LARGEST) {
+        if !(length.is_finite() && (at + step - guess).amax() <= MAX_CORRECTION) {
             return None;
         }
         best = best.min(length);
@@ -112,10 +117,11 @@ pub(super) fn newton<T>(
     None
 }
 
-/// What all points of a branch share.
+/// Data that all points of a branch share.
 ///
-/// A point is a fixed point of the corrector's map: for motions that are their own mirror images the mirrored
-/// map over half a period. Its multipliers are roots of those over the period; -1 breaks the symmetry.
+/// A point is a fixed point of the corrector's map: for motions that equal their mirror images it is the
+/// mirrored map over half a period. Its multipliers are roots of those over the period; -1 breaks the
+/// symmetry.
 pub(super) struct Corrector<'a> {
     pub family: &'a Family<'a>,
     pub phase: f64,
@@ -125,23 +131,23 @@ pub(super) struct Corrector<'a> {
 }
 
 impl Corrector<'_> {
-    /// The map at a value of the field; `None` if that is no scene.
+    /// The stroboscopic map at a value of the field; `None` if the value makes no valid scene.
     pub fn map(&self, value: f64) -> Option<StroboscopicMap> {
         map_of(&self.family.model(value).ok()?, self.phase)
     }
 
-    /// Forcing periods over which the corrector's map goes.
+    /// Number of forcing periods of the map of the corrector.
     pub fn flight(&self) -> f64 {
         f64::from(self.periods) * if self.mirrored { 0.5 } else { 1.0 }
     }
 
-    /// A state after that many forcing periods as the corrector's map has it.
+    /// A state after these forcing periods, mirrored if the map is.
     pub fn image(&self, (x, v): State) -> State {
         if self.mirrored { (-x, -v) } else { (x, v) }
     }
 
     /// Difference of a motion from its mirror image half its period later, relative to the scales; `None` if
-    /// the mirror image is no motion of the scene, or the motion ends early.
+    /// the mirror image is not a motion of the scene, or the motion ends early.
     pub fn asymmetry(map: &StroboscopicMap, orbit: &Orbit) -> Option<Vector2<f64>> {
         let model = map.model();
         if !model.mirrors_in_half_a_period() || orbit.period.is_multiple_of(2) {
@@ -156,7 +162,7 @@ impl Corrector<'_> {
         (half.outcome == Outcome::Done).then_some(off)
     }
 
-    /// The same motion at another phase of the drive; `None` if it ends early.
+    /// The orbit at another phase of the drive; `None` if it ends early.
     pub fn at_phase(&self, orbit: &Orbit, value: f64, phase: f64) -> Option<Orbit> {
         if phase == self.phase {
             return Some(orbit.clone());
@@ -165,8 +171,9 @@ impl Corrector<'_> {
         (passage.outcome == Outcome::Done).then(|| Orbit { state: passage.state, ..orbit.clone() })
     }
 
-    /// How much later in forcing periods states should be taken, where an event at a stop, or one of the
-    /// times `also` in forcing periods, is near to where they are: as far from all of them as can be.
+    /// The shift in forcing periods to the phase that is farthest from all events at stops and from the times
+    /// `also` (in forcing periods); `None` if the present phase is far enough from them, or if no other one
+    /// is much better.
     pub fn clear_phase(&self, point: &Point, also: &[f64]) -> Option<f64> {
         let map = self.map(point.value)?;
         let whole = f64::from(self.periods);
@@ -180,7 +187,7 @@ impl Corrector<'_> {
         if room(0.0) > NEAR_AN_EVENT {
             return None;
         }
-        let choices = (1..CHOICES).map(|choice| f64::from(choice) / f64::from(CHOICES));
+        let choices = (1..PHASES).map(|choice| f64::from(choice) / f64::from(PHASES));
         let best = choices.max_by(|a, b| room(*a).total_cmp(&room(*b)))?;
         (room(best) > 2.0 * room(0.0)).then_some(best)
     }
@@ -211,19 +218,19 @@ impl Corrector<'_> {
         (at.x * self.units.length, at.y * self.units.speed)
     }
 
-    /// Change from one state to another in the units.
+    /// Difference of two states in the units.
     pub fn change(&self, from: State, to: State) -> [f64; 2] {
         [(to.0 - from.0) / self.units.length, (to.1 - from.1) / self.units.speed]
     }
 
-    /// The derivative of the map by the field at a passage from a state, in the units; from one side where
-    /// the other is no scene. `by_state` are its derivatives by the state.
+    /// The derivative of the map by the field for a passage from a state, in the units; one-sided if one side
+    /// is not a valid scene. `by_state` are the derivatives by the state.
     fn by_field(&self, state: State, passage: &Passage, by_state: &Jacobian, value: f64) -> Option<[f64; 2]> {
         let stretch = match passage.strikes() {
             false => self.slopes(by_state, [0.0; 2]).iter().map(|row| row.amax()).fold(0.0, f64::max),
             true => 0.0,
         };
-        let mut step = DIFFERENCE * (STRETCHED / stretch).min(1.0) * self.units.range;
+        let mut step = DIFFERENCE * (MAX_STRETCH / stretch).min(1.0) * self.units.range;
         let map = |value: f64| {
             let passage = self.map(value)?.pass_between(state, (0.0, self.flight()));
             (passage.outcome == Outcome::Done).then_some((passage, value))
@@ -236,7 +243,7 @@ impl Corrector<'_> {
                 (None, None) => return None,
             };
             let alike = [&above, &below].iter().all(|side| strike_alike(passage, &side.0));
-            if alike || step < SMALLEST_DIFFERENCE * self.units.range {
+            if alike || step < MIN_DIFFERENCE * self.units.range {
                 let over = (above.1 - below.1) / self.units.range;
                 let [above, below] = [above, below].map(|side| self.change(state, self.image(side.0.state)));
                 return Some([(above[0] - below[0]) / over, (above[1] - below[1]) / over]);
@@ -245,7 +252,7 @@ impl Corrector<'_> {
         }
     }
 
-    /// Derivatives of the change of a state by the map, by the coordinates.
+    /// Derivatives of the residual, the change of a state by the map, by the coordinates.
     fn slopes(&self, by_state: &Jacobian, by_field: [f64; 2]) -> [Vector3<f64>; 2] {
         let Units { length, speed, .. } = self.units;
         let [[a, b], [c, d]] = by_state.rows;
@@ -253,10 +260,10 @@ impl Corrector<'_> {
         [Vector3::new(a - 1.0, b, by_field[0]), Vector3::new(c, d - 1.0, by_field[1])]
     }
 
-    /// The point of the branch in the plane through `guess` across a direction, if the method converges.
+    /// The point of the branch in the plane through `guess` and normal to `across`, if the method converges.
     pub fn correct(&self, guess: Vector3<f64>, across: &Vector3<f64>) -> Option<Point> {
-        let look = |at: &Vector3<f64>| {
-            let point = self.look(at)?;
+        let evaluate = |at: &Vector3<f64>| {
+            let point = self.evaluate(at)?;
             Some(Equations {
                 at: point.at,
                 off: self.change(point.orbit.state, point.orbit.passage.state),
@@ -264,10 +271,10 @@ impl Corrector<'_> {
                 of: point,
             })
         };
-        newton(guess, across, GOOD, look).map(|(point, ..)| point)
+        newton(guess, across, GOOD, evaluate).map(|(point, ..)| point)
     }
 
-    /// The direction of the branch at a point, on the side of `along`.
+    /// The tangent of the branch at a point, with a positive component along `along`.
     pub fn tangent(&self, point: &Point, along: &Vector3<f64>) -> Option<Vector3<f64>> {
         let [first, second] = self.slopes(&point.by_state, point.by_field).map(|row| row.transpose());
         let matrix = Matrix3::from_rows(&[first, second, along.transpose()]);
@@ -276,8 +283,8 @@ impl Corrector<'_> {
         tangent.iter().all(|part| part.is_finite()).then_some(tangent)
     }
 
-    /// The motion through a state, which need not come back; `None` if it ends early or has no derivatives.
-    pub fn look(&self, at: &Vector3<f64>) -> Option<Point> {
+    /// The motion through a state, which need not be periodic; `None` if it ends early or has no derivatives.
+    pub fn evaluate(&self, at: &Vector3<f64>) -> Option<Point> {
         let value = at.z * self.units.range;
         let map = self.map(value)?;
         let state = allowed(map.model(), self.state(at));
@@ -298,8 +305,8 @@ impl Corrector<'_> {
     }
 }
 
-/// Whether two motions from one state strike the stops in the same order and all but as hard; those that
-/// rest, of whose impacts the number that is listed means nothing, count as alike.
+/// Whether two motions from one state strike the stops in the same order at similar speeds. Motions that rest
+/// count as alike, since the number of their listed impacts is arbitrary.
 fn strike_alike(a: &Passage, b: &Passage) -> bool {
     fn impacts(passage: &Passage) -> impl Iterator<Item = (Side, f64)> {
         let hits = |event: &&Event| event.kind == EventKind::Impact;
@@ -308,6 +315,7 @@ fn strike_alike(a: &Passage, b: &Passage) -> bool {
     if a.rests() > 0 || b.rests() > 0 {
         return true;
     }
-    let as_hard = |(a, b): ((Side, f64), (Side, f64))| a.0 == b.0 && (a.1 - b.1).abs() <= AS_HARD * a.1.abs();
+    let as_hard =
+        |(a, b): ((Side, f64), (Side, f64))| a.0 == b.0 && (a.1 - b.1).abs() <= SAME_SPEED * a.1.abs();
     impacts(a).count() == impacts(b).count() && impacts(a).zip(impacts(b)).all(as_hard)
 }

@@ -1,4 +1,4 @@
-//! Events of a branch, and those between two points of a smooth map, located to some 1e-9 of the range.
+//! Events of a branch, located between two points of it to about 1e-9 of the range.
 
 use nalgebra::Vector3;
 
@@ -6,44 +6,46 @@ use super::SAME;
 use super::corrector::{Corrector, Point};
 
 words! {
-    /// What happens to a periodic motion at a value of the field.
+    /// A bifurcation or grazing of a periodic orbit at a value of the field.
     BranchEvent {
         /// The branch turns back: a multiplier passes through 1.
         Fold = "fold",
-        /// A multiplier passes through -1: a motion of twice the period begins.
+        /// A multiplier passes through -1: an orbit of twice the period branches off.
         Flip = "flip",
-        /// A multiplier passes through 1 at a motion that is its own mirror image: a pair of motions that are
-        /// not begins. A branch of such motions turns there and goes back as that of their mirror images.
+        /// A multiplier of a symmetric orbit passes through 1: a pair of asymmetric orbits branches off. A
+        /// branch of asymmetric orbits turns there and returns as that of their mirror images.
         Symmetry = "symmetry",
-        /// The motion begins or ceases to touch a stop.
+        /// The orbit begins or ceases to touch a stop.
         Grazing = "grazing",
     }
 }
 
-/// How close in the units of the branch an event is located where rounding allows it, and how far on both
-/// sides of it what is 0 there must have different signs.
+/// Accuracy of an event in the units of the branch, if rounding allows it.
 const LOCATED: f64 = 1e-12;
+/// Distance on both sides of an event at which the test function must have different signs.
 const CHECKED: f64 = 1e-9;
 
-/// The distance of a multiplier from 1 or -1 that is left there: where it changes fast, no less is known.
+/// Largest distance of a multiplier from 1 or -1 at an event; it cannot be smaller where the multiplier
+/// changes fast.
 const AT_UNIT: f64 = 1e-6;
 
-/// Cosine of the angle below whose negative two differences from the mirror image are opposite.
+/// Two differences from the mirror image are opposite if the cosine of their angle is below minus this value.
 const OPPOSITE: f64 = 0.5;
 
-/// Halvings of the step between two points, in units of which a breaking of the symmetry is bracketed.
+/// Number of halvings of the step between two points in the search for a breaking of the symmetry.
 const HALVINGS: i32 = 20;
 
-const MOST_POINTS: usize = 80;
+/// Largest number of evaluations for one event.
+const MAX_EVALUATIONS: usize = 80;
 
-/// Whether two motions touch the stops in another order or number.
+/// Whether two motions touch the stops in a different order or number.
 pub(super) fn differ(a: &Point, b: &Point) -> bool {
     let contacts = |point: &Point| {
         let all = point.orbit.contacts().into_iter();
         all.map(|event| (event.kind, event.side)).collect::<Vec<_>>()
     };
     let (a, b) = (contacts(a), contacts(b));
-    // they begin anywhere on the motion
+    // the two lists may begin at different contacts
     a.len() != b.len() || !a.is_empty() && !(0..a.len()).any(|from| a[from..].iter().chain(&a[..from]).eq(&b))
 }
 
@@ -52,8 +54,8 @@ fn characteristic(point: &Point, at: f64) -> f64 {
     1.0 - at * point.by_state.trace() + point.determinant
 }
 
-/// The events between two points that follow each other, in order, each with its point; `along` and `onward`
-/// are the directions of the branch there. None where the place of a change was not found.
+/// The events between two consecutive points in order, each with its point; `along` and `onward` are the
+/// tangents of the branch there. `None` if a change could not be located.
 pub(super) fn between(
     corrector: &Corrector,
     from: &Point,
@@ -63,7 +65,7 @@ pub(super) fn between(
 ) -> Option<Vec<(BranchEvent, Point)>> {
     let passes = |at: f64| characteristic(from, at) * characteristic(to, at) < 0.0;
     let mut found = Vec::new();
-    // a multiplier of the map passes through 1 where the branch turns back, and nowhere else
+    // a multiplier of the map passes through 1 only where the branch turns back
     let turns = along.z * onward.z < 0.0;
     if let Some((share, point)) = symmetry_breaking(corrector, from, to) {
         found.push((share, BranchEvent::Symmetry, point));
@@ -85,9 +87,9 @@ pub(super) fn between(
     Some(found.into_iter().map(|(_, event, point)| (event, point)).collect())
 }
 
-/// The motion that is its own mirror image at which a branch of motions that are not turns back as that of
-/// their mirror images, if it does. The map over the period is singular there, so the motion is found by the
-/// mirrored map over half of it.
+/// The symmetric orbit at which a branch of asymmetric orbits turns back as that of their mirror images, if
+/// it does. The map over the period is singular there, so the orbit is computed with the mirrored map over
+/// half a period.
 fn symmetry_breaking(corrector: &Corrector, from: &Point, to: &Point) -> Option<(f64, Point)> {
     let asymmetry = |point: &Point| {
         let map = corrector.map(point.value)?;
@@ -122,8 +124,8 @@ fn is_at(point: &Point, unit: f64) -> bool {
     multipliers.iter().any(|multiplier| (multiplier.re - unit).hypot(multiplier.im) <= AT_UNIT)
 }
 
-/// Where a quantity of different signs at two points of the branch is 0, as a share of their distance, by the
-/// secant method kept in its bracket (Illinois); `None` if the signs just beside it are equal.
+/// The zero of a quantity with different signs at two points of the branch, as a share of their distance, by
+/// the Illinois method; `None` if the signs just beside it are equal.
 fn root(
     corrector: &Corrector,
     (from, to): (&Point, &Point),
@@ -136,9 +138,9 @@ fn root(
     let ends = (below, above);
     let mut kept = 0_i8;
     let mut last: Option<(f64, Point)> = None;
-    for _ in 0..MOST_POINTS {
+    for _ in 0..MAX_EVALUATIONS {
         let middle = low + (high - low) * (below / (below - above)).clamp(1e-9, 1.0 - 1e-9);
-        // where the method does not converge right there, it may do so beside it
+        // if the corrector does not converge right there, it may converge beside it
         let beside = [middle, 0.5 * (low + high), low + 0.3 * (high - low), low + 0.7 * (high - low)];
         let (middle, point) = beside.into_iter().find_map(|share| at(share).map(|point| (share, point)))?;
         let value = of(&point);

@@ -1,12 +1,12 @@
-//! Periodic motions that touch a stop without speed, and those beside them on both sides.
+//! Periodic orbits that graze a stop, and the orbits near them on both sides of the grazing.
 //!
-//! A motion that turns back at the time t, a gap g before a stop at s, leaves (s - g, 0) then and comes back
-//! to it a period later. One that strikes the stop with a speed u leaves (s, -e u) and comes to (s, u). Made
-//! as if the stop were not there near t, both flights are smooth functions of t, of g or u, and of the field,
-//! and where g or u is 0 they are the same motion: the one that grazes the stop. So Newton's method finds it
-//! from either side, and the two stretches of the branch that meet in it begin there, although the
-//! stroboscopic map changes as the root of the distance from it (Nordmark 1991). Of a motion that is its own
-//! mirror image half a period is flown, so that it touches both stops at once.
+//! An orbit that turns back at the time t, at a gap g before a stop at s, leaves the state (s - g, 0) and
+//! returns to it one period later. An orbit that strikes the stop at a speed u leaves (s, -e u) and returns
+//! to (s, u). If the stop is ignored near t, both flights are smooth functions of t, of g or u, and of the
+//! field, and for g = 0 or u = 0 they are the same orbit, which grazes the stop. So Newton's method finds it
+//! from either side, and the two parts of the branch that meet there can be started from it, although the
+//! stroboscopic map changes like the square root of the distance from it (Nordmark 1991). For a symmetric
+//! orbit half a period is computed, so that it grazes both stops at once.
 
 use std::ops::Range;
 
@@ -17,31 +17,33 @@ use super::{Orbit, map_of};
 use crate::dynamics::{Event, EventKind, Jacobian, Miss, Outcome, Passage, Side, StroboscopicMap};
 use crate::study::State;
 
-/// The share of the length scale that a gap is below where its stop may be touched near by.
+/// Largest gap at which a stop may be grazed nearby, as a share of the length scale.
 const SMALL_GAP: f64 = 0.1;
 
-/// The most turns and impacts of a motion that are looked at, the smallest gaps and speeds first.
-const MOST_LOOKED_AT: usize = 4;
+/// Largest number of turning points and impacts of an orbit that are tried, those with the smallest gaps and
+/// speeds first.
+const MAX_CANDIDATES: usize = 4;
 
-/// Half the distance over which a flight is differenced, in the units; few digits are needed.
+/// Half the step of the central difference of a flight, in the units; few digits are needed.
 const DIFFERENCE: f64 = 1e-7;
 
-/// The gap or speed in the units at which the rate is measured at which motions depart from the grazing one.
+/// Gap or speed in the units at which the distance from the grazing orbit is measured first.
 const FIRST: f64 = 1e-7;
 
-/// The largest gap or speed in the units of a motion beside it.
+/// Largest gap or speed, in the units, of an orbit near the grazing one.
 const LARGEST: f64 = 0.3;
 
-/// Shares of the distance that was asked for at which a motion beside it may be.
+/// Range of the distance from the grazing orbit, relative to the requested one.
 const DISTANCES: Range<f64> = 0.3..3.0;
 
-/// To rounding.
+/// Accuracy that is limited by rounding only.
 const FINEST: Accuracy = Accuracy { change: 0.0, step: 1e-15 };
 
-/// How exact the grazing motion is in the units: at the stop, after its period, and in the last step.
+/// Accuracy of the grazing orbit in the units: of the state at the stop, of the return after a period, and of
+/// the last step.
 pub(super) const EXACT: f64 = 1e-9;
 
-/// On which side of a grazing a motion is.
+/// The side of a grazing on which an orbit lies.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Beside {
     Missing,
@@ -57,15 +59,16 @@ impl Beside {
     }
 }
 
-/// A motion that touches a stop without speed.
+/// An orbit that touches a stop without speed.
 pub(super) struct Grazing<'a> {
     corrector: &'a Corrector<'a>,
     side: Side,
-    /// Times in forcing periods after a strobe around which stops are left out, with half the length of each.
+    /// Times in forcing periods after a strobe around which stops are ignored, with half the length of each
+    /// interval.
     open: Vec<(f64, f64)>,
     /// Time in forcing periods after a strobe, 0, and field in its unit.
     solution: Vector3<f64>,
-    /// The motion, with the derivatives of the side that misses the stop.
+    /// The orbit, with the derivatives on the side that misses the stop.
     pub point: Point,
 }
 
@@ -75,7 +78,8 @@ struct Maps {
     without: StroboscopicMap,
 }
 
-/// The motions that graze a stop near one that turns back or strikes gently, and on which side that one is.
+/// The grazing orbits near an orbit that turns back close to a stop or strikes it gently, and the side on
+/// which that orbit lies.
 pub(super) fn grazings<'a>(corrector: &'a Corrector<'a>, near: &Point) -> Vec<(Grazing<'a>, Beside)> {
     let contacts = near.orbit.contacts();
     if near.orbit.passage.misses.is_empty() && contacts.is_empty() {
@@ -93,16 +97,16 @@ pub(super) fn grazings<'a>(corrector: &'a Corrector<'a>, near: &Point) -> Vec<(G
     let impacts = impacts.map(|event| (time(event.t), event.side, speed(event), Beside::Touching));
     // times, sides, gaps or speeds
     let mut turns: Vec<(f64, Side, f64, Beside)> = misses.clone().chain(impacts).collect();
-    // a gap goes as the square of a speed
+    // a gap scales like the square of a speed
     let depth = |(_, _, size, beside): &(f64, Side, f64, Beside)| match beside {
         Beside::Missing => *size,
         Beside::Touching => size * size,
     };
     let flight = corrector.flight();
-    // of a motion that is its own mirror image the first half has all
+    // the first half of a symmetric orbit contains all contacts
     turns.retain(|turn| turn.0 < flight);
     turns.sort_by(|a, b| depth(a).total_cmp(&depth(b)));
-    turns.truncate(MOST_LOOKED_AT);
+    turns.truncate(MAX_CANDIDATES);
     let apart = |a: f64, b: f64| {
         let far = (a - b).rem_euclid(flight);
         far.min(flight - far)
@@ -128,7 +132,7 @@ impl Maps {
 }
 
 impl Grazing<'_> {
-    /// The same at the motion that grazes; `None` if Newton's method does not find it near by.
+    /// The grazing orbit near this guess; `None` if Newton's method does not find it.
     fn solved(mut self) -> Option<Self> {
         let guess = self.solution;
         let (solution, left) = self.solve(guess, Beside::Missing)?;
@@ -144,19 +148,19 @@ impl Grazing<'_> {
         Some(self)
     }
 
-    /// Its times in forcing periods after a strobe.
+    /// The times of the grazing in forcing periods after a strobe.
     pub fn times(&self) -> [f64; 2] {
         [self.solution.x, self.solution.x + self.corrector.flight()]
     }
 
-    /// Place in m and restitution of the stop.
+    /// Position in m and restitution of the stop.
     fn stop(&self, maps: &Maps) -> Option<(f64, f64)> {
         let pair = maps.with.model().stops()?;
         let stop = if self.side == Side::Left { pair.left } else { pair.right }?;
         Some((stop.x, stop.restitution))
     }
 
-    /// Parts of a time, each with whether there are stops.
+    /// A span of time in parts, each with a flag whether it has stops.
     fn parts(&self, (from, to): (f64, f64)) -> Vec<(bool, (f64, f64))> {
         const ROUNDING: f64 = 1e-9;
         let mut parts = Vec::new();
@@ -179,7 +183,7 @@ impl Grazing<'_> {
         parts
     }
 
-    /// The state in m and m/s to which a motion comes over a time without stops near the grazing.
+    /// The state in m and m/s after a span of time, with stops ignored near the grazing.
     fn fly(&self, maps: &Maps, state: State, span: (f64, f64)) -> Option<State> {
         self.parts(span).into_iter().try_fold(state, |state, (stops, span)| {
             let map = if stops { &maps.with } else { &maps.without };
@@ -188,7 +192,7 @@ impl Grazing<'_> {
         })
     }
 
-    /// Displacement and velocity at the grazing, and those to which they must come after the flight.
+    /// The state that leaves the grazing, and the state that must be reached after the flight.
     fn ends(&self, maps: &Maps, size: f64, beside: Beside) -> Option<[State; 2]> {
         let (stop, restitution) = self.stop(maps)?;
         let units = &self.corrector.units;
@@ -202,14 +206,14 @@ impl Grazing<'_> {
         })
     }
 
-    /// What is off after a flight from a time with a gap or speed, in the units.
+    /// The residual after a flight that begins at a time with a gap or speed, in the units.
     fn off(&self, maps: &Maps, at: &Vector3<f64>, beside: Beside) -> Option<[f64; 2]> {
         let [start, back] = self.ends(maps, at.y, beside)?;
         let end = self.fly(maps, start, (at.x, at.x + self.corrector.flight()))?;
         Some(self.corrector.change(back, self.corrector.image(end)))
     }
 
-    /// The motion with a gap or speed in the units, from a guess, and the step that was left.
+    /// The orbit with a gap or speed in the units, from a guess, and the length of the last step.
     fn solve(&self, guess: Vector3<f64>, beside: Beside) -> Option<(Vector3<f64>, f64)> {
         let look = |at: &Vector3<f64>| {
             let maps = |z: f64| Maps::of(self.corrector, z * self.corrector.units.range);
@@ -229,14 +233,14 @@ impl Grazing<'_> {
             };
             let by_time = slope(Vector3::x() * DIFFERENCE)?;
             let by_field = slope(Vector3::z() * DIFFERENCE)?;
-            // the gap or speed stays as it is
+            // the gap or speed is fixed
             let slopes = [0, 1].map(|i| Vector3::new(by_time[i], 0.0, by_field[i]));
             Some(Equations { at: *at, off, slopes, of: () })
         };
         newton(guess, &Vector3::y(), FINEST, look).map(|((), at, left)| (at, left))
     }
 
-    /// The grazing motion from its state at a strobe; `None` if it does not touch the stop or come back.
+    /// The grazing orbit from its state at a strobe; `None` if it does not touch the stop or does not return.
     fn at_strobe(&self, maps: &Maps, state: State, value: f64) -> Option<Point> {
         let corrector = self.corrector;
         let flight = corrector.flight();
@@ -255,7 +259,7 @@ impl Grazing<'_> {
             impacts += passage.impacts;
             determinant = determinant.zip(passage.determinant).map(|(before, part)| before * part);
         }
-        // the touch within the flight, at the other stop where the motion is mirrored an odd number of times
+        // the contact within the flight, at the other stop if the motion is mirrored an odd number of times
         let flights = (self.solution.x / flight).floor();
         let time = self.solution.x - flights * flight;
         let (mut side, (mut x, v)) = (self.side, self.fly(maps, state, (0.0, time))?);
@@ -283,13 +287,13 @@ impl Grazing<'_> {
         Some(Point { at, value, orbit, by_state, determinant, by_field: [0.0; 2] })
     }
 
-    /// Its state in m and m/s at another phase of the drive.
+    /// The state in m and m/s at another phase of the drive.
     pub fn at_phase(&self, phase: f64) -> Option<State> {
         let maps = Maps::of(self.corrector, self.point.value)?;
         self.fly(&maps, self.point.orbit.state, (0.0, (phase - self.corrector.phase).rem_euclid(1.0)))
     }
 
-    /// The motion on one side of it at about a distance in the units.
+    /// The orbit on one side of the grazing at about this distance in the units.
     pub fn beside(&self, beside: Beside, distance: f64) -> Option<Point> {
         let (first, _) = self.solve(self.solution + Vector3::y() * FIRST, beside)?;
         let rate = (self.strobe(&first, beside)? - self.point.at).norm() / FIRST;
@@ -307,7 +311,7 @@ impl Grazing<'_> {
         (is_there && self.is_beside(&point, beside)).then_some(point)
     }
 
-    /// Whether a motion touches the stops as the grazing one does, once more where it touches this one.
+    /// Whether an orbit has the contacts of the grazing one, with one more if it is on the touching side.
     fn is_beside(&self, point: &Point, beside: Beside) -> bool {
         let touches = |point: &Point, side: Side| {
             let contacts = point.orbit.contacts();
@@ -320,7 +324,7 @@ impl Grazing<'_> {
         })
     }
 
-    /// The coordinates at a strobe of a motion beside it.
+    /// The coordinates at a strobe of an orbit near the grazing one.
     fn strobe(&self, at: &Vector3<f64>, beside: Beside) -> Option<Vector3<f64>> {
         let value = at.z * self.corrector.units.range;
         let maps = Maps::of(self.corrector, value)?;

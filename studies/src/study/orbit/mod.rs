@@ -1,10 +1,12 @@
-//! Periodic motions by Newton's method on the stroboscopic map, and their branches over a field.
+//! Periodic orbits, by Newton's method on the stroboscopic map, and their branches over a field.
 //!
-//! A periodic motion of n forcing periods is a fixed point of the map of a state to that n periods later
-//! ([`StroboscopicMap`]). Its multipliers are the eigenvalues of the map's derivative there; it is stable
-//! where both are inside the unit circle. A motion that rests on a stop forgets its past: both are 0.
+//! A periodic orbit of n forcing periods is a fixed point of the map from a state to the state n periods
+//! later ([`StroboscopicMap`]). Its Floquet multipliers are the eigenvalues of the derivative of that map; it
+//! is stable if both are inside the unit circle. After a rest on a stop the motion no longer depends on the
+//! state before it, so both are 0.
 //!
-//! [`orbit`] finds the motion near that of a run, [`orbit_near`] near a state; [`branch()`] follows it.
+//! [`orbit`] finds the orbit near the settled motion of a run, [`orbit_near`] the one near a state;
+//! [`branch()`] follows it over a field.
 
 mod corrector;
 mod events;
@@ -25,33 +27,34 @@ use corrector::{Corrector, Units};
 pub use events::BranchEvent;
 use walk::Walk;
 
-/// The most steps of Newton's method.
-const MOST_STEPS: usize = 40;
+/// Largest number of steps of Newton's method.
+const MAX_STEPS: usize = 40;
 
-/// The longest step, as a share of the scales: the method is for a guess near the motion.
+/// Longest step, as a share of the scales, since the guess should be near the orbit.
 const LONGEST_STEP: f64 = 0.2;
 
-/// The change of a state, as a share of the scales, that is none; and the step that gains nothing any more.
+/// Residual, as a share of the scales, at which the method may have converged.
 const CLOSE: f64 = 1e-9;
+/// Step, as a share of the scales, at which the method has converged.
 const SMALLEST_STEP: f64 = 1e-13;
 
-/// Strobes of a motion without a period among which one that nearly comes back is looked for.
+/// Number of strobes of a motion without a period that are searched for a near return.
 const STROBES: usize = 400;
 
-/// States closer than this share of the scales are the same motion's.
+/// Distance below which two states belong to the same orbit, as a share of the scales.
 const SAME: f64 = 1e-6;
 
-/// The tolerance at which the map is computed, where the scene's is larger: near rounding, since derivatives
-/// by a field are quotients of differences, and events on a branch are located to 1e-8.
+/// Largest tolerance at which the map is computed. It is close to rounding, since derivatives by a field are
+/// difference quotients and events on a branch are located to 1e-8.
 const TOLERANCE: f64 = 1e-14;
 
-/// A periodic motion.
+/// A periodic orbit.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Orbit {
     /// Its period in forcing periods.
     pub period: u32,
-    /// Displacement in m and velocity in m/s at the phase of its map.
+    /// Displacement in m and velocity in m/s at the phase of the map.
     pub state: (f64, f64),
     /// What happens on it.
     pub passage: Passage,
@@ -59,7 +62,7 @@ pub struct Orbit {
     pub jacobian: Jacobian,
 }
 
-/// Why there is no periodic motion near a state.
+/// Why no periodic orbit was found.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum NoOrbit {
@@ -72,10 +75,10 @@ pub enum NoOrbit {
     /// The motion does not last for the period.
     #[error("the motion ends early ({}){}", .0.name(), ended_at(*.0))]
     Ended(Outcome),
-    /// None of the period that was asked for is there: the motion repeats after this many forcing periods.
+    /// The orbit found has not the requested period, but this shorter one in forcing periods.
     #[error("near the motion of the run is only one of period {0}")]
     Shorter(u32),
-    /// The run does not come to a motion that repeats.
+    /// The run does not settle on a motion that repeats.
     #[error(
         "the run comes to no motion that repeats after at most 12 forcing periods; name a period, or start \
          elsewhere"
@@ -108,11 +111,11 @@ impl Orbit {
         self.passage.events.iter().filter(|event| event.kind != EventKind::Crossing)
     }
 
-    /// Events at the stops in their order around the motion. Of a chatter that ends in rest only the first
-    /// impact is kept: the number of the others says nothing, since they are summed.
+    /// Events at the stops in their order on the orbit. Only the first impact of a chattering sequence that
+    /// ends in rest is kept, since the later ones are summed and their number is arbitrary.
     pub fn contacts(&self) -> Vec<Event> {
         let mut all: Vec<Event> = self.events_at_stops().copied().collect();
-        // so that no chatter is cut in two
+        // so that no chattering sequence is split
         if let Some(place) = all.iter().position(|event| event.kind == EventKind::Release) {
             all.rotate_left(place);
         }
@@ -136,13 +139,13 @@ impl Orbit {
         all.map(|event| event.v_in.abs()).reduce(f64::min)
     }
 
-    /// Whether what is near to it comes nearer.
+    /// Whether the orbit is stable.
     pub fn is_stable(&self) -> bool {
         self.multipliers()[0].magnitude() < 1.0
     }
 }
 
-/// A state between rigid stops and on the curve, with the mass held at the one that it lies beyond.
+/// The nearest state between rigid stops and on the force curve.
 pub(super) fn allowed(model: &Model, state: State) -> State {
     model.held_within(state, if model.compliant().is_some() { f64::INFINITY } else { 0.0 })
 }
@@ -152,14 +155,14 @@ pub(super) fn map_of(model: &Model, phase: f64) -> Option<StroboscopicMap> {
     model.with_tolerance(model.tolerance().min(TOLERANCE)).stroboscopic_map(phase)
 }
 
-/// The periodic motion near a state at the map's phase, displacement in m and velocity in m/s, by Newton's
-/// method. Its period is `periods` or a divisor of it.
+/// The periodic orbit near a state (displacement in m and velocity in m/s at the phase of the map), by
+/// Newton's method. Its period is `periods` forcing periods, at least 1, or a divisor.
 pub fn orbit_near(map: &StroboscopicMap, guess: (f64, f64), periods: u32) -> Result<Orbit, NoOrbit> {
     let scales = map.model().scales();
     let size = |change: State| (change.0 / scales.length).abs().max((change.1 / scales.speed).abs());
     let mut state = allowed(map.model(), guess);
     let mut best = f64::INFINITY;
-    for _ in 0..MOST_STEPS {
+    for _ in 0..MAX_STEPS {
         let (passage, jacobian) = map.pass_with_jacobian(state, periods);
         if passage.outcome != Outcome::Done {
             return Err(NoOrbit::Ended(passage.outcome));
@@ -187,7 +190,7 @@ pub fn orbit_near(map: &StroboscopicMap, guess: (f64, f64), periods: u32) -> Res
     Err(NoOrbit::NotConverged)
 }
 
-/// The same motion with its smallest period.
+/// The orbit with its smallest period.
 fn shortest(map: &StroboscopicMap, orbit: Orbit) -> Orbit {
     let scales = map.model().scales();
     let divisors = (1..orbit.period).filter(|period| orbit.period.is_multiple_of(*period));
@@ -203,8 +206,8 @@ fn shortest(map: &StroboscopicMap, orbit: Orbit) -> Orbit {
     orbit
 }
 
-/// The periodic motion near the one that a run of `model` comes to, at a phase of the drive in forcing
-/// periods; of `period`, where one is asked for.
+/// The periodic orbit near the settled motion of a run of `model`, at a phase of the drive in forcing
+/// periods; with the period `period`, if given.
 ///
 /// Precondition: the drive repeats.
 pub fn orbit(model: &Model, phase: f64, period: Option<u32>, cancel: &AtomicBool) -> Result<Orbit, NoOrbit> {
@@ -218,7 +221,7 @@ pub fn orbit(model: &Model, phase: f64, period: Option<u32>, cancel: &AtomicBool
     if summary.outcome != Outcome::Done {
         return Err(NoOrbit::Ended(summary.outcome));
     }
-    // a mass that has come to rest repeats from period to period, and no strobe is looked at
+    // a mass at rest has the period 1
     let still = (summary.regime == Regime::Rest).then_some(1);
     let periods = period.or(summary.period).or(still).ok_or(NoOrbit::NotSettled)?;
     let since = (summary.window.1.max(summary.settles_at.unwrap_or(0.0)) / forcing).ceil();
@@ -232,7 +235,7 @@ pub fn orbit(model: &Model, phase: f64, period: Option<u32>, cancel: &AtomicBool
     }
 }
 
-/// Of the states that follow one strobe by strobe, that which comes back the closest after `periods`.
+/// Among the stroboscopic states after `from`, the one with the closest return after `periods`.
 fn closest_return(map: &StroboscopicMap, from: State, periods: u32) -> State {
     let scales = map.model().scales();
     let next = |state: &State| {
@@ -245,7 +248,7 @@ fn closest_return(map: &StroboscopicMap, from: State, periods: u32) -> State {
     returns.min_by(|a, b| far(*a).total_cmp(&far(*b))).map_or(from, |(state, _)| *state)
 }
 
-/// A row a motion: period, state, multipliers, whether it is stable, and what happens on it.
+/// One row per orbit: period, state, multipliers, stability and contacts.
 pub fn orbit_table(orbits: &[Orbit]) -> Table {
     with_orbits(Table::new(), orbits)
 }
@@ -274,16 +277,17 @@ fn with_orbits(table: Table, orbits: &[Orbit]) -> Table {
 pub enum BranchEnd {
     /// At an end of the range.
     Range,
-    /// It came back to where it had been.
+    /// At a point where it had been before.
     Closed,
-    /// The motion touches a stop without speed, and no motion near to it goes on.
+    /// The orbit grazes a stop, and no orbit was found beyond the grazing.
     Grazing,
-    /// A motion that rests on its way leaps to another one: the mass no longer goes where it went, as where
-    /// it just fails to pass the barrier, or its chatter no longer ends before it is released.
+    /// An orbit with a rest changes discontinuously, for example because the mass just fails to pass the
+    /// barrier, or because a chattering sequence no longer ends before the release.
     Leap,
-    /// Newton's method finds no motion near the last one: it leaps, changes too fast, or ends early.
+    /// Newton's method finds no orbit near the last one: the orbit changes discontinuously or too fast, or
+    /// ends early.
     Lost,
-    /// At the most points.
+    /// The largest number of points was reached.
     Points,
 }
 
@@ -303,26 +307,26 @@ impl fmt::Display for BranchEnd {
     }
 }
 
-/// A branch: its motions in order, each with the value of the field and what happens there.
+/// A branch: its orbits in order, each with the value of the field and an event, if any.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Branch {
     /// The field that changes.
     pub field: String,
-    /// Its value at each motion.
+    /// Its value at each orbit.
     pub values: Vec<f64>,
-    /// The motions.
+    /// The orbits.
     pub orbits: Vec<Orbit>,
-    /// What happens there.
+    /// The event at each orbit, if any.
     pub events: Vec<Option<BranchEvent>>,
-    /// Why the branch ended after the last.
+    /// Why the branch ended.
     pub end: BranchEnd,
     /// Pairs of values between which contacts with the stops or the stability change without a located event.
     pub unlocated: Vec<(f64, f64)>,
 }
 
 impl Branch {
-    /// A row a motion: the field, what [`orbit_table`](super::orbit_table) has, and `event`.
+    /// One row per orbit: the field, the columns of [`orbit_table`](super::orbit_table), and `event`.
     pub fn table(&self) -> Table {
         let column = column_names(&[&self.field]).concat();
         let table = Table::new().with(column, self.values.iter().copied().collect());
@@ -331,10 +335,11 @@ impl Branch {
     }
 }
 
-/// The branch of periodic motions of a family over `field` from one value towards another, on from the motion
-/// that a run comes to at the first; `phase` in forcing periods, `period` where one is asked for.
+/// The branch of periodic orbits of a family over `field`, from one value towards another. It begins at the
+/// settled motion of a run at the first value; `phase` is in forcing periods, and `period` is that of the
+/// first orbit, if given.
 ///
-/// Ticks once a motion. An error is one of the first motion.
+/// Ticks once per orbit. Errors concern the first orbit only.
 pub fn branch(
     family: &Family,
     field: &str,

@@ -1,4 +1,4 @@
-//! Walk along a branch of periodic motions, through folds by pseudo-arclength and over grazings.
+//! Continuation of a branch of periodic orbits: around folds by pseudo-arclength, and across grazings.
 
 use nalgebra::Vector3;
 
@@ -9,38 +9,45 @@ use super::{Branch, BranchEnd, NoOrbit, Orbit, SAME};
 use crate::dynamics::Model;
 use crate::study::{State, Task};
 
-/// The first and the longest step of the walk in the units of the branch, and the one below which it ends.
+/// First step, in the units of the branch.
 const FIRST: f64 = 2e-3;
+/// Longest step.
 const LONGEST: f64 = 1e-2;
+/// Step below which the branch ends.
 const SHORTEST: f64 = 1e-9;
 
-/// The step below which a change of the motion whose place is not found is passed over.
+/// Step below which a change of the orbit is accepted although its event was not located.
 const UNLOCATED: f64 = 1e-6;
 
-/// Cosine of the angle by which the direction may turn in a step, and by which a step may lie beside it.
+/// Cosine of the largest angle between the tangents at both ends of a step, and between the step and a
+/// tangent.
 const STRAIGHT: f64 = 0.9;
 
-/// The change in a step of where a mass is that rests on its way, as a share of its room.
+/// Largest change in a step of the displacement of an orbit with a rest, as a share of the room between the
+/// stops.
 const CHANGE: f64 = 0.1;
 
-const MOST_POINTS: usize = 5000;
+/// Largest number of orbits of a branch.
+const MAX_POINTS: usize = 5000;
 
-/// Distances from a grazing at which the branch goes on, in the order of trial; and the least of motions that
-/// miss and that touch the stop, since nearer to it the map's derivatives are rounding.
+/// Distances from a grazing at which the branch is continued, in the order of trial.
 const PAST_A_GRAZING: [f64; 6] = [1e-4, 3e-4, 1e-3, 3e-3, 3e-5, 1e-5];
-const LEAST_MISSING: f64 = 1e-6;
-const LEAST_TOUCHING: f64 = 1e-5;
+/// Smallest distance from a grazing of an orbit that misses the stop; nearer to it derivatives are lost in
+/// rounding.
+const MIN_MISSING: f64 = 1e-6;
+/// The same of an orbit that touches the stop.
+const MIN_TOUCHING: f64 = 1e-5;
 
-/// How near to an end of the range, as a share of it, a value is at the end.
+/// Distance from an end of the range at which a value is at that end, as a share of the range.
 const AT_AN_END: f64 = 1e-12;
 
-/// A point and the direction of the branch there.
+/// A point with the tangent of the branch there.
 pub(super) type Directed = (Point, Vector3<f64>);
 
-/// Events in order, each with its point and the state at the phase of the rows where that is known.
+/// Events in order, each with its point and, if it is known, the state at the phase of the rows.
 type Events = Vec<(BranchEvent, Point, Option<State>)>;
 
-/// A stretch of the branch from the last point on.
+/// The part of the branch from the last point to the next.
 struct Stretch {
     events: Events,
     /// The point at its end; `None` if the branch ends at the last event.
@@ -50,27 +57,28 @@ struct Stretch {
 
 /// A walk along a branch.
 pub(super) struct Walk<'a> {
-    /// At a phase of the drive away from impacts, where a state has no derivative by the field.
+    /// Its phase of the drive is kept away from impacts, at which a state has no derivative by the field.
     corrector: Corrector<'a>,
     pub branch: Branch,
     /// The range, and its ends in its unit.
     range: [f64; 2],
     ends: [f64; 2],
-    /// A length in m that is a share of the room that the mass has.
+    /// Length in m to which changes of the displacement are compared: half the distance of the stops, if that
+    /// is less than the length scale.
     room: f64,
-    /// Whether the stops are compliant: then the map is smooth where the motion grazes one.
+    /// Whether the stops are compliant; then the map is smooth at a grazing.
     compliant: bool,
     /// The phase of the rows, in forcing periods.
     phase: f64,
-    /// The coordinates of the rows, with their distance along the branch from the first.
+    /// The coordinates of the rows, each with its arc length from the first.
     rows: Vec<(Vector3<f64>, f64)>,
-    /// Whether the branch has come to a motion that it had left behind.
+    /// Whether the branch has returned to an earlier orbit.
     meets: bool,
     at: Directed,
 }
 
 impl<'a> Walk<'a> {
-    /// A walk over a range from the motion of `model` at its first value.
+    /// A continuation over a range from the orbit of `model` at its first value.
     pub fn new(
         corrector: Corrector<'a>,
         branch: Branch,
@@ -102,8 +110,8 @@ impl<'a> Walk<'a> {
 
     pub fn run_out(&mut self, task: &Task) -> Result<BranchEnd, NoOrbit> {
         let mut step = FIRST;
-        while self.branch.values.len() < MOST_POINTS {
-            task.go_on().map_err(|_| NoOrbit::Cancelled)?;
+        while self.branch.values.len() < MAX_POINTS {
+            task.check_cancelled().map_err(|_| NoOrbit::Cancelled)?;
             (task.tick)();
             self.keep_clear(&[]);
             let (found, beyond) = self.predicted(step);
@@ -217,7 +225,8 @@ impl<'a> Walk<'a> {
         far.fold(0.0, f64::max) <= CHANGE * self.room
     }
 
-    /// Whether a motion touches the stops otherwise than the last one; between rests this is no bifurcation.
+    /// Whether an orbit has different contacts with the stops from the last one; between orbits with rests
+    /// this is not a bifurcation.
     fn touches_otherwise(&self, next: &Point) -> bool {
         let point = &self.at.0;
         differ(point, next) && !(point.forgets() && next.forgets())
@@ -375,7 +384,7 @@ impl<'a> Walk<'a> {
     /// Whether a motion just beyond the present value of the field lasts for its period, wherever it leads.
     fn lasts_beyond(&self) -> bool {
         let (point, along) = &self.at;
-        self.corrector.look(&(point.at + Vector3::z() * along.z.signum() * UNLOCATED)).is_some()
+        self.corrector.evaluate(&(point.at + Vector3::z() * along.z.signum() * UNLOCATED)).is_some()
     }
 
     /// Goes on from the present motion without the mirror condition; false where that finds none.
@@ -397,10 +406,10 @@ impl<'a> Walk<'a> {
     }
 }
 
-/// The least distance from a grazing of a motion beside it.
+/// The smallest distance from a grazing of an orbit on this side.
 fn least(beside: Beside) -> f64 {
     match beside {
-        Beside::Missing => LEAST_MISSING,
-        Beside::Touching => LEAST_TOUCHING,
+        Beside::Missing => MIN_MISSING,
+        Beside::Touching => MIN_TOUCHING,
     }
 }

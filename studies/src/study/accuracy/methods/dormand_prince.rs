@@ -15,7 +15,7 @@ use crate::numeric::bisect;
 const REST_SPEED: f64 = 1e-6;
 
 /// Most attempted steps of one run, rejected ones included.
-const MOST_STEPS: u64 = 20_000_000;
+const MAX_STEPS: u64 = 20_000_000;
 
 const CANCEL_STRIDE: u64 = 1 << 10;
 
@@ -151,7 +151,7 @@ pub fn dormand_prince(model: &Model, tolerance: f64, request: &Request) -> Metho
     while march.now.t < model.duration() {
         attempts += 1;
         let is_stopped =
-            attempts > MOST_STEPS || (attempts.is_multiple_of(CANCEL_STRIDE) && is_cancelled(request));
+            attempts > MAX_STEPS || (attempts.is_multiple_of(CANCEL_STRIDE) && is_cancelled(request));
         if is_stopped || !(march.rest() || march.step()) {
             break;
         }

@@ -6,8 +6,8 @@ use crate::dynamics::{Model, Phase, Request, Side};
 /// Steps between checks of the cancel flag.
 const CANCEL_STRIDE: u64 = 1 << 14;
 
-/// The most steps of one run: some seconds.
-const MOST_STEPS: f64 = 1e8;
+/// Largest number of steps of a run: some seconds.
+const MAX_STEPS: f64 = 1e8;
 
 /// Runs `model` by `scheme` in even steps of at most `step` in s; the last one ends at the duration.
 ///
@@ -19,7 +19,7 @@ const MOST_STEPS: f64 = 1e8;
 pub fn fixed_step(model: &Model, scheme: Scheme, step: f64, request: &Request) -> MethodRun {
     let problem = Problem::new(model);
     let wanted = (model.duration() / step).ceil();
-    let count = if wanted >= 1.0 { wanted.min(MOST_STEPS) } else { MOST_STEPS } as u64;
+    let count = if wanted >= 1.0 { wanted.min(MAX_STEPS) } else { MAX_STEPS } as u64;
     let h = model.duration() / count as f64;
     let mut tally = Tally::new(problem, request);
     let mut now = problem.start;

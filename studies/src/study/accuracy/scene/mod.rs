@@ -1,9 +1,9 @@
 //! Accuracy of the run of one scene, and its cost.
 //!
-//! Three questions, each a function of a model: what the error of its run is and up to when its path can be
-//! trusted ([`trust`]); what every digit costs ([`tolerances`]); and what a fixed step makes of it, as a game
-//! or a small applet would take ([`step_size`]). Nothing here needs an exact answer: the error is the
-//! difference from a far more accurate run.
+//! Three questions, each a function of a model: the error of its run and the time up to which its path can be
+//! trusted ([`trust`]); the cost of every digit ([`tolerances`]); and the effect of a fixed step, as used in
+//! games and small applets ([`step_size`]). Nothing here needs an exact answer: the error is the difference
+//! from a far more accurate run.
 
 mod step_size;
 mod trust;

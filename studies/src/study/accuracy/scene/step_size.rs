@@ -16,8 +16,8 @@ const DRAWN_PERIODS: f64 = 3.0;
 /// Most points of a drawn path; if there are more steps, evenly spaced points take their place.
 const MOST_POINTS: usize = 4_000;
 
-/// The most steps of a run, a few seconds of one core.
-const MOST_STEPS: f64 = 2e7;
+/// Largest number of steps of a run: a few seconds on one core.
+const MAX_STEPS: f64 = 2e7;
 /// Number of sines in the drive whose evaluation takes as long as the rest of a step.
 const SINES: f64 = 16.0;
 
@@ -30,7 +30,7 @@ pub enum Unfit {
     /// Its transducer has a state of its own, which the schemes do not step.
     #[error("the schemes step displacement and velocity, and its transducer has a state of its own")]
     ElectricalState,
-    /// It was told to stop.
+    /// It was cancelled.
     #[error("told to stop")]
     Cancelled,
 }
@@ -126,7 +126,7 @@ pub fn step_size(model: &Model, scheme: Scheme, step: f64, cancel: &AtomicBool) 
 /// The model with its run shortened to what steps of this size reach in reasonable time; its settled window
 /// begins at half of that at the latest.
 fn within_reach(model: &Model, step: f64) -> Model {
-    let reach = step * MOST_STEPS / (1.0 + model.excitation().tones.len() as f64 / SINES);
+    let reach = step * MAX_STEPS / (1.0 + model.excitation().tones.len() as f64 / SINES);
     match model.duration() > reach {
         true => model.with_duration(reach, model.settle().min(0.5 * reach)),
         false => model.clone(),

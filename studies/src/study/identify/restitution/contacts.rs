@@ -34,16 +34,18 @@ pub struct Impact {
 /// The coefficients of the polynomials by which impacts are found.
 const TERMS: usize = 3;
 
-/// The fewest samples on either side of an impact that is found.
+/// Smallest number of samples on each side of an impact.
 const FEWEST: usize = 4;
 
-/// Standard deviations by whose square two polynomials that meet must fit better than one across.
+/// Number of standard deviations, squared, by which two intersecting polynomials must fit better than a
+/// single one.
 const CLEAR: f64 = 6.0;
 
-/// Impacts are on one stop where they differ by less than this part of the range and six standard errors.
+/// Impacts are on the same stop if their positions differ by less than this share of the range and six
+/// standard errors.
 const SAME_STOP: f64 = 0.005;
 
-/// Impacts count as those of a given stop where they lie nearer to it than this part of the range.
+/// Impacts belong to a given stop if they are nearer to it than this share of the range.
 const NEAR_GIVEN: f64 = 0.05;
 
 impl Contact {
@@ -55,10 +57,10 @@ impl Contact {
 
 /// The contacts in order of time, and the places of the left and the right stop where impacts show them.
 ///
-/// A turning point is an impact where two parabolas that meet there fit the samples around it better than one
-/// polynomial of as many coefficients. A stop is where the outermost of these impacts lie, with no sample
-/// beyond, or where the impacts near a place `given` lie. Turning points elsewhere are not contacts, nor are
-/// those within the noise of a limit at which the record is cut off.
+/// A turning point is an impact if two parabolas that intersect there fit the samples around it better than
+/// one polynomial with the same number of coefficients. A stop is at the outermost of these impacts, with no
+/// sample beyond, or at the impacts near a `given` position. Turning points elsewhere are not contacts, nor
+/// are those within the noise of a limit at which the record is cut off.
 pub fn contacts(motion: &Motion, given: [Option<f64>; 2]) -> (Vec<Contact>, [Option<f64>; 2]) {
     let turning = turns(&motion.x, motion.back);
     let samples = motion.x.len();
@@ -153,8 +155,8 @@ pub fn longest_rebound(motion: &Motion) -> Option<usize> {
     turns(&motion.x, motion.back).windows(3).filter_map(rebound).max()
 }
 
-/// How near to a stop samples of a mass on it lie: by noise, or by twice the way from its place to the
-/// outermost sample, since that is how well the place is known.
+/// Distance from a stop within which a mass lies on it: that of the noise, or twice the distance from the
+/// stop to the outermost sample, which is the uncertainty of its position.
 fn band(motion: &Motion, stops: &[Option<f64>; 2], right: bool) -> f64 {
     let edge = if right { motion.extent.1 } else { motion.extent.0 };
     stops[usize::from(right)].map_or(0.0, |stop| motion.back.max(2.0 * (edge - stop).abs()))

@@ -1,4 +1,5 @@
-//! Meeting of two polynomials: the instant and the place of an impact, and the speeds on both sides of it.
+//! Intersection of two polynomials: the time and the position of an impact, and the speeds before and after
+//! it.
 
 use super::{Motion, median};
 use crate::numeric::orthogonal::Orthogonal;
@@ -25,20 +26,22 @@ pub struct Meeting {
     pub of_speeds: f64,
 }
 
-/// Steps of Newton's method; two parabolas need some five.
-const MOST_STEPS: usize = 10;
+/// Largest number of steps of Newton's method; two parabolas need about five.
+const MAX_STEPS: usize = 10;
 
 impl Sides {
-    /// Where the polynomials with `terms` coefficients meet, next to a time; `right`: the stop is above.
+    /// The intersection of the polynomials with `terms` coefficients nearest to a time; `right` says whether
+    /// the stop is on the right.
     ///
     /// This is the joint least squares fit of two polynomials in t - t_0 with one constant x_s, where t_0 and
-    /// x_s are unknown: it has as many unknowns as the two polynomials, and where these meet displacement is
-    /// continuous. Errors are carried from the samples to first order, that of t_0 included.
+    /// x_s are unknown: it has as many unknowns as the two polynomials, and at their intersection the
+    /// displacement is continuous. Errors of the samples are propagated to first order, including that of
+    /// t_0.
     pub fn meet(&self, motion: &Motion, terms: usize, near: f64, right: bool) -> Option<Meeting> {
         self.before.squared_residuals(terms).and(self.after.squared_residuals(terms))?;
         let sign = if right { 1.0 } else { -1.0 };
         let mut t = near;
-        for _ in 0..MOST_STEPS {
+        for _ in 0..MAX_STEPS {
             let (one, other) = (motion.at(&self.before, t, terms), motion.at(&self.after, t, terms));
             let step = (other.value - one.value) / (one.slope - other.slope);
             if !step.is_finite() {
@@ -51,7 +54,7 @@ impl Sides {
         }
         let (one, other) = (motion.at(&self.before, t, terms), motion.at(&self.after, t, terms));
         let jump = one.slope - other.slope;
-        // errors l of the first and r of the second value move the meeting by (r - l)/jump
+        // errors l of the first and r of the second value shift the intersection by (r - l)/jump
         let (a, b) = (one.bend / jump, other.bend / jump);
         let (l, r) = (-other.slope / jump, one.slope / jump);
         Some(Meeting {
@@ -94,9 +97,10 @@ impl Meeting {
 
 /// The restitution of impacts together and its variance for errors of variance 1 in the samples.
 ///
-/// Both speeds have errors, so that a mean of ratios would be biased: this is the e of the greatest
-/// likelihood with the true speeds as further unknowns (Deming 1943, with a covariance for each impact), by
-/// fixed point iteration. Impacts count as independent; two that share a flight are not quite.
+/// Both speeds have errors, so that a mean of ratios would be biased. This is the maximum likelihood estimate
+/// of e with the true speeds as further unknowns (Deming 1943, with a covariance for each impact), by
+/// fixed-point iteration. Impacts are treated as independent, although two that share a flight are weakly
+/// correlated.
 pub fn restitution(impacts: &[&Meeting]) -> Option<(f64, f64)> {
     let mut e = median(impacts.iter().map(|impact| impact.ratio().0).collect())?;
     let mut weight = f64::NAN;

@@ -20,18 +20,18 @@ const RESTITUTION: [&str; 3] = ["restitution", "restitution_low", "restitution_h
 /// Samples that a rebound should have.
 pub(super) const ENOUGH: usize = 8;
 
-/// Restitution of the impacts in a record of displacement `x` in m over `times` in s, of a mass that is
+/// Restitution of the impacts in a record of displacement `x` in m over `times` in s, for a mass that is
 /// shaken between stops or bounces freely.
 ///
 /// A turning point is an impact where the velocity jumps, and a stop is where the outermost impacts lie, or
-/// those near a place `given` (left, right). On either side of an impact a polynomial is fitted to the
-/// flight; where both meet, their slopes are the speeds before and after it. The displacement that the
-/// `accelerations` of the base in m/s^2 alone cause is subtracted first.
+/// those near a place `given` (left, right). On each side of an impact a polynomial is fitted to the flight;
+/// the slopes at their intersection are the speeds before and after it. The displacement caused by the
+/// `accelerations` of the base in m/s^2 alone is subtracted first.
 ///
-/// Window and degree have the narrowest interval, of which the differences from other windows and degrees are
-/// a part. Samples in flat tops, where a sensor or its converter was at its limit, are left out. Where the
-/// stops differ by more than their intervals, the interval of the one number holds both; where the impacts of
-/// a stop do, it is as much wider (Birge 1932).
+/// Window and degree are those with the narrowest interval, which includes the differences from other windows
+/// and degrees. Clipped samples are left out. If the stops differ by more than their intervals, the interval
+/// of the common number contains both; if the impacts on a stop do, the interval is widened accordingly
+/// (Birge 1932).
 ///
 /// Rows, one an impact: `t_s,side`, then `v_in`, `v_out` in m/s and `restitution` with `_low` and `_high`.
 pub fn restitution(
@@ -128,7 +128,7 @@ fn differ(one: Identity, other: Identity) -> bool {
     (one.value - other.value).abs() > 1.5 * half(one).hypot(half(other))
 }
 
-/// The mean of two numbers with weights, and an interval that holds both of theirs.
+/// The weighted mean of two numbers, with an interval that contains both of theirs.
 fn spanning(one: Identity, other: Identity) -> Identity {
     let [a, b] = [one, other].map(|number| half(number).powi(-2));
     let interval = (one.interval.0.min(other.interval.0), one.interval.1.max(other.interval.1));
@@ -139,7 +139,7 @@ fn spanning(one: Identity, other: Identity) -> Identity {
 fn scatter(common: Choice, singles: &[&Single]) -> Option<f64> {
     let count = singles.len() as f64;
     let apart = |single: &&Single| (single.ratio.value - common.value) / single.ratio.half.hypot(common.half);
-    // half of an interval is some two standard errors
+    // half of an interval is about two standard errors
     let square = 4.0 * singles.iter().map(|single| apart(single).powi(2)).sum::<f64>() / count;
     (square > 1.0 + 4.0 * (2.0 / count).sqrt()).then(|| square.sqrt())
 }

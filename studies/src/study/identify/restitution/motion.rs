@@ -1,4 +1,4 @@
-//! A record of displacement as impacts are fitted to it, with the base's acceleration where that is known.
+//! A record of displacement for the fit of impacts, with the acceleration of the base if that is known.
 
 use std::ops::Range;
 
@@ -8,7 +8,7 @@ use crate::scene::Timing;
 use crate::study::identify::clipped::{CutOff, cut_off};
 use crate::study::identify::{noise, reach};
 
-/// A record of displacement relative to the base, without the samples that were cut off. SI.
+/// A record of displacement relative to the base, without clipped samples. SI.
 pub struct Motion {
     pub times: Vec<f64>,
     pub x: Vec<f64>,
@@ -20,7 +20,7 @@ pub struct Motion {
     /// Least and greatest displacement.
     pub extent: (f64, f64),
     pub noise: f64,
-    /// How far noise alone moves them back.
+    /// Largest reversal of the displacement that noise alone can cause.
     pub back: f64,
     /// The displacement less that which the acceleration of the base alone causes.
     smooth: Vec<f64>,
@@ -30,8 +30,8 @@ pub struct Motion {
 
 impl Motion {
     /// The record, with the acceleration of the base at the same times where it was recorded: the mass obeys
-    /// x'' = -a + smooth forces, so that -a, integrated twice with straight lines between its samples, is
-    /// known and leaves a rest that is smoother than the displacement.
+    /// x'' = -a + smooth forces, so that -a, interpolated linearly and integrated twice, can be subtracted,
+    /// which leaves a smoother function than the displacement.
     ///
     /// Samples in flat tops are left out, and where they were the record has a gap.
     pub fn new(times: &[f64], x: &[f64], accelerations: Option<&[f64]>) -> Self {

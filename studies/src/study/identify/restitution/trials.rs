@@ -22,13 +22,14 @@ const NARROWEST: f64 = 3.5;
 /// Ratio of each further window to the one before.
 const WIDER: f64 = SQRT_2;
 
-/// Standard errors of its speed from which on an impact counts: a slower one has too unsure an instant.
+/// Smallest speed of an impact that counts, in its standard errors; the time of a slower one is too
+/// uncertain.
 const FAST: f64 = 12.0;
 
-/// Degrees of freedom that the residuals of a trial need.
+/// Smallest number of degrees of freedom of the residuals of a trial.
 const LEAST_FREEDOM: usize = 3;
 
-/// All impacts by one window and one degree.
+/// All impacts, fitted with one window and one degree.
 pub struct Trial {
     setting: Setting,
     /// Variance of the samples.
@@ -39,7 +40,7 @@ pub struct Trial {
     impacts: Vec<(usize, Meeting)>,
 }
 
-/// An impact alone.
+/// A single impact.
 pub struct Single {
     pub contact: usize,
     pub impact: Meeting,
@@ -60,7 +61,7 @@ impl Trial {
     }
 }
 
-/// Fits all impacts, which refines their instants and flights; a contact without a fit is no impact.
+/// Fits all impacts, which refines their times and flights; a contact without a fit is not an impact.
 pub fn trials(motion: &Motion, contacts: &mut [Contact], stops: &[Option<f64>; 2]) -> Vec<Trial> {
     let mut best: Vec<Option<(f64, Impact)>> = vec![None; contacts.len()];
     for trial in all(motion, contacts, FIRST_TERMS..=FIRST_TERMS) {
@@ -127,7 +128,7 @@ fn trial(motion: &Motion, contacts: &[Contact], sides: &[(usize, Sides)], settin
         let fast = impact.speed.unwrap_or(found.towards) > FAST * error(found.of_towards);
         let near = (found.t - impact.t).abs() < 2.0 * motion.timing.step + 6.0 * error(found.of_t);
         let back = found.towards > 0.0 && found.away > -3.0 * error(found.of_away);
-        // residuals of other samples than those of two flights are beyond four standard deviations
+        // samples with residuals above four standard deviations belong to other flights
         let usual = *freedom as f64 + 4.0 * (2.0 * *freedom as f64).sqrt() + 8.0;
         (fast && near && back && *square <= usual * variance).then_some((*k, *found))
     };
@@ -136,7 +137,8 @@ fn trial(motion: &Motion, contacts: &[Contact], sides: &[(usize, Sides)], settin
     enough.then(|| Trial { setting, variance, student: student(freedom), impacts })
 }
 
-/// The number that `of` makes, with its variance, of the contacts that count, and how many these are.
+/// The number that `of` computes from the contacts that count, its variance, and the number of these
+/// contacts.
 pub fn together(
     trials: &[Trial],
     counts: impl Fn(usize) -> bool,
@@ -161,7 +163,7 @@ pub fn each(trials: &[Trial], contacts: usize) -> Vec<Single> {
         let trial = trials.iter().find(|trial| trial.setting == ratio.setting)?;
         let place = trial.impacts.binary_search_by_key(&contact, |(contact, _)| *contact).ok()?;
         let impact = trial.impacts[place].1;
-        // what the ratio has besides noise the speeds have in the same proportion
+        // errors of the ratio other than noise are attributed to the speeds in the same proportion
         let (_, noise) = trial.estimate(impact.ratio());
         let more = (ratio.half.powi(2) - noise.powi(2)).max(0.0).sqrt() / ratio.value.abs();
         let half = |speed: f64, variance: f64| trial.estimate((0.0, variance)).1.hypot(more * speed);
@@ -171,10 +173,11 @@ pub fn each(trials: &[Trial], contacts: usize) -> Vec<Single> {
     estimates.iter().enumerate().filter_map(single).collect()
 }
 
-/// What is varied: the number of the window, the wider the higher, and the number of coefficients.
+/// A setting of the fit: the index of the window, which increases with its width, and the number of
+/// coefficients.
 pub type Setting = (usize, usize);
 
-/// Estimates of one number by setting: its value, and half of the 95 % interval that noise makes.
+/// Estimates of one number for each setting: the value, and half of the 95 % interval due to noise.
 pub type Estimates = BTreeMap<Setting, (f64, f64)>;
 
 /// An estimate and half of its 95 % interval.
@@ -187,14 +190,15 @@ pub struct Choice {
 
 /// The estimate with the narrowest interval.
 ///
-/// Polynomials of few terms over wide windows have little noise, but do not follow the motion. Where they do
-/// not, a further term, a term less or a narrower window gives another value. The greatest difference from
-/// these four neighbours (of windows the next two) counts as an error besides that of noise, and the squares
-/// of both are added. Without noise the interval is the difference alone. Values that differ by noise make
-/// an interval a little too wide, and the narrowest of many is a little too narrow: over records drawn at
-/// random both cancel, which `tests/suite/measured/impacts.rs` holds.
+/// Polynomials with few terms over wide windows have little noise, but may not follow the motion. In that
+/// case one more term, one less, or a narrower window gives a different value. The largest difference from
+/// these four neighbours (two of them narrower windows) counts as a systematic error, whose square is added
+/// to that of the noise. Without noise the interval is the systematic error alone. Differences due to noise
+/// make an interval slightly too wide, and choosing the narrowest makes it slightly too narrow; on random
+/// records the two effects cancel, which `tests/suite/measured/impacts.rs` checks.
 ///
-/// A setting without a neighbour of fewer terms is not taken, since nothing shows whether it has enough.
+/// A setting without a neighbour with fewer terms is not chosen, since nothing shows whether it has enough
+/// terms.
 pub fn narrowest(estimates: &Estimates) -> Option<Choice> {
     let choice = |(&setting, &(value, noise)): (&Setting, &(f64, f64))| {
         let (window, terms) = setting;
