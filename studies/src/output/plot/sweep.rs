@@ -96,6 +96,7 @@ pub fn can_show(grid: &Grid, quantity: &str, view: &View, table: &Table) -> Resu
 
 /// Largest number of values of a field that are shown as lines, one per value, instead of a map.
 const FEW: usize = 6;
+/// Smallest ratio of the number of values of the other field to these.
 const MANY: usize = 3;
 
 /// Largest number of values without a result that are marked by lines; more of them are marked by ticks at
