@@ -337,9 +337,6 @@ impl Simulation {
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Answer> {
         let periods = periods.unwrap_or(ExponentOptions::PERIODS);
-        if !(1..=10_000_000).contains(&periods) {
-            return Err(raised(py, &Error::argument("periods", periods, "give 1 to 10000000")));
-        }
         let question = Exponents { over, options: ExponentOptions { periods, until_settled } };
         let table = work(py, &Way { threads, progress }, |progress| question.run(&self.inner, progress))?;
         let answer = Answer::new(py, table, self.caption());

@@ -39,8 +39,13 @@ pub fn work<T: Send>(
     let stop = AtomicBool::new(false);
     let (done, all) = (AtomicU64::new(0), AtomicU64::new(UNKNOWN));
     let watch = |now: u64, of: Option<u64>| {
-        all.store(of.unwrap_or(UNKNOWN), Ordering::Relaxed);
-        done.store(now, Ordering::Relaxed);
+        // calls come from several threads, and in each phase of a question they count from 1
+        let of = of.unwrap_or(UNKNOWN);
+        if all.swap(of, Ordering::Relaxed) == of {
+            done.fetch_max(now, Ordering::Relaxed);
+        } else {
+            done.store(now, Ordering::Relaxed);
+        }
     };
     let told = |py: Python<'_>| -> PyResult<()> {
         py.check_signals()?;

@@ -30,7 +30,7 @@ impl Compare {
         let others = self.with.iter().map(|(name, other)| (name.clone(), other));
         let mut all = Vec::new();
         for (name, other) in std::iter::once(first).chain(others) {
-            let other = Simulation::new(&in_environment(other.document(), simulation.document()))?;
+            let other = other.with_document(in_environment(other.document(), simulation.document()))?;
             other.check_until_settled(self.until_settled)?;
             let (document, mechanism) = (other.document().clone(), other.mechanism().clone());
             all.push(Alternative { name, scene: document.scene, files: document.files, mechanism });

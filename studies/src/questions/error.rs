@@ -175,15 +175,13 @@ fn scene_faults(error: &SceneError) -> Vec<FaultAt> {
 }
 
 /// Replaces options of the command line in a text by names of arguments: `--until-settled` by
-/// `until_settled`.
+/// `until_settled`. A word is an option if it begins with two hyphens and a letter.
 fn with_argument_names(text: &str) -> String {
-    let renamed = |word: &str| match word.find("--").map(|at| word.split_at(at)) {
-        Some((before, option)) if option[2..].starts_with(|c: char| c.is_ascii_lowercase()) => {
-            format!("{before}{}", option[2..].replace('-', "_"))
-        }
-        _ => word.to_owned(),
+    let renamed = |word: &str| {
+        let is_option = word.starts_with("--") && word[2..].starts_with(|c: char| c.is_ascii_lowercase());
+        if is_option { word[2..].replace('-', "_") } else { word.to_owned() }
     };
-    text.split(' ').map(renamed).collect::<Vec<_>>().join(" ")
+    text.split_inclusive(char::is_whitespace).map(renamed).collect()
 }
 
 impl fmt::Display for Error {

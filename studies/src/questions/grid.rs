@@ -11,9 +11,9 @@ use crate::scene::Mechanism::Linear;
 use crate::scene::{Axis, Damping, Document, Scene, Start, Stops, Transducer, is_whole};
 use crate::study::{
     self, Carry, DIRECTION, ELECTRICAL_STATE, ExponentCells, ExponentOptions, Grid, GridStudy, IMPACTS,
-    NoExponents, NoThresholds, Onset, Question, STANDARD_COLUMNS, SUMMARY_FIELDS, Scan, SectionOptions,
-    Sections, SummaryField, SweepEnd, SweepOptions, Table, Task, drive_fault, exponents, exponents_row,
-    section, threshold_table,
+    MAX_SECTION, NoExponents, NoThresholds, Onset, Question, STANDARD_COLUMNS, SUMMARY_FIELDS, Scan,
+    SectionOptions, Sections, SummaryField, SweepEnd, SweepOptions, Table, Task, drive_fault, exponents,
+    exponents_row, section, threshold_table,
 };
 
 /// Fields, each with its values.
@@ -98,7 +98,8 @@ impl Sweep {
         }
         let columns = column_names(&self.columns, &grid, self.carry)?;
         let study = study::Sweep::new(&document.scene, &document.files, grid);
-        let until_settled = until_settled(self.until_settled, &study, document, progress)?;
+        check_first(self.until_settled, &study, document, progress)?;
+        let until_settled = self.until_settled;
         let fields = columns.iter().filter_map(|name| SummaryField::find(name)).collect();
         let study = study.with(SweepOptions { columns: fields, until_settled, carry: self.carry });
         Ok(all_rows(&study, document, progress)?.only(&columns))
@@ -133,6 +134,11 @@ pub fn column_names(chosen: &[String], grid: &Grid, carry: Option<Carry>) -> Res
     Ok(names)
 }
 
+/// Largest number of forcing periods that a section skips.
+const MAX_SKIP: u64 = 1_000_000_000;
+/// Numbers of forcing periods that a section may keep.
+const KEPT: RangeInclusive<u64> = 1..=MAX_SECTION;
+
 /// Stroboscopic section or section at impacts of one motion, or of every cell of a grid, which gives a
 /// bifurcation diagram.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -147,7 +153,15 @@ impl Section {
     /// Computes the section, or that of each cell.
     pub fn run(&self, simulation: &Simulation, progress: &Progress) -> Result<Table, Error> {
         let document = simulation.document();
+        let SectionOptions { periods, carry, .. } = self.options;
+        if let Some((skip, keep)) = periods.filter(|(skip, keep)| *skip > MAX_SKIP || !KEPT.contains(keep)) {
+            let problem = format!("skip at most {MAX_SKIP} forcing periods, and keep 1 to {MAX_SECTION}");
+            return Err(Error::argument("skip", format!("{skip}, keep = {keep}"), problem));
+        }
         if self.over.is_empty() {
+            if let Some(carry) = carry {
+                return Err(Error::argument("carry", carry.name(), "walks a field: name one by over"));
+            }
             let run = self.options.run_of(simulation.model());
             check_until(self.options.until_settled, document, &run)?;
             let found = section(simulation.model(), simulation.scene(), &self.options, progress.stop());
@@ -159,8 +173,7 @@ impl Section {
             refuse_electrical_state(document, grid.axes(), "carry")?;
         }
         let study = Sections::new(&document.scene, &document.files, grid).with(self.options);
-        let until_settled = until_settled(self.options.until_settled, &study, document, progress)?;
-        let study = study.with(SectionOptions { until_settled, ..self.options });
+        check_first(self.options.until_settled, &study, document, progress)?;
         Ok(all_rows(&study, document, progress)?.without(IMPACTS))
     }
 }
@@ -174,10 +187,17 @@ pub struct Exponents {
     pub options: ExponentOptions,
 }
 
+/// Numbers of forcing periods of an average.
+const AVERAGED: RangeInclusive<u32> = 1..=10_000_000;
+
 impl Exponents {
     /// Computes the exponents.
     pub fn run(&self, simulation: &Simulation, progress: &Progress) -> Result<Table, Error> {
         let document = simulation.document();
+        let periods = self.options.periods;
+        if !AVERAGED.contains(&periods) {
+            return Err(Error::argument("periods", periods, format!("give 1 to {}", AVERAGED.end())));
+        }
         if self.over.is_empty() {
             if let Some(fault) = drive_fault(simulation.model(), simulation.scene()) {
                 return Err(Error::faults_of(document, vec![fault]));
@@ -193,9 +213,8 @@ impl Exponents {
         }
         let grid = simulation.grid(&self.over)?;
         refuse_electrical_state(document, grid.axes(), "exponents")?;
-        let study = ExponentCells::new(&document.scene, &document.files, grid);
-        let until_settled = until_settled(self.options.until_settled, &study, document, progress)?;
-        let study = study.with(ExponentOptions { until_settled, ..self.options });
+        let study = ExponentCells::new(&document.scene, &document.files, grid).with(self.options);
+        check_first(self.options.until_settled, &study, document, progress)?;
         all_rows(&study, document, progress)
     }
 }
@@ -340,19 +359,16 @@ fn check_until(until: Option<f64>, document: &Document, model: &Model) -> Result
     until.map_or(Ok(()), |until| check_until_settled(until, &number_text(until), document, model))
 }
 
-/// Checks the time up to which runs of a grid may continue, with the model of the first cell. `None` if that
-/// cell has no model; its faults are reported later, when all cells are checked.
-fn until_settled<Q: Question>(
+/// Checks the time up to which runs of a grid may continue, with the model of the first cell. If that cell has
+/// no model, its faults are reported later, when all cells are checked.
+fn check_first<Q: Question>(
     until: Option<f64>,
     study: &GridStudy<Q>,
     document: &Document,
     progress: &Progress,
-) -> Result<Option<f64>, Error> {
+) -> Result<(), Error> {
     let task = Task { tick: &|| (), cancel: progress.stop() };
-    match study.first_model(&task) {
-        Some(model) => check_until(until, document, &model).map(|()| until),
-        None => Ok(None),
-    }
+    study.first_model(&task).map_or(Ok(()), |model| check_until(until, document, &model))
 }
 
 /// Checks all cells, then runs them and returns all rows.

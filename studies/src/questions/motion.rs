@@ -39,6 +39,7 @@ pub struct Orbit {
 impl Orbit {
     /// Finds the orbit by Newton's method.
     pub fn run(&self, simulation: &Simulation, progress: &Progress) -> Result<study::Orbit, Error> {
+        check_period(self.period)?;
         can_have_orbits(simulation.document(), simulation.model())?;
         let found = orbit(simulation.model(), phase(self.phase_deg)?, self.period, progress.stop());
         found.map_err(|error| no_orbit(simulation.document(), error, ""))
@@ -76,7 +77,11 @@ impl Branch {
         let (from, to) = self.range;
         let shown = format!("{}={from}:{to}", self.field);
         let wrong = |problem: String| Error::argument("branch", &shown, problem);
+        check_period(self.period)?;
         Axis::listed(&self.field, vec![from, to], simulation.scene()).map_err(wrong)?;
+        if !(from.is_finite() && to.is_finite()) {
+            return Err(wrong("A and B must be finite".to_owned()));
+        }
         if is_whole(simulation.scene(), &self.field) {
             return Err(wrong(format!(
                 "{} holds whole numbers, and a branch takes all values between A and B; follow the motion by \
@@ -118,6 +123,16 @@ impl study::Branch {
         };
         lines.push(format!("the branch ends at {field} = {at}: {why}"));
         lines
+    }
+}
+
+/// Largest period of an orbit in forcing periods.
+const MAX_PERIOD: u32 = 1000;
+
+fn check_period(period: Option<u32>) -> Result<(), Error> {
+    match period.filter(|period| !(1..=MAX_PERIOD).contains(period)) {
+        Some(period) => Err(Error::argument("period", period, format!("give 1 to {MAX_PERIOD}"))),
+        None => Ok(()),
     }
 }
 

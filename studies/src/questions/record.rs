@@ -121,6 +121,11 @@ impl Identify {
                 return Err(Error::argument(name, "", "cuts a record over time; --of force has none"));
             }
         }
+        for (name, time) in ["from", "to"].into_iter().zip(self.between) {
+            if let Some(time) = time.filter(|time| time.is_nan()) {
+                return Err(Error::argument(name, time, "give a time in s"));
+            }
+        }
         if let [Some(from), Some(to)] = self.between
             && !(from < to)
         {

@@ -94,6 +94,11 @@ impl Simulation {
         for (field, value) in changes {
             document.set(&format!("{field}={value}"))?;
         }
+        self.with_document(document)
+    }
+
+    /// The simulation of a changed document, with the same mechanism if that is not changed.
+    pub(super) fn with_document(&self, mut document: Document) -> Result<Self, Error> {
         let same_mechanism = document.scene.mechanism == self.document.scene.mechanism;
         if !same_mechanism || document.files != self.document.files {
             return Self::of(document);
