@@ -228,12 +228,12 @@ class Scene:
     @property
     def equilibria(self) -> list[tuple[float, bool]]:
         """Positions of equilibrium in m, each with whether it is stable."""
-        return self._simulation.landscape()[0]
+        return self._simulation.equilibria
 
     @property
     def barrier_j(self) -> tuple[float, float] | None:
         """Height of the barrier in J, seen from the left and from the right well; None without one."""
-        return self._simulation.landscape()[1]
+        return self._simulation.barrier_j
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the scene as a scene file."""

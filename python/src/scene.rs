@@ -181,13 +181,18 @@ impl Simulation {
         (path.get(self.inner.scene()), path.word(self.inner.scene()))
     }
 
-    /// Equilibria (position in m, whether stable) and the height of the barrier in J from the left and from
-    /// the right well.
-    fn landscape(&self) -> (Vec<(f64, bool)>, Option<(f64, f64)>) {
+    /// Equilibria: position in m, and whether they are stable.
+    #[getter]
+    fn equilibria(&self) -> Vec<(f64, bool)> {
         let landscape = &self.inner.mechanism().landscape;
-        let equilibria = landscape.equilibria.iter().map(|found| (found.x, found.stable)).collect();
-        let barrier = landscape.barrier.map(|barrier| (barrier.from_left_j, barrier.from_right_j));
-        (equilibria, barrier)
+        landscape.equilibria.iter().map(|found| (found.x, found.stable)).collect()
+    }
+
+    /// Height of the barrier in J, seen from the left and from the right well.
+    #[getter]
+    fn barrier_j(&self) -> Option<(f64, f64)> {
+        let barrier = self.inner.mechanism().landscape.barrier;
+        barrier.map(|barrier| (barrier.from_left_j, barrier.from_right_j))
     }
 
     #[pyo3(signature = (dt=None, at=None, until_settled=None))]

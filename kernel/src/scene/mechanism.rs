@@ -62,7 +62,7 @@ pub enum Mechanism {
         /// Ends of the pieces in m, ascending, one more than there are pieces. The first and the last are the
         /// ends of the curve; -inf and inf where it has none.
         ends_m: Vec<f64>,
-        /// The pieces from left to right, 1 to 10000, continuous where they meet.
+        /// The pieces from left to right, at most 10000, continuous where they meet.
         pieces: Vec<ForcePiece>,
         /// Largest difference in N from the force that the curve stands for, 0 to 1e30. Bends of the curve
         /// that are smaller count as none.
@@ -114,7 +114,7 @@ pub struct ForcePiece {
     /// Origin of the polynomial in m.
     #[serde(default)]
     pub origin_m: f64,
-    /// 1 to 16 coefficients from the constant up, in N/m^i.
+    /// 1 to 16 coefficients from the constant up, in N/m^i, each -1e200 to 1e200.
     pub coefficients_si: Vec<f64>,
 }
 

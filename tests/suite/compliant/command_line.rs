@@ -47,7 +47,7 @@ fn check_says_what_an_impact_does_and_what_resting_costs() {
         "restitution 0.36",
         "1.469 GPa",
         "0.44",
-        "resting on one",
+        "rests on one",
         "Hz",
     ] {
         assert!(text.contains(words), "{words}: {text}");
