@@ -359,8 +359,8 @@ fn check_until(until: Option<f64>, document: &Document, model: &Model) -> Result
     until.map_or(Ok(()), |until| check_until_settled(until, &number_text(until), document, model))
 }
 
-/// Checks the time up to which runs of a grid may continue, with the model of the first cell. If that cell has
-/// no model, its faults are reported later, when all cells are checked.
+/// Checks the time up to which runs of a grid may continue, with the model of the first cell. If that cell
+/// has no model, its faults are reported later, when all cells are checked.
 fn check_first<Q: Question>(
     until: Option<f64>,
     study: &GridStudy<Q>,

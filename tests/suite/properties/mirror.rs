@@ -44,6 +44,7 @@ pub fn image(scene: &Scene) -> Option<Scene> {
     let mut image = scene.clone();
     let odd = match &scene.mechanism {
         Mechanism::Polynomial { coefficients_si } => coefficients_si.iter().step_by(2).all(|c| *c == 0.0),
+        Mechanism::Pieces { .. } => false,
         _ => true,
     };
     if !odd && matches!(scene.damping, Damping::Ratio(_)) {
@@ -52,6 +53,15 @@ pub fn image(scene: &Scene) -> Option<Scene> {
     match &mut image.mechanism {
         Mechanism::Polynomial { coefficients_si } => {
             coefficients_si.iter_mut().step_by(2).for_each(|c| *c = -*c);
+        }
+        Mechanism::Pieces { ends_m, pieces, .. } => {
+            ends_m.reverse();
+            ends_m.iter_mut().for_each(|x| *x = -*x);
+            pieces.reverse();
+            for piece in pieces {
+                piece.origin_m = -piece.origin_m;
+                piece.coefficients_si.iter_mut().step_by(2).for_each(|c| *c = -*c);
+            }
         }
         Mechanism::Table { path, .. } if path != "force_dl2.7.csv" => return None,
         _ => {}

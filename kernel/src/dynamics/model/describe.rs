@@ -147,8 +147,9 @@ fn compliant(model: &Model, stop: &Hertz, [left, right]: [f64; 2]) -> Vec<String
         let (quiet, ringing) = (steps(QUIET_STEPS_PER_PERIOD), steps(RINGING_STEPS_PER_PERIOD));
         let [hz, um, quiet, ringing] = [frequency, depth * 1e6, quiet, ringing].map(short);
         lines.push(format!(
-            "a mass that rests on one oscillates at {hz} Hz about a depth of {um} um, and this is integrated: \
-             a second takes about {quiet} steps while it is quiet and up to {ringing} while it rings"
+            "a mass that rests on one oscillates at {hz} Hz about a depth of {um} um, and this is \
+             integrated: a second takes about {quiet} steps while it is quiet and up to {ringing} while it \
+             rings"
         ));
     }
     lines

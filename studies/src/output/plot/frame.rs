@@ -17,7 +17,6 @@ const CLOUD: (f64, f64) = (6.0, 2.2);
 const FEW: f64 = 100.0;
 /// Number of points from which on it has many.
 const MANY: f64 = 2000.0;
-
 /// Length of a tick of a layer.
 const TICK: f64 = 20.0;
 /// Smallest distance of two such ticks.

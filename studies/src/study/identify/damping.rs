@@ -27,11 +27,11 @@ const CLEAR: f64 = 1.5;
 /// Each turning point is fitted separately (see `peaks`) and an exponential envelope through them by weighted
 /// least squares (see [`Envelope`]), whose rate r is the decay rate of the amplitude. Over half a period of
 /// T/2 the amplitude falls by d = r T/2, half the logarithmic decrement, and the damping ratio is
-/// d/sqrt(pi^2 + d^2). For an oscillator with mass m and damping coefficient c and a linear force, or one that
-/// is linear on each side of a kink at the bottom of the well, r is c/(2 m). The rest position need not be
-/// known, and the two sides may have different amplitudes. The period is the slope of a weighted straight line
-/// through the times of the turning points, with an offset between maxima and minima. Intervals are 95 %, from
-/// the scatter of the turning points about envelope and line.
+/// d/sqrt(pi^2 + d^2). For an oscillator with mass m and damping coefficient c and a linear force, or one
+/// that is linear on each side of a kink at the bottom of the well, r is c/(2 m). The rest position need not
+/// be known, and the two sides may have different amplitudes. The period is the slope of a weighted straight
+/// line through the times of the turning points, with an offset between maxima and minima. Intervals are
+/// 95 %, from the scatter of the turning points about envelope and line.
 ///
 /// The fit begins after the last flat top of a clipped record, otherwise at the largest oscillation. Rows:
 /// `turns,from_s,to_s,amplitude,damping_ratio,damping_ratio_low,damping_ratio_high,frequency_hz,
