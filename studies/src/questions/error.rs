@@ -175,11 +175,15 @@ fn scene_faults(error: &SceneError) -> Vec<FaultAt> {
 }
 
 /// Replaces options of the command line in a text by names of arguments: `--until-settled` by
-/// `until_settled`. A word is an option if it begins with two hyphens and a letter.
+/// `until_settled`. A word is an option if, after brackets and quotes, it begins with two hyphens
+/// and a letter.
 fn with_argument_names(text: &str) -> String {
     let renamed = |word: &str| {
-        let is_option = word.starts_with("--") && word[2..].starts_with(|c: char| c.is_ascii_lowercase());
-        if is_option { word[2..].replace('-', "_") } else { word.to_owned() }
+        let (open, rest) = word.split_at(word.len() - word.trim_start_matches(['(', '\'', '"', '`']).len());
+        match rest.strip_prefix("--").filter(|name| name.starts_with(|c: char| c.is_ascii_lowercase())) {
+            Some(name) => format!("{open}{}", name.replace('-', "_")),
+            None => word.to_owned(),
+        }
     };
     text.split_inclusive(char::is_whitespace).map(renamed).collect()
 }
@@ -242,4 +246,19 @@ pub fn check_until_settled(until: f64, text: &str, document: &Document, model: &
         return Err(Error::argument("until_settled", text, format!("at most {MAX_UNTIL_SETTLED:e} s")));
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::with_argument_names;
+
+    #[test]
+    fn options_become_arguments_and_paths_stay() {
+        assert_eq!(
+            with_argument_names(
+                "take a longer step (--dt)\nor `--until-settled`; not my--scene-2.ron or --2"
+            ),
+            "take a longer step (dt)\nor `until_settled`; not my--scene-2.ron or --2"
+        );
+    }
 }
