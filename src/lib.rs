@@ -50,7 +50,7 @@
 //! // A question about the scene: a struct with a method `run`, which answers with a table.
 //! let sweep = Sweep::over("excitation.amplitude_g", 0.5..=1.5, 5);
 //! let table = sweep.run(&simulation, &Progress::none())?;
-//! assert_eq!(table.words("regime"), ["intrawell", "intrawell", "interwell", "interwell", "interwell"]);
+//! assert_eq!(table.words("regime"), ["rest", "intrawell", "interwell", "interwell", "interwell"]);
 //! # Ok::<(), interwell::Error>(())
 //! ```
 //!
