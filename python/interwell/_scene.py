@@ -57,6 +57,15 @@ def _over(over: Over | None) -> tuple[list[tuple[str, list[float]]], dict[str, A
     return [(field, array.tolist()) for field, array in arrays.items()], arrays
 
 
+def _count(name: str, value: int | None, below: int = 2**32) -> int | None:
+    """Return a whole number that is not negative."""
+    if value is None:
+        return None
+    if not isinstance(value, (int, np.integer)) or not 0 <= value < below:
+        raise _wrong(name, repr(value), "give a whole number from 0 up")
+    return int(value)
+
+
 def _wrong(field: str, value: str, problem: str) -> SceneError:
     return SceneError(f"{field} = {value}: {problem}", [Fault("", None, field, value, problem)])
 
@@ -312,8 +321,10 @@ class Scene:
         """
         names = [columns] if isinstance(columns, str) else list(columns)
         axes, arrays = _over(over)
+        if not axes:
+            raise _wrong("over", "{}", "name a field and its values")
         with _Told(progress, "cells") as told:
-            answer = self._simulation.sweep(axes, names, until_settled, carry, threads, told)
+            answer = self._simulation.sweep(axes, names, until_settled, carry, _count("threads", threads), told)
         return Grid(answer, arrays, carry)
 
     def section(
@@ -347,7 +358,15 @@ class Scene:
         axes, _ = _over(over)
         with _Told(progress, "runs") as told:
             answer = self._simulation.section(
-                axes, at, phase_deg, skip, keep, until_settled, carry, threads, told
+                axes,
+                at,
+                phase_deg,
+                _count("skip", skip, 2**64),
+                _count("keep", keep, 2**64),
+                until_settled,
+                carry,
+                _count("threads", threads),
+                told,
             )
         return Table(answer)
 
@@ -389,7 +408,9 @@ class Scene:
         ends = f"{_value(float(range[0]))}:{_value(float(range[1]))}"
         searched = f"{field}={ends}" + ("" if step is None else f":{_value(float(step))}")
         with _Told(progress, "values") as told:
-            answer = self._simulation.threshold(axes, searched, of, resolution, until_settled, threads, told)
+            answer = self._simulation.threshold(
+                axes, searched, of, resolution, until_settled, _count("threads", threads), told
+            )
         return Table(answer)
 
     def basins(
@@ -411,9 +432,14 @@ class Scene:
         random, seed
             Draw so many starts from both ranges, in place of a grid.
         """
-        drawn = None if random is None else (random, seed)
+        seeds = (_count("random", random, 2**64) or 0, _count("seed", seed, 2**64) or 0)
+        drawn = None if random is None else seeds
+        ranges = [("x_mm", x_mm), ("v_m_per_s", v_m_per_s)]
+        starts_x, starts_v = ((low, high, _count(name, count) or 0) for name, (low, high, count) in ranges)
         with _Told(progress, "starts") as told:
-            starts, attractors = self._simulation.basins(x_mm, v_m_per_s, drawn, threads, told)
+            starts, attractors = self._simulation.basins(
+                starts_x, starts_v, drawn, _count("threads", threads), told
+            )
         return Basins(starts, attractors)
 
     def orbit(self, period: int | None = None, *, phase_deg: float = 0.0) -> Table:
@@ -426,7 +452,7 @@ class Scene:
         phase_deg
             Phase of the drive in degrees at which the state is taken.
         """
-        return Table(self._simulation.orbit(period, phase_deg))
+        return Table(self._simulation.orbit(_count("period", period), phase_deg))
 
     def branch(
         self,
@@ -448,7 +474,9 @@ class Scene:
             See :meth:`orbit`.
         """
         with _Told(progress, "motions") as told:
-            answer = self._simulation.branch(field, (start, end), period, phase_deg, told)
+            answer = self._simulation.branch(
+                field, (start, end), _count("period", period), phase_deg, told
+            )
         return Table(answer)
 
     def exponents(
@@ -473,7 +501,9 @@ class Scene:
         """
         axes, arrays = _over(over)
         with _Told(progress, "cells") as told:
-            answer = self._simulation.exponents(axes, periods, until_settled, threads, told)
+            answer = self._simulation.exponents(
+                axes, _count("periods", periods), until_settled, _count("threads", threads), told
+            )
         return Grid(answer, arrays) if arrays else Table(answer)
 
     def spectrum(
@@ -517,7 +547,9 @@ class Scene:
         names = [scene.name.removeprefix("built-in ") for scene in (self, *scenes)]
         pairs = [(name, scene._simulation) for name, scene in zip(names[1:], scenes)]
         with _Told(progress, "parts") as told:
-            answer = self._simulation.compare(names[0], pairs, until_settled, threads, told)
+            answer = self._simulation.compare(
+                names[0], pairs, until_settled, _count("threads", threads), told
+            )
         return Table(answer)
 
     def best(
@@ -556,7 +588,15 @@ class Scene:
         places = [environment] if isinstance(environment, str) else list(environment)
         with _Told(progress, "runs") as told:
             answer = self._simulation.best(
-                ranges, maximise, limits, places, varied, seed, until_settled, threads, told
+                ranges,
+                maximise,
+                limits,
+                places,
+                varied,
+                _count("seed", seed, 2**64) or 0,
+                until_settled,
+                _count("threads", threads),
+                told,
             )
         return Table(answer)
 
@@ -610,6 +650,6 @@ def identify(
         [start, end],
         impact_times,
         [left_mm, right_mm],
-        points,
+        _count("points", points),
     )
     return Identified(answer, summary)

@@ -153,7 +153,7 @@ def test_force_of_a_function(command: Command, tmp_path: pathlib.Path) -> None:
     ours, theirs = scene.run().summary, exact.run().summary
     assert ours["rms_velocity_m_per_s"] == pytest.approx(theirs["rms_velocity_m_per_s"], rel=1e-6)
     # the scene is a file like any other
-    path = tmp_path / "own.ron"
+    path = tmp_path / "cubic.ron"
     scene.save(path)
     assert command("simulate", str(path)) == scene.run().samples.csv()
     grid = scene.sweep({"excitation.amplitude_g": [0.5, 1.0]})

@@ -109,6 +109,12 @@ BAD = [
     (lambda: iw.identify("no.csv", "damping"), "no.csv", ""),
     (lambda: iw.identify("no.csv", "joy"), "of", "of"),
     (lambda: iw.Scene.preset("paper").orbit().plot(), "picture", "plot"),
+    (lambda: iw.Scene.preset("paper").sweep({}), "over", "over"),
+    (lambda: iw.Scene.preset("paper").sweep({"mass_g": [15]}, threads=0), "threads", "threads"),
+    (lambda: iw.Scene.preset("paper").sweep({"mass_g": [15]}, threads=-1), "threads", "threads"),
+    (lambda: iw.Scene.preset("paper").basins((0, 1, -1), (0, 1, 2)), "x_mm", "x_mm"),
+    (lambda: iw.Scene.preset("paper").orbit(period=0), "period", "period"),
+    (lambda: iw.Scene.preset("paper").exponents(periods=-1), "periods", "periods"),
     (lambda: iw.Scene.preset("paper").curve().to_csv("curve.parquet"), "to_pandas", "path"),
     (lambda: iw.Scene.preset("paper").curve([99.0]), "99", "positions"),
 ]

@@ -11,7 +11,7 @@ use interwell::study::{
 };
 
 use super::grid_job::GridJob;
-use super::support::{counted, load_held, load_model, outputs, pool, until_settled, warn};
+use super::support::{counted, load_held, load_model, outputs, pool, until_settled_on_grid, warn};
 use super::{ChartOptions, Common, Failure, Output, Picture, interrupt, whole};
 
 const EXAMPLES: &str = "\
@@ -83,7 +83,7 @@ fn settings(
     model: Option<&Model>,
 ) -> Result<ExponentOptions, Failure> {
     let text = options.until_settled.as_deref();
-    let until_settled = model.map(|model| until_settled(text, document, model)).transpose()?.flatten();
+    let until_settled = until_settled_on_grid(text, document, model)?;
     Ok(ExponentOptions { periods: options.periods.unwrap_or(ExponentOptions::PERIODS), until_settled })
 }
 

@@ -8,7 +8,9 @@ use interwell::study::{
 };
 
 use super::grid_job::GridJob;
-use super::support::{counted, finite, load_held, load_model, outputs, pool, until_settled, warn};
+use super::support::{
+    counted, finite, load_held, load_model, outputs, pool, until_settled, until_settled_on_grid, warn,
+};
 use super::{ChartOptions, Common, Failure, Output, Picture, caption, interrupt, refuse, say, whole};
 
 const EXAMPLES: &str = "\
@@ -125,8 +127,8 @@ fn diagram(options: &Arguments, common: &Common, settings: SectionOptions) -> Re
     let sections = Sections::new(&document.scene, &document.files, grid).with(settings);
     let first = sections.first_model(&interrupt::silent_task());
     // a fault of the first cell is reported below, with its place
-    let until = first.as_ref().map(|model| until_settled(options.until_settled.as_deref(), &document, model));
-    let until_settled = until.transpose()?.flatten();
+    let text = options.until_settled.as_deref();
+    let until_settled = until_settled_on_grid(text, &document, first.as_ref())?;
     let sections = sections.with(SectionOptions { until_settled, ..settings });
     warn(&document, common, &warnings, first.as_ref().map(|model| &**model.mechanism()));
     let pool = pool(common)?;

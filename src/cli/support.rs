@@ -211,6 +211,16 @@ pub fn until_settled(text: Option<&str>, document: &Document, model: &Model) -> 
     Ok(until)
 }
 
+/// The same for a grid, of which `first` is the model of the first cell, or `None` if it has faults, which are
+/// reported with their place, or flexures without a solution.
+pub fn until_settled_on_grid(
+    text: Option<&str>,
+    document: &Document,
+    first: Option<&Model>,
+) -> Result<Option<f64>, Failure> {
+    first.map_or_else(|| waits(text), |model| until_settled(text, document, model))
+}
+
 /// The path of the manifest beside the rows at `out`. Returns `None` if `out` is no regular file.
 pub fn manifest_path(out: &Path) -> Option<PathBuf> {
     is_regular(out).then(|| {

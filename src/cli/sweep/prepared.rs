@@ -12,7 +12,7 @@ use interwell::study::{Carry, Grid, Shard, Slice, SummaryField, Sweep, SweepOpti
 use serde_json::{Value, json};
 
 use super::super::shard::{placed, shard};
-use super::super::support::{load, until_settled, warn};
+use super::super::support::{load, until_settled_on_grid, warn};
 use super::super::{ChartOptions, Common, Failure, Picture, interrupt, refuse};
 
 #[derive(Debug, Args)]
@@ -132,11 +132,11 @@ impl<'a> Prepared<'a> {
         // a fault of the first cell is reported when the cells are checked, with its place
         let first = sweep.first_model(&interrupt::silent_task());
         let until = options.until_settled.clone().or(swept.until_settled.map(|limit| limit.to_string()));
-        let until = first.map(|model| until_settled(until.as_deref(), &document, &model)).transpose()?;
+        let until_settled = until_settled_on_grid(until.as_deref(), &document, first.as_ref())?;
         // the quantity of the picture is computed even if its column is not written
         let shown = picture.map(|_| &options.quantity).filter(|name| !columns.contains(name));
         let fields = columns.iter().chain(shown).filter_map(|name| SummaryField::find(name)).collect();
-        let sweep = sweep.with(SweepOptions { columns: fields, until_settled: until.flatten(), carry });
+        let sweep = sweep.with(SweepOptions { columns: fields, until_settled, carry });
         let slice = sweep.slice(shard);
         warn(&document, common, &warnings, mechanism.as_deref());
         let view = view(options, sweep.grid())?;

@@ -85,7 +85,10 @@ impl<'a> Progress<'a> {
 
     /// Runs `work` with a thread pool.
     pub(super) fn pool<R>(&self, work: impl FnOnce(&Pool) -> R) -> Result<R, Error> {
-        let count = self.threads.unwrap_or_else(processors).max(1);
+        let count = self.threads.unwrap_or_else(processors);
+        if count == 0 {
+            return Err(Error::argument("threads", count, "give at least 1"));
+        }
         let last = POOL.lock().unwrap_or_else(PoisonError::into_inner).take();
         let pool = match last {
             Some(pool) if pool.is_alive() && pool.count() == count => pool,
