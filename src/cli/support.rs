@@ -211,8 +211,8 @@ pub fn until_settled(text: Option<&str>, document: &Document, model: &Model) -> 
     Ok(until)
 }
 
-/// The same for a grid, of which `first` is the model of the first cell, or `None` if it has faults, which are
-/// reported with their place, or flexures without a solution.
+/// The same for a grid, of which `first` is the model of the first cell: `None` if that has flexures without a
+/// solution, or faults, which are reported later with their place.
 pub fn until_settled_on_grid(
     text: Option<&str>,
     document: &Document,
