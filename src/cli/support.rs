@@ -211,7 +211,7 @@ pub fn until_settled(text: Option<&str>, document: &Document, model: &Model) -> 
     Ok(until)
 }
 
-/// The same for a grid, of which `first` is the model of the first cell: `None` if that has flexures without a
+/// The same for a grid. `first` is the model of its first cell: `None` if that has flexures without a
 /// solution, or faults, which are reported later with their place.
 pub fn until_settled_on_grid(
     text: Option<&str>,
