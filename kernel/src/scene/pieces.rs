@@ -45,12 +45,11 @@ pub(super) fn check(at: &str, described: &Mechanism, checked: &mut Checked) {
             return checked.fault(field, number_text(*bad), problem);
         }
     }
-    let (first, last) = (ends_m[0], ends_m[pieces.len()]);
     let inner = &ends_m[1..pieces.len()];
-    let ascending = ends_m.windows(2).all(|pair| pair[0] < pair[1]);
-    if !ascending || first == f64::INFINITY || last == f64::NEG_INFINITY {
+    // ends that ascend are infinite at no other place
+    if let Some(pair) = ends_m.windows(2).find(|pair| !(pair[0] < pair[1])) {
         let problem = "must ascend, in m; the first may be -inf and the last inf";
-        return checked.fault(format!("{at}.ends_m"), number_text(first), problem);
+        return checked.fault(format!("{at}.ends_m"), number_text(pair[1]), problem);
     }
     let forces: Vec<(f64, f64)> =
         inner.iter().zip(pieces.windows(2)).map(|(x, pair)| (pair[0].force(*x), pair[1].force(*x))).collect();
