@@ -4,11 +4,12 @@ use clap::Args;
 use interwell::dynamics::Regime;
 use interwell::numeric::short;
 use interwell::output::{ComparisonPicture, comparison_chart};
-use interwell::scene::{Document, Excitation, RunSettings, Stops, Transducer};
+use interwell::questions::{in_environment, needs_a_sine};
+use interwell::scene::{Document, RunSettings, Stops, Transducer};
 use interwell::study::{Alternative, Rated, alternatives, comparison_parts, comparison_table};
 
-use super::support::{inputs, load, mechanism, model_from_rest, pool, read, until_settled, warn};
-use super::{Common, Failure, Output, Outputs, Picture, PlotOptions, caption, refuse, with_bar};
+use super::support::{inputs, load, mechanism, model, pool, read, until_settled, warn};
+use super::{Common, Failure, Output, Outputs, Picture, PlotOptions, caption, with_bar};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -44,16 +45,10 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let picture = Picture::new(&options.plot, common)?;
     let environment = options.environment.as_deref().or(options.scenes.first().map(String::as_str));
     let environment = read(environment.unwrap_or("paper"), common)?;
-    let Excitation::Sine { frequency_hz, amplitude_g, .. } = environment.scene.excitation else {
-        refuse!(
-            "{}: its excitation is no Sine; amplitude and frequency of one are searched: name a scene \
-             with a Sine first, or by --environment",
-            environment.name
-        );
-    };
+    let (frequency_hz, amplitude_g) = needs_a_sine(&environment)?;
     let (mut all, mut files, mut replaced, mut until) = (Vec::new(), Vec::new(), Vec::new(), None);
     for spec in &options.scenes {
-        let (mut document, warnings) = load(spec, common, None)?;
+        let (document, warnings) = load(spec, common, None)?;
         let (scene, lent) = (&document.scene, &environment.scene);
         let how = match (scene.excitation != lent.excitation, window(&scene.run) != window(&lent.run)) {
             (true, true) => Some("under the excitation and with the run of"),
@@ -62,12 +57,10 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
             (false, false) => None,
         };
         replaced.extend(how.map(|how| (plain(spec), format!("{how} {}", environment.name))));
-        document.scene.excitation = environment.scene.excitation.clone();
-        document.scene.run = environment.scene.run;
-        document.scene.sweep.clear(); // the other excitation may not have its fields
+        let document = in_environment(&document, &environment);
         document.check()?;
         let mechanism = mechanism(&document)?;
-        let model = model_from_rest(&document, &mechanism)?;
+        let model = model(&document, &mechanism)?;
         until = until_settled(options.until_settled.as_deref(), &document, &model)?;
         warn(&document, common, &warnings, Some(&mechanism));
         files.extend(inputs(spec, &document));

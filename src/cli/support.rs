@@ -8,7 +8,7 @@ use interwell::dynamics::Model;
 use interwell::mechanics::Mechanism;
 use interwell::output::{Provenance, is_regular};
 use interwell::questions::{Error, Simulation, check_until_settled};
-use interwell::scene::{Document, Scene, SceneError, Start};
+use interwell::scene::{Document, SceneError};
 use interwell::system::clock::{ProcessClock, WallClock};
 use interwell::system::threads::{Pool, processors};
 
@@ -118,12 +118,6 @@ pub fn mechanism(document: &Document) -> Result<Arc<Mechanism>, Failure> {
 pub fn model(document: &Document, mechanism: &Arc<Mechanism>) -> Result<Model, Failure> {
     let model = Model::build(&document.scene, Arc::clone(mechanism));
     model.map_err(|faults| document.error_from(faults).into())
-}
-
-/// The model of a scene from rest, whatever its start is.
-pub fn model_from_rest(document: &Document, mechanism: &Arc<Mechanism>) -> Result<Model, Failure> {
-    let trial = Scene { start: Start::Rest, ..document.scene.clone() };
-    Model::build(&trial, Arc::clone(mechanism)).map_err(|faults| document.error_from(faults).into())
 }
 
 /// Loads the scene and its mechanism and prints the warnings of both.

@@ -12,7 +12,7 @@ mod progress;
 mod record;
 mod simulation;
 
-pub use design::{Best, BestAnswer, Compare, needs_a_sine};
+pub use design::{Best, BestAnswer, Compare, in_environment, needs_a_sine};
 pub use error::{Error, FaultAt, check_until_settled};
 pub use grid::{Exponents, Section, Sweep, Threshold, column_names, drive_alone, refuse_electrical_state};
 pub use motion::{Basins, BasinsAnswer, Branch, Curve, Orbit, Spectrum, can_have_orbits, no_orbit};
