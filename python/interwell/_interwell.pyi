@@ -51,6 +51,12 @@ class Simulation:
         tolerance: float,
         breaks: Sequence[float],
     ) -> tuple[Simulation, float]: ...
+    def with_drive(
+        self,
+        acceleration: Callable[[float], float] | Sequence[float],
+        frequency_hz: float,
+        tolerance: float,
+    ) -> Simulation: ...
     @property
     def name(self) -> str: ...
     @property

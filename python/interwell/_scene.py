@@ -43,17 +43,21 @@ def _changes(fields: Mapping[str, Any], prefix: str = "") -> list[tuple[str, str
     return changes
 
 
+def _numbers(name: str, values: npt.ArrayLike) -> Array:
+    """Return the values as an array of one axis."""
+    try:
+        array = np.atleast_1d(np.asarray(values, dtype=float))
+    except (TypeError, ValueError) as error:
+        raise _wrong(name, repr(values), "give numbers, such as numpy.linspace(0, 2, 101)") from error
+    if array.ndim != 1:
+        raise _wrong(name, f"an array of shape {array.shape}", "give values along one axis")
+    return array
+
+
 def _over(over: Over | None) -> tuple[list[tuple[str, list[float]]], dict[str, Array]]:
     arrays: dict[str, Array] = {}
     for field, values in (over or {}).items():
-        try:
-            array = np.atleast_1d(np.asarray(values, dtype=float))
-        except (TypeError, ValueError) as error:
-            problem = "give numbers, such as numpy.linspace(0, 2, 101)"
-            raise _wrong(field, repr(values), problem) from error
-        if array.ndim != 1:
-            raise _wrong(field, f"an array of shape {array.shape}", "give values along one axis")
-        arrays[field] = array
+        arrays[field] = _numbers(field, values)
     return [(field, array.tolist()) for field, array in arrays.items()], arrays
 
 
@@ -196,6 +200,41 @@ class Scene:
         places = [float(place) for place in breaks]
         simulation, _ = self._simulation.with_force(force, ends, float(tolerance), places)
         return self._of(simulation)
+
+    def with_drive(
+        self,
+        acceleration: Callable[[float], float] | npt.ArrayLike,
+        frequency_hz: float,
+        *,
+        tolerance: float = 1e-6,
+    ) -> Scene:
+        """Return the scene with a periodic drive of one's own in place of its excitation.
+
+        The drive becomes a sum of sines, the trigonometric interpolation of the function or of the samples. The
+        function is not called again.
+
+        Parameters
+        ----------
+        acceleration
+            Acceleration of the base in m/s²: a function of the time in s, of which the period from 0 on is used,
+            or 1 to 4096 evenly spaced samples of one period, the first at time 0, without the period's end.
+        frequency_hz
+            One over the period, in Hz, with at most 11 digits.
+        tolerance
+            Largest difference from a function, relative to its largest value, 1e-12 to 0.1. It holds at all
+            places that were compared, four in each interval between samples.
+
+        Raises
+        ------
+        SceneError
+            If a value is not finite, or if 2048 harmonics do not follow the function: it jumps.
+        """
+        given: Callable[[float], float] | list[float]
+        if callable(acceleration):
+            given = acceleration
+        else:
+            given = _numbers("acceleration", acceleration).tolist()
+        return self._of(self._simulation.with_drive(given, float(frequency_hz), float(tolerance)))
 
     def __getitem__(self, field: str) -> Any:
         """Return the value of a field by its dotted path: a number, or a word such as the name of a choice."""

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use interwell_kernel::dynamics::Summary;
 use interwell_kernel::mechanics::{FitReport, ForceCurve};
 use interwell_kernel::numeric::Taper;
-use interwell_kernel::scene::{FieldPath, PRESETS, all_fields, write};
+use interwell_kernel::scene::{Excitation, FieldPath, PRESETS, all_fields, write};
 use interwell_studies::output::{
     Caption, ComparisonPicture, ExponentPicture, Overlay, Provenance, Ranges, RunPanel, SectionPicture,
     SpectrumQuantity, SweepPicture, ThresholdPicture, View, basins_chart, branch_chart, comparison_chart,
@@ -123,17 +123,7 @@ impl Simulation {
         breaks: Vec<f64>,
     ) -> PyResult<(Self, f64)> {
         let failed = RefCell::new(None);
-        let call = |x: f64| {
-            if failed.borrow().is_some() {
-                return f64::NAN;
-            }
-            let value = force.call1((x,)).and_then(|value| value.extract::<f64>());
-            value.unwrap_or_else(|error| {
-                *failed.borrow_mut() = Some(error);
-                f64::NAN
-            })
-        };
-        let curve = ForceCurve::from_fn(call, range, tolerance, &breaks);
+        let curve = ForceCurve::from_fn(values_of(force, &failed), range, tolerance, &breaks);
         if let Some(error) = failed.into_inner() {
             return Err(error);
         }
@@ -141,6 +131,27 @@ impl Simulation {
         let error = curve.fit().map_or(0.0, |FitReport { worst_n, .. }| *worst_n);
         let inner = work(py, &Way::default(), |_| self.inner.with_force(&curve))?;
         Ok((Self::new(inner), error))
+    }
+
+    /// The scene with the drive of a function of the time, or of samples of one period.
+    fn with_drive(
+        &self,
+        py: Python<'_>,
+        acceleration: &Bound<'_, PyAny>,
+        frequency_hz: f64,
+        tolerance: f64,
+    ) -> PyResult<Self> {
+        let failed = RefCell::new(None);
+        let drive = if acceleration.is_callable() {
+            Excitation::from_fn(values_of(acceleration, &failed), frequency_hz, tolerance)
+        } else {
+            Excitation::from_samples(&acceleration.extract::<Vec<f64>>()?, frequency_hz)
+        };
+        if let Some(error) = failed.into_inner() {
+            return Err(error);
+        }
+        let drive = drive.map_err(|problem| raised(py, &Error::argument("acceleration", "", problem)))?;
+        work(py, &Way::default(), |_| self.inner.with_drive(&drive.excitation)).map(Self::new)
     }
 
     #[getter]
@@ -581,4 +592,18 @@ pub fn presets() -> Vec<(&'static str, String)> {
             .map_or_else(|_| String::new(), |read| read.scene.title)
     };
     PRESETS.iter().map(|preset| (preset.name, title(preset.name))).collect()
+}
+
+/// A Python function of a number. After its first exception, which is kept in `failed`, its values are NaN.
+fn values_of(function: &Bound<'_, PyAny>, failed: &RefCell<Option<PyErr>>) -> impl Fn(f64) -> f64 {
+    move |x: f64| {
+        if failed.borrow().is_some() {
+            return f64::NAN;
+        }
+        let value = function.call1((x,)).and_then(|value| value.extract::<f64>());
+        value.unwrap_or_else(|error| {
+            *failed.borrow_mut() = Some(error);
+            f64::NAN
+        })
+    }
 }

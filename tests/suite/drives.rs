@@ -3,7 +3,9 @@
 use std::f64::consts::TAU;
 
 use interwell::dynamics::{EventKind, Request, STANDARD_GRAVITY};
-use interwell::scene::{Document, Files};
+use interwell::scene::{Document, DriveError, Excitation, Files};
+use interwell::{Orbit, Progress, Simulation};
+use proptest::prelude::*;
 
 use crate::support::*;
 
@@ -331,4 +333,110 @@ fn a_seed_and_a_number_of_lines_are_whole_and_can_be_swept() {
     assert!(fraction.contains("whole"), "{fraction}");
     document.set("excitation.high_hz=0.5").unwrap();
     assert!(document.check().unwrap_err().to_string().contains("must be above excitation.low_hz = 1"));
+}
+
+/// A free mass under a drive, for its acceleration.
+fn driven(drive: &Excitation) -> Simulation {
+    let scene = "(title: \"\", mass_g: 1000, mechanism: Polynomial(coefficients_si: [0]),
+        start: At(x_mm: 0, v_m_per_s: 0), run: (duration_s: 1, tolerance: 1e-12))";
+    Simulation::from_text("free.ron", scene).unwrap().with_drive(drive).unwrap()
+}
+
+/// The acceleration of a drive at these times.
+fn accelerations(drive: &Excitation, times: &[f64]) -> Vec<f64> {
+    run_at(driven(drive).model(), times).samples.iter().map(|sample| sample.base_accel).collect()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 40, ..ProptestConfig::default() })]
+
+    /// A smooth periodic function is followed as closely as was asked for, at times that were not compared,
+    /// and the drive repeats.
+    #[test]
+    fn a_drive_of_a_function_is_the_function(
+        digits in 1.0..11.0_f64,
+        decimals in 1_u64..99_999,
+        (mean, sharp) in (-5.0..5.0_f64, 0.0..12.0_f64),
+        terms in proptest::collection::vec((1_u32..30, -9.0..9.0_f64, 0.0..1.0_f64), 0..5),
+        shares in proptest::collection::vec(0.0..1.0_f64, 30),
+    ) {
+        let frequency = decimals as f64 / 1e3;
+        let function = |t: f64| {
+            let pulse = 3.0 * (sharp * ((TAU * frequency * t).cos() - 1.0)).exp();
+            let wave = |term: &(u32, f64, f64)| {
+                let (k, a, phase) = *term;
+                a * (TAU * (f64::from(k) * frequency * t + phase)).sin()
+            };
+            mean + pulse + terms.iter().map(wave).sum::<f64>()
+        };
+        let tolerance = 10.0_f64.powf(-digits);
+        let drive = Excitation::from_fn(function, frequency, tolerance).unwrap();
+        let largest = mean.abs() + 3.0 + terms.iter().map(|term| term.1.abs()).sum::<f64>();
+        prop_assert!(drive.error <= tolerance * largest);
+        let mut times: Vec<f64> = shares.iter().map(|share| share / frequency).collect();
+        times.retain(|t| *t <= 1.0);
+        times.sort_by(f64::total_cmp);
+        for (t, found) in times.iter().zip(accelerations(&drive.excitation, &times)) {
+            // the largest error may lie between the places that were compared
+            let bound = 1.5 * drive.error + 0.1 * tolerance * largest + 1e-12 * largest;
+            let error = (found - function(*t)).abs();
+            prop_assert!(error <= bound, "{} at {} s, bound {}", error, t, bound);
+        }
+        prop_assert!(driven(&drive.excitation).model().repeats());
+    }
+
+    /// A drive of samples has the samples, and goes through its text in a scene.
+    #[test]
+    fn a_drive_of_samples_has_the_samples(
+        values in proptest::collection::vec(-20.0..20.0_f64, 1..80),
+        hz in 1_u32..9,
+    ) {
+        let frequency = f64::from(hz);
+        let drive = Excitation::from_samples(&values, frequency).unwrap();
+        let times: Vec<f64> = (0..values.len()).map(|i| i as f64 / values.len() as f64 / frequency).collect();
+        let bound = 1e-12 * 20.0 * values.len() as f64;
+        for (value, found) in values.iter().zip(accelerations(&drive.excitation, &times)) {
+            prop_assert!((value - found).abs() < bound, "{} is not {}", found, value);
+        }
+        let scene = driven(&drive.excitation).document().scene.clone();
+        let text = interwell::scene::write(&scene).unwrap();
+        let read = Document::from_text("s.ron", &text, Files::default()).unwrap();
+        prop_assert_eq!(read.scene.excitation, drive.excitation);
+    }
+}
+
+#[test]
+fn a_drive_of_a_function_works_in_the_studies() {
+    // sin^3 is two sines, which a scene can also write; the orbit has the period of the drive
+    let simulation = Simulation::preset("nominal-cubic").unwrap();
+    let cubed = |t: f64| 20.0 * (TAU * 3.0 * t).sin().powi(3);
+    let drive = Excitation::from_fn(cubed, 3.0, 1e-10).unwrap();
+    let ours = simulation.with_drive(&drive.excitation).unwrap();
+    let sine = |hz: f64, m_per_s2: f64| Excitation::Sine {
+        frequency_hz: hz,
+        amplitude_g: m_per_s2 / STANDARD_GRAVITY,
+        phase_deg: 0.0,
+    };
+    let written = simulation.with_drive(&Excitation::Sum(vec![sine(3.0, 15.0), sine(9.0, -5.0)])).unwrap();
+    let run = |simulation: &Simulation| simulation.run(&Request::default()).summary.rms_velocity.unwrap();
+    near(run(&ours), run(&written), 1e-6 * run(&written));
+    let orbit = Orbit::default().run(&ours, &Progress::none()).unwrap();
+    near(ours.model().forcing_period().unwrap(), 1.0 / 3.0, 1e-15);
+    assert!(orbit.period >= 1);
+}
+
+#[test]
+fn what_is_no_drive_is_refused_with_a_remedy() {
+    let from_fn = |f: fn(f64) -> f64, hz, tolerance| Excitation::from_fn(f, hz, tolerance).unwrap_err();
+    let square = from_fn(|t| if t < 0.5 { 1.0 } else { -1.0 }, 1.0, 1e-3);
+    assert!(matches!(square, DriveError::Unresolved(..)), "{square}");
+    assert!(square.to_string().contains("Recorded"), "{square}");
+    assert!(matches!(from_fn(|t| 1.0 / (t - 0.5), 1.0, 1e-3), DriveError::NotFinite(..)));
+    assert_eq!(from_fn(|_| 2e30, 1.0, 1e-3), DriveError::TooLarge(0.0, 2e30));
+    assert_eq!(from_fn(f64::sin, 0.0, 1e-3), DriveError::Frequency(0.0));
+    assert_eq!(from_fn(f64::sin, 1.0, 0.5), DriveError::Tolerance(0.5));
+    let third = from_fn(f64::sin, 1.0 / 3.0, 1e-3);
+    assert!(third.to_string().ends_with("give 0.33333333333 Hz"), "{third}");
+    assert_eq!(Excitation::from_samples(&[], 1.0).unwrap_err(), DriveError::Samples(0));
+    assert_eq!(Excitation::from_samples(&[0.0; 4], 1.0).unwrap().excitation, Excitation::None);
 }

@@ -31,6 +31,7 @@ pub mod lesson;
 mod manifest;
 mod measured;
 mod mechanism;
+mod periodic;
 mod pieces;
 mod presets;
 mod record;
@@ -62,6 +63,7 @@ pub use measured::{
     MeasuredError, MeasuredText, read_measured,
 };
 pub use mechanism::{FlexureGroup, ForcePiece, Mechanism};
+pub use periodic::{DriveError, PeriodicDrive};
 pub use presets::{EmbeddedTable, PRESETS, Preset, TABLES, export};
 pub use record::{Record, read_record};
 pub use scanner::{Place, Places, has_comments};

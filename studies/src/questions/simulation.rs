@@ -8,7 +8,7 @@ use super::{Error, Progress, check_until_settled};
 use crate::dynamics::{Model, Outcome, Request, Run, Summary};
 use crate::mechanics::{ForceCurve, Mechanism};
 use crate::numeric::number_text;
-use crate::scene::{Axis, Document, Files, Scene};
+use crate::scene::{Axis, Document, Excitation, Files, Scene};
 use crate::study::{Grid, Keep, Sampling, Table, sample_times, simulate};
 
 /// A checked scene with its model.
@@ -115,6 +115,15 @@ impl Simulation {
         document.scene.mechanism = curve.to_scene();
         document.scene.sweep.retain(|axis| !axis.field.starts_with("mechanism"));
         Self::of(document)
+    }
+
+    /// The simulation with this drive in place of its excitation, such as one that
+    /// [`Excitation::from_fn`] or [`Excitation::from_samples`] makes.
+    pub fn with_drive(&self, drive: &Excitation) -> Result<Self, Error> {
+        let mut document = self.document.clone();
+        document.scene.excitation = drive.clone();
+        document.scene.sweep.retain(|axis| !axis.field.starts_with("excitation"));
+        self.with_document(document)
     }
 
     /// Runs the scene once.
