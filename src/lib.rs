@@ -54,6 +54,12 @@
 //! # Ok::<(), interwell::Error>(())
 //! ```
 //!
+//! # The questions
+//!
+//! The page of [`questions`] lists them all, with the options that they share and their errors. The page of
+//! each has the columns of its table with their units, its method with the source, what its options trade,
+//! and an example.
+//!
 //! # The layers
 //!
 //! Each layer may use the layers above it in this table, and none below:

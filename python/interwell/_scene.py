@@ -112,7 +112,17 @@ class _Told:
 
 
 def presets() -> dict[str, str]:
-    """Return the names of the built-in scenes, each with its title."""
+    """Return the names of the built-in scenes, each with its title.
+
+    Returns
+    -------
+    dict of str to str
+
+    Examples
+    --------
+    >>> iw.presets()["paper"]
+    'Prototype with travel limits'
+    """
     return dict(_interwell.presets())
 
 
@@ -121,18 +131,33 @@ class Scene:
 
     Parameters
     ----------
-    source
+    source : str or path
         A scene file (RON), or the name of a built-in scene such as ``"paper"``; :func:`presets` lists them.
 
     Raises
     ------
     SceneError
         If the scene cannot be read, or has faults; ``error.faults`` lists them all.
+    ComputationError
+        If its flexures have no solution.
 
     Notes
     -----
     A scene does not change: :meth:`set` returns another one. Fields, units and ranges are those of scene
-    files.
+    files; a field has its unit in its name (``mass_g``, ``stops.travel_limit_mm``). The mechanism is solved
+    once, when the scene is made; flexures take longest.
+
+    Ctrl-C ends every question with ``KeyboardInterrupt``. The lock of the interpreter is released while a
+    question is computed. A wrong argument is a :class:`SceneError`, or a ``TypeError`` or ``ValueError``
+    where it has the wrong type.
+
+    Examples
+    --------
+    The examples of the methods go on with this scene.
+
+    >>> scene = iw.Scene("nominal-cubic")
+    >>> scene["stops.travel_limit_mm"]
+    4.0
     """
 
     def __init__(self, source: str | os.PathLike[str]) -> None:
@@ -146,12 +171,57 @@ class Scene:
 
     @classmethod
     def preset(cls, name: str) -> Scene:
-        """Return a built-in scene."""
+        """Return a built-in scene.
+
+        Parameters
+        ----------
+        name : str
+            Its name; :func:`presets` lists them.
+
+        Returns
+        -------
+        Scene
+
+        Raises
+        ------
+        SceneError
+            If there is no built-in scene of this name.
+
+        Examples
+        --------
+        >>> iw.Scene.preset("paper").title
+        'Prototype with travel limits'
+        """
         return cls._of(_interwell.Simulation.preset(name))
 
     @classmethod
     def from_text(cls, text: str, name: str = "scene") -> Scene:
-        """Return the scene of a text in RON; ``name`` stands for it in messages."""
+        """Return the scene of a text.
+
+        Parameters
+        ----------
+        text : str
+            The scene in RON, as in a scene file. Files that it names must have absolute paths or be built-in
+            tables.
+        name : str
+            What stands for it in messages.
+
+        Returns
+        -------
+        Scene
+
+        Raises
+        ------
+        SceneError
+            If the text is no scene, or the scene has faults.
+        ComputationError
+            If its flexures have no solution.
+
+        Examples
+        --------
+        >>> iw.Scene.from_text(scene.text)["mass_g"]
+        15.2
+        """
         return cls._of(_interwell.Simulation.from_text(name, text))
 
     def set(self, changes: Mapping[str, Any] | None = None, /, **fields: Any) -> Scene:
@@ -159,16 +229,29 @@ class Scene:
 
         Parameters
         ----------
-        changes
+        changes : mapping, optional
             Values by dotted path, ``{"stops.travel_limit_mm": 1.5}``, or nested as in ``fields``.
         **fields
             Values by name, nested: ``excitation={"amplitude_g": 1.3}``. A text is a value as a scene file has
             it: ``stops="Rigid(travel_limit_mm: 4, restitution: 0.36)"``.
 
+        Returns
+        -------
+        Scene
+            It shares the mechanism with this one if no field of the mechanism is changed.
+
         Raises
         ------
         SceneError
-            If a field is not known, or the changed scene has faults.
+            If a field is not known, or the changed scene has faults. All changes are made before it is
+            checked.
+        ComputationError
+            If changed flexures have no solution.
+
+        Examples
+        --------
+        >>> scene.set(excitation={"amplitude_g": 1.3})["excitation.amplitude_g"]
+        1.3
         """
         return self._of(self._simulation.with_all(_changes({**(changes or {}), **fields})))
 
@@ -186,15 +269,39 @@ class Scene:
 
         Parameters
         ----------
-        force
-            Force in N that holds the mass at a position in m; the derivative of the potential.
-        range
+        force : callable
+            Force in N that holds the mass at a position in m; the derivative of the potential. It is called
+            with one float and returns one.
+        range : (float, float)
             First and last position in m.
-        tolerance
-            Largest error of the curve, relative to the largest force between the wells, 1e-10 to 0.1. The
-            error that was found is in the field ``mechanism.error_n``.
-        breaks
+        tolerance : float
+            Largest error of the curve, relative to the largest force between the wells, 1e-10 to 0.1. A
+            smaller one needs higher degrees or more pieces.
+        breaks : iterable of float
             Positions in m at which the force has a corner, where they are known. Others are found.
+
+        Returns
+        -------
+        Scene
+            The error that was found, in N, is in its field ``mechanism.error_n``.
+
+        Raises
+        ------
+        SceneError
+            If the range, the tolerance or a break is wrong, the force is not finite or has a step, or the
+            scene does not fit the curve: its start lies beyond an end of it, or a damping ratio or a start at
+            rest finds no well. An exception of ``force`` itself is passed on.
+
+        Notes
+        -----
+        The curve is compared with the function at five places between any two samples. A function that is odd
+        over a symmetric range gives a curve that is odd bit for bit.
+
+        Examples
+        --------
+        >>> cubic = scene.with_force(lambda x: -40 * x + 8e5 * x**3, (-9e-3, 9e-3))
+        >>> cubic["mechanism.error_n"] < 1e-9
+        True
         """
         ends = (float(range[0]), float(range[1]))
         places = [float(place) for place in breaks]
@@ -237,7 +344,25 @@ class Scene:
         return self._of(self._simulation.with_drive(given, float(frequency_hz), float(tolerance)))
 
     def __getitem__(self, field: str) -> Any:
-        """Return the value of a field by its dotted path: a number, or a word such as the name of a choice."""
+        """Return the value of a field.
+
+        Parameters
+        ----------
+        field : str
+            Dotted path; :attr:`fields` lists them.
+
+        Returns
+        -------
+        float, str or None
+            A number in the unit of the field's name (counts are floats too), or a word: a text, ``"true"`` or
+            ``"false"``, the name of a choice. None where the field is neither, such as a list, and for a
+            transducer that is not there.
+
+        Raises
+        ------
+        KeyError
+            If the scene has no such field.
+        """
         number, word = self._simulation.get(field)
         if number is None and word is None and field not in self._simulation.fields:
             raise KeyError(field)
@@ -245,17 +370,17 @@ class Scene:
 
     @property
     def fields(self) -> list[str]:
-        """Dotted paths of all fields."""
+        """Dotted paths of all fields, as a list of str."""
         return self._simulation.fields
 
     @property
     def name(self) -> str:
-        """Name in messages."""
+        """Name in messages: that of the file, or ``built-in NAME``."""
         return self._simulation.name
 
     @property
     def title(self) -> str:
-        """Title."""
+        """Title, one line."""
         return self._simulation.title
 
     @property
@@ -265,26 +390,56 @@ class Scene:
 
     @property
     def text(self) -> str:
-        """The scene as the text of a scene file."""
+        """The scene as the text of a scene file (RON), with all changes."""
         return self._simulation.text
 
     @property
     def warnings(self) -> list[str]:
-        """Values that are valid but probably not meant, each in a sentence."""
+        """Values that are valid but probably not meant, each in a sentence; a list of str."""
         return self._simulation.warnings
 
     @property
     def equilibria(self) -> list[tuple[float, bool]]:
-        """Positions of equilibrium in m, each with whether it is stable."""
+        """Positions of equilibrium in m from left to right, each with whether it is stable.
+
+        Returns
+        -------
+        list of (float, bool)
+
+        Notes
+        -----
+        They are those of the force curve without stops; the list is complete.
+
+        Examples
+        --------
+        >>> [stable for _, stable in scene.equilibria]
+        [True, False, True]
+        """
         return self._simulation.equilibria
 
     @property
     def barrier_j(self) -> tuple[float, float] | None:
-        """Height of the barrier in J, seen from the left and from the right well; None without one."""
+        """Height of the barrier in J, seen from the left and from the right well; None without one.
+
+        Returns
+        -------
+        (float, float) or None
+        """
         return self._simulation.barrier_j
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Write the scene as a scene file."""
+        """Write the scene as a scene file; the file appears whole or not at all.
+
+        Parameters
+        ----------
+        path : str or path
+            The file, by custom with the ending ``.ron``. One that is there is replaced.
+
+        Raises
+        ------
+        OSError
+            If the file cannot be written.
+        """
         _write(path, self.text.encode())
 
     def __repr__(self) -> str:
@@ -301,24 +456,70 @@ class Scene:
 
         Parameters
         ----------
-        dt
-            Time between samples in s; by default a 60th of the forcing period.
-        at
-            Times of the samples in s, in place of ``dt``.
-        until_settled
-            Go on, window after window, until the motion repeats, or up to this time in s.
+        dt : float, optional
+            Time between samples in s; by default a 60th of the forcing period, or without one a thousandth of
+            the duration.
+        at : array_like of float, shape (n,), optional
+            Times of the samples in s within the run, in any order, in place of ``dt``.
+        until_settled : float, optional
+            Go on, window after window, until the motion repeats, or up to this time in s: at least the
+            duration of the scene's run. By default the run ends at its duration.
+
+        Returns
+        -------
+        Run
+            Samples, events and summary. A run that ends early is no error: ``run.summary["outcome"]`` says
+            why.
+
+        Raises
+        ------
+        SceneError
+            If ``dt`` and ``at`` are both given, ``dt`` is not above 0 or makes more than 1e7 samples, a time
+            lies outside the run, or ``until_settled`` is too short or the drive does not repeat.
+
+        Notes
+        -----
+        Between events the motion is a Taylor series of order 9 to 23 (Moore 1966; Jorba and Zou 2005);
+        impacts are roots of its polynomial, and the rest of a chatter is summed in closed form (Nordmark and
+        Piiroinen 2009). Samples come from the same polynomial, so that more of them change nothing.
+        ``run.tolerance`` of the scene is the accuracy.
+
+        Examples
+        --------
+        >>> scene.run(dt=1e-3).x.shape
+        (10001,)
         """
         times = None if at is None else np.atleast_1d(np.asarray(at, dtype=float)).tolist()
         run = self._simulation.run(dt, times, until_settled)
         return Run(run, 1e-3 * self["mass_g"], self)
 
     def curve(self, positions: npt.ArrayLike | None = None) -> Table:
-        """Return ``x_m, force_n, potential_j, stiffness_n_per_m`` of the mechanism.
+        """Return force, potential and stiffness of the mechanism.
 
         Parameters
         ----------
-        positions
+        positions : array_like of float, shape (n,), optional
             Positions in m; by default 401 that show equilibria and stops.
+
+        Returns
+        -------
+        Table
+            ``x_m``, ``force_n`` (what holds the mass there), ``potential_j`` (0 at x = 0) and
+            ``stiffness_n_per_m``, each float64 of shape (n,).
+
+        Raises
+        ------
+        SceneError
+            If a position lies beyond an end of the force curve.
+
+        Notes
+        -----
+        Flexures are geometrically exact beams (Reissner 1972). Every run computes with this curve.
+
+        Examples
+        --------
+        >>> scene.curve([0.0])["stiffness_n_per_m"]
+        array([-40.])
         """
         listed = None if positions is None else np.atleast_1d(np.asarray(positions, dtype=float)).tolist()
         return Table(self._simulation.curve(listed))
@@ -337,26 +538,47 @@ class Scene:
 
         Parameters
         ----------
-        over
-            Fields and their values, the slowest first.
-        columns
+        over : mapping of str to array_like of float, shape (n,)
+            Fields by dotted path and their values in the unit of the field, the slowest first. Fields of the
+            mechanism may be among them.
+        columns : str or sequence of str
             Columns of the answer, names of the summary, or ``"all"``; by default ``rms_velocity_m_per_s,
-            regime, crossings, impacts, max_abs_x_m, period, outcome``.
-        until_settled
+            regime, crossings, impacts, max_abs_x_m, period, outcome``. ``mean_x_m``, ``impact_share`` and
+            energies take longer, since they need the energy ledger.
+        until_settled : float, optional
             Let each run go on until its motion repeats, or up to this time in s.
-        carry
+        carry : str, optional
             Walk the last field ``"up"``, ``"down"`` or ``"both"`` ways: each run begins in the state of the
-            one before.
-        threads
+            one before, at the last whole forcing period of that. The drive must repeat.
+        threads : int, optional
             Threads; by default all processors. The answer has the same bits for any number.
-        progress
-            Whether to show a bar (by tqdm, where it is installed), or a function that is called with the
-            cells that are done and all cells.
+        progress : bool or callable
+            Whether to show a bar (by tqdm, where it is installed), or a function that is called some 20 times
+            a second with the cells that are done and all cells (None while that is not known).
 
         Returns
         -------
         Grid
-            ``grid["rms_velocity_m_per_s"]`` has the shape of the grid.
+            ``grid["rms_velocity_m_per_s"]`` has the shape of the grid. A cell whose run ends early says why
+            in ``grid["outcome"]``.
+
+        Raises
+        ------
+        SceneError
+            If a field, a column or another argument is wrong, or a cell is no valid scene (the first such
+            cell is named). With ``carry`` also if the drive does not repeat or a transducer has a state of
+            its own.
+
+        Notes
+        -----
+        Walks up and down show hysteresis (Duffing 1918; for the double well Holmes 1979). The runs of a walk
+        follow each other; without ``carry`` several runs are integrated by the same instructions.
+
+        Examples
+        --------
+        >>> scene.sweep({"stops.travel_limit_mm": [2, 4], "excitation.amplitude_g": [0.5, 1, 1.5]})["regime"]
+        array([['intrawell', 'interwell', 'interwell'],
+               ['rest', 'interwell', 'interwell']], dtype='<U9')
         """
         names = [columns] if isinstance(columns, str) else list(columns)
         axes, arrays = _over(over)
@@ -383,16 +605,40 @@ class Scene:
 
         Parameters
         ----------
-        over
+        over : mapping of str to array_like of float, optional
             Fields and their values, the slowest first; without it the section is that of the scene.
-        at
+        at : str
             ``"phase"`` or ``"impacts"``.
-        phase_deg
-            Phase of the drive in degrees.
-        skip, keep
-            Forcing periods that are skipped, and those that are kept, in place of the scene's run.
+        phase_deg : float
+            Phase of the drive in degrees, for ``at="phase"``.
+        skip, keep : int, optional
+            Forcing periods that are skipped, at most 1e9, and those that are kept, 1 to 4194304, in place of
+            the scene's run. Both belong together. More skipped periods leave less of a transient.
         until_settled, carry, threads, progress
             See :meth:`sweep`.
+
+        Returns
+        -------
+        Table
+            A row for each state or impact: the fields, with ``carry`` the ``direction``, ``index`` (within
+            the run, from 0), ``t_s``, then ``x_m``, ``v_m_per_s``, or at impacts ``side``, ``phase_deg``,
+            ``v_in_m_per_s``.
+
+        Raises
+        ------
+        SceneError
+            If an argument is wrong, the drive does not repeat (impacts of the scene's own run need no
+            period), or the settled window holds no forcing period. With ``carry`` as for :meth:`sweep`.
+
+        Notes
+        -----
+        The states are a section of Poincaré, taken from the polynomial of the integrator. Motions that begin
+        to graze a stop have bifurcations of their own (Nordmark 1991).
+
+        Examples
+        --------
+        >>> scene.section().rows
+        15
         """
         axes, _ = _over(over)
         with _Told(progress, "runs") as told:
@@ -426,22 +672,48 @@ class Scene:
 
         Parameters
         ----------
-        field, range, step
-            The field, its first and last value, and the step between values that are tried first.
-        of
+        field : str
+            The field that is searched, by dotted path.
+        range : (float, float)
+            Its first and last value, in the unit of the field.
+        of : str
             ``"release"`` (the mass leaves the stop it rests on), ``"crossing"`` (the settled motion crosses)
             or ``"interwell"`` (its crossings repeat).
-        resolution
-            How closely the threshold is located, in the unit of the field.
-        over
+        step : float, optional
+            Step between the values that are tried first; by default a 200th of the range. A window narrower
+            than a step can be missed; a smaller one costs more runs.
+        resolution : float, optional
+            How closely the threshold is located, in the unit of the field; by default a thousandth of a step.
+        over : mapping of str to array_like of float, optional
             Fields and their values: a row for each cell.
-        until_settled, threads, progress
+        until_settled : float, optional
+            Time in s up to which each run goes on until its motion repeats; by default 1000 forcing periods
+            beyond the scene's run.
+        threads, progress
             See :meth:`sweep`.
 
         Returns
         -------
         Table
-            ``of, value, low, high, undecided, windows`` after the fields.
+            The fields of ``over``, ``of``, ``value`` (NaN where none of the range does it), ``low`` and
+            ``high`` (the nearest values tried that are known not to do it, and to do it), ``undecided``
+            (``"true"`` or ``"false"``), ``windows`` (how often the answer changes above).
+
+        Raises
+        ------
+        SceneError
+            If an argument is wrong, no value of the range makes a valid scene, or ``of="interwell"`` and the
+            drive does not repeat.
+
+        Notes
+        -----
+        Release under one sine has a closed form. Otherwise each step is run from rest and the first change is
+        bisected; the values that cross need not form an interval.
+
+        Examples
+        --------
+        >>> scene.threshold(of="release")["value"].round(4)
+        array([0.7229])
         """
         axes, _ = _over(over)
         ends = f"{_value(float(range[0]))}:{_value(float(range[1]))}"
@@ -466,10 +738,38 @@ class Scene:
 
         Parameters
         ----------
-        x_mm, v_m_per_s
+        x_mm, v_m_per_s : (float, float, int)
             First and last displacement in mm and velocity in m/s of the starts, and how many.
-        random, seed
-            Draw so many starts from both ranges, in place of a grid.
+        random, seed : int, optional
+            Draw so many starts from both ranges, in place of a grid; the two counts then have no effect.
+        threads, progress
+            See :meth:`sweep`. Progress counts starts, then once more those that are checked.
+
+        Returns
+        -------
+        Basins
+            A row for each start, the displacement the slower: ``x_mm``, ``v_m_per_s``, ``attractor`` (from
+            1), ``periods`` (forcing periods until it was known), ``sure`` (``"true"`` or ``"false"``). Values
+            are missing for starts beyond a stop or the curve, and for those that reach no attractor.
+
+        Raises
+        ------
+        SceneError
+            If a range is wrong, there are more than 1e7 starts, all lie beyond a stop or the curve, the drive
+            changes and does not repeat, nothing takes energy, or a transducer has a state of its own.
+
+        Notes
+        -----
+        Starts that share a release share what follows; others are followed until they enter an ellipse around
+        a stable orbit (motions told by their return: Datseris and Wagemakers 2022). Shares of random starts
+        are the basin stability of Menck et al. (2013), with the interval of Wilson (1927). ``sure`` compares
+        with ten times the tolerance.
+
+        Examples
+        --------
+        >>> weak = scene.set(excitation={"amplitude_g": 0.6})
+        >>> weak.basins((-4, 4, 5), (-0.2, 0.2, 3)).attractors["side"]
+        array(['left', 'right'], dtype='<U5')
         """
         seeds = (_count("random", random, 2**64) or 0, _count("seed", seed, 2**64) or 0)
         drawn = None if random is None else seeds
@@ -486,10 +786,35 @@ class Scene:
 
         Parameters
         ----------
-        period
-            Forcing periods after which it repeats; by default those of the settled motion.
-        phase_deg
+        period : int, optional
+            Forcing periods after which it repeats, 1 to 1000; by default those of the settled motion.
+        phase_deg : float
             Phase of the drive in degrees at which the state is taken.
+
+        Returns
+        -------
+        Table
+            ``period``, ``x_m``, ``v_m_per_s``, ``multiplier_1_re``, ``multiplier_1_im``, ``multiplier_2_re``,
+            ``multiplier_2_im`` (Floquet multipliers, the larger magnitude first), ``stable``, ``impacts``,
+            ``rests``, ``gentlest_impact_m_per_s``, ``nearest_miss_m``.
+
+        Raises
+        ------
+        SceneError
+            If an argument is wrong, the drive does not repeat or is 0, or a transducer has a state of its
+            own.
+        ComputationError
+            If the run comes to no motion that repeats, or none is found near it.
+
+        Notes
+        -----
+        Newton's method on the stroboscopic map, whose derivative is carried through impacts by saltation
+        matrices (Müller 1995; Kong et al. 2024). Unstable motions are found too.
+
+        Examples
+        --------
+        >>> scene.orbit()["period"]
+        array([1])
         """
         return Table(self._simulation.orbit(_count("period", period), phase_deg))
 
@@ -507,10 +832,40 @@ class Scene:
 
         Parameters
         ----------
-        field, start, end
-            The field, its value at the first motion, and that towards which the branch goes.
+        field : str
+            The field by dotted path; not one of whole numbers.
+        start, end : float
+            Its value at the first motion, which replaces that of the scene, and that towards which the branch
+            goes.
         period, phase_deg
             See :meth:`orbit`.
+        progress
+            See :meth:`sweep`; the number of all motions is not known.
+
+        Returns
+        -------
+        Table
+            The field, the columns of :meth:`orbit`, and ``event``: empty, ``fold``, ``flip``, ``symmetry`` or
+            ``grazing``. ``table.words`` says where and why the branch ended inside the range.
+
+        Raises
+        ------
+        SceneError
+            As :meth:`orbit`, and if the field or the range is wrong.
+        ComputationError
+            As :meth:`orbit`, for the first motion.
+
+        Notes
+        -----
+        Pseudo-arclength continuation (Keller 1977). Events are located to some 1e-9 of the range; two of a
+        kind within a hundredth of it can be missed.
+
+        Examples
+        --------
+        >>> free = scene.set(stops="None")
+        >>> branch = free.branch("excitation.amplitude_g", 0.6, 0.75)
+        >>> branch["amplitude_g"][branch["event"] == "fold"].round(2)
+        array([0.7])
         """
         with _Told(progress, "motions") as told:
             answer = self._simulation.branch(
@@ -531,12 +886,43 @@ class Scene:
 
         Parameters
         ----------
-        over
+        over : mapping of str to array_like of float, optional
             Fields and their values: a row for each cell.
-        periods
-            Forcing periods that a motion is averaged over which does not repeat; by default 1000.
-        until_settled, threads, progress
+        periods : int, optional
+            Forcing periods that a motion is averaged over which does not repeat, 1 to 1e7; by default 1000.
+            More take longer and reduce the standard errors.
+        until_settled : float, optional
+            Time in s up to which a run goes on until its motion repeats; by default 1000 forcing periods
+            beyond the scene's run.
+        threads, progress
             See :meth:`sweep`.
+
+        Returns
+        -------
+        Table or Grid
+            ``exponent_1_per_s``, ``exponent_1_se``, ``exponent_2_per_s``, ``exponent_2_se`` (standard
+            errors), ``sum_per_s``, ``exact_sum_per_s``, ``dimension``, each float64; a :class:`Grid` with
+            ``over``. Both exponents are ``-inf`` where the mass rests on a stop.
+
+        Raises
+        ------
+        SceneError
+            If an argument is wrong, the drive changes and does not repeat, or a transducer has a state of its
+            own.
+        ComputationError
+            If the motion ends early or touches a stop without speed; in a grid that cell has NaN.
+
+        Notes
+        -----
+        Of a motion that repeats, ln of the multipliers over its period; else averages (Benettin et al. 1980),
+        through impacts by Müller (1995). The dimension is that of Kaplan and Yorke (1979) of the states once
+        a forcing period.
+
+        Examples
+        --------
+        >>> weak = scene.set(stops="None", excitation={"amplitude_g": 0.2})
+        >>> weak.exponents()["sum_per_s"].round(3)
+        array([-3.337])
         """
         axes, arrays = _over(over)
         with _Told(progress, "cells") as told:
@@ -557,14 +943,42 @@ class Scene:
 
         Parameters
         ----------
-        of
-            ``"x"``, ``"v"`` or ``"accel"``.
-        taper
+        of : str
+            ``"x"`` (displacement, m), ``"v"`` (velocity, m/s) or ``"accel"`` (acceleration of the base,
+            m/s²).
+        taper : str
             ``"hann"``, ``"none"``, or ``"auto"``: none where the motion repeats.
-        rate_hz
-            Samples a second.
-        until_settled
+        rate_hz : float, optional
+            Samples a second, raised until a forcing period has a whole number of them; by default at least
+            128 in the shortest period of excitation and mechanism. With impacts a higher rate folds less
+            back.
+        until_settled : float, optional
             See :meth:`run`.
+
+        Returns
+        -------
+        Table
+            A row for each line from 0 to half the rate: ``frequency_hz``, ``amplitude`` (half of peak to
+            peak) and ``psd`` (one-sided, square of the unit per Hz), each float64. ``table.words`` has the
+            settings.
+
+        Raises
+        ------
+        SceneError
+            If an argument is wrong, the rate makes more than 1e7 samples or too few, or the settled window
+            has no length.
+        ComputationError
+            If the run ends early.
+
+        Notes
+        -----
+        Amplitude and density are scaled as in Heinzel et al. (2002).
+
+        Examples
+        --------
+        >>> table = scene.spectrum("accel")
+        >>> table["amplitude"][table["frequency_hz"] == 3.0].round(6)
+        array([14.709975])
         """
         return Table(self._simulation.spectrum(of, taper, rate_hz, until_settled))
 
@@ -579,8 +993,37 @@ class Scene:
 
         Parameters
         ----------
-        *others
+        *others : Scene, str or path
             Scenes, scene files, or names of built-in scenes.
+        until_settled, threads, progress
+            See :meth:`sweep`; by default each run goes on for up to 1000 forcing periods beyond the scene's
+            run. Progress counts the scenes and the changes of their sizes.
+
+        Returns
+        -------
+        Table
+            ``scene``, ``release_g``, ``crossing_g``, ``crossing_low_g``, ``crossing_high_g``,
+            ``crossing_undecided``, ``rms_velocity_m_per_s``, ``mean_load_power_w``, ``max_abs_x_m``,
+            ``impact_speed_max_m_per_s``, ``crosses_from_hz``, ``crosses_to_hz``, ``threshold_sensitivity`` (a
+            share), ``most_sensitive_to``. Values are missing where a scene has no such number.
+
+        Raises
+        ------
+        SceneError
+            If the excitation of this scene is no sine, another scene cannot be read, or one has faults under
+            it.
+
+        Notes
+        -----
+        All scenes start at rest, with the excitation and the run of this one. The sensitivity is the largest
+        change of ``crossing_g`` when one length, thickness or gap of the mechanism changes by 1 %; flexures
+        are solved anew for each.
+
+        Examples
+        --------
+        >>> near = scene.set({"stops.travel_limit_mm": 2})
+        >>> scene.compare(near)["release_g"].round(3)
+        array([0.723, 0.493])
         """
         scenes = [other if isinstance(other, Scene) else Scene(other) for other in others]
         names = [scene.name.removeprefix("built-in ") for scene in (self, *scenes)]
@@ -608,18 +1051,49 @@ class Scene:
 
         Parameters
         ----------
-        over
-            Fields of the design, each with its least and largest value, and the step of the first scan:
-            ``{"stops.travel_limit_mm": (0.5, 7)}``.
-        maximise
+        over : mapping of str to (float, float) or (float, float, float)
+            One to four fields of the design, each with its least and largest value in the unit of the field,
+            and the step of the first scan: ``{"stops.travel_limit_mm": (0.5, 7)}``. A smaller step is surer
+            to find a narrow maximum, and costs more runs.
+        maximise : str
             The number of the summary that is to be largest.
-        subject_to
+        subject_to : str or sequence of str
             What every environment must keep to: ``"max_abs_x_m<=0.003"``.
-        environment
+        environment : str or sequence of str
             In place of the scene's own excitation: scenes, records (CSV), or values of a field,
-            ``"excitation.amplitude_g=0.8,1,1.2"``.
-        vary
-            Tolerances of fields: ``{"stops.travel_limit_mm": "1%"}``.
+            ``"excitation.amplitude_g=0.8,1,1.2"``. An ending ``*WEIGHT`` weighs one.
+        vary : mapping of str to float or str, optional
+            Tolerances of fields, in the unit of the field or as a share: ``{"stops.travel_limit_mm": "1%"}``.
+        seed : int
+            Seed of the 200 samples within these tolerances.
+        until_settled, threads, progress
+            See :meth:`sweep`; by default each run goes on for up to 1000 forcing periods beyond the scene's
+            run.
+
+        Returns
+        -------
+        Table
+            The fields, ``maximised``, ``value`` (mean over the environments), ``margin_low``, ``margin_high``
+            (how far to either side a tenth of it is lost or a constraint broken; NaN where that is nowhere in
+            the range), ``worst``, ``quantile_5``, and where it is safer to step back to. ``table.words`` has
+            the same in sentences.
+
+        Raises
+        ------
+        SceneError
+            If an argument is wrong, no place in the range keeps to ``subject_to`` (the nearest is named), or
+            no run has the number that is to be largest.
+
+        Notes
+        -----
+        Results jump where a small change brings the mass to rest, so no gradients are used: the range is
+        scanned, and the scan repeated in smaller and smaller boxes around the best places.
+
+        Examples
+        --------
+        >>> best = scene.best({"stops.travel_limit_mm": (1, 6, 0.5)}, subject_to="max_abs_x_m<=0.003")
+        >>> best["travel_limit_mm"].round(2)
+        array([3.])
         """
         ranges = [f"{field}=" + ":".join(_value(end) for end in ends) for field, ends in over.items()]
         varied = [f"{field}=+-{_value(by)}" for field, by in (vary or {}).items()]
@@ -663,21 +1137,48 @@ def identify(
 
     Parameters
     ----------
-    path
-        The record: CSV with a header.
-    of
+    path : str or path
+        The record: CSV with a header, a row a sample.
+    of : str
         ``"damping"`` (of a free decay), ``"restitution"`` (of impacts on stops) or ``"force"`` (over
         position, of a slow pull).
-    time, time_unit, column, unit, position, position_unit, base, base_unit
-        Columns and their units; by default found by the units in their names.
-    start, end
-        Leave out what was recorded before and after these times in s.
-    impact_times
+    time, time_unit, column, unit, position, position_unit, base, base_unit : str, optional
+        Columns and their units; by default found by the units in their names. ``base`` is the acceleration of
+        the base, of restitution.
+    start, end : float, optional
+        Leave out what was recorded before and after these times in s. Not of force.
+    impact_times : bool
         Of restitution: the rows are impacts, and their times are all that is known.
-    left_mm, right_mm
+    left_mm, right_mm : float, optional
         Of restitution: about where the stops are.
-    points
-        Of force: points of the curve, 4 to 100000.
+    points : int, optional
+        Of force: points of the curve, 4 to 100000; by default 101. More follow the samples more closely and
+        average fewer of them.
+
+    Returns
+    -------
+    Identified
+        A row for some eight turning points, for an impact, or for a position, with 95 % intervals;
+        ``summary`` has the numbers of the whole record.
+
+    Raises
+    ------
+    SceneError
+        If the file cannot be read, a column is not found, an argument does not belong to ``of``, or nothing
+        can be identified; the message says why and what would help.
+
+    Notes
+    -----
+    Damping: an exponential envelope through the turning points, each weighted by its error; the damping ratio
+    is the logarithmic decrement d over half a period as d/sqrt(pi² + d²). Some ten samples a period are
+    needed. Restitution: polynomials through the flights on either side of an impact; a rebound should have 8
+    samples. Force: cubics over neighbouring points, the mean of both directions of the pull.
+
+    Examples
+    --------
+    >>> decay = iw.identify("decay.csv", "damping")
+    >>> round(decay.summary["damping_ratio"]["value"], 4)
+    0.02
     """
     answer, summary = _interwell.identify(
         os.fspath(path),

@@ -38,7 +38,7 @@ def _write(path: str | os.PathLike[str], content: bytes) -> None:
 
 
 class Picture:
-    """A picture, which a notebook shows.
+    """A picture, which a notebook shows; the answer of :meth:`Table.plot` and :meth:`Run.plot`.
 
     It is drawn by the program's own painter; :meth:`save` writes the same picture as a file.
     """
@@ -55,7 +55,24 @@ class Picture:
         return self._svg.decode()
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Write the picture; the name ends in ``.svg``, ``.png`` or ``.pdf``."""
+        """Write the picture; the file appears whole or not at all.
+
+        Parameters
+        ----------
+        path : str or path
+            The file; its name ends in ``.svg``, ``.png`` or ``.pdf``.
+
+        Raises
+        ------
+        SceneError
+            If the name ends otherwise.
+        OSError
+            If the file cannot be written.
+
+        Examples
+        --------
+        >>> scene.curve().plot().save("curve.pdf")
+        """
         kind = os.path.splitext(os.fspath(path))[1].lstrip(".").lower()
         _write(path, self._bytes(kind))
 
@@ -65,6 +82,20 @@ class Table(Mapping[str, Array]):
 
     ``table["x_m"]`` is the column ``x_m``. Columns of numbers are float64, with NaN where a value is missing;
     counts are int64, or float64 with NaN where one is missing; words are strings, empty where one is missing.
+    Answers of yes or no are the words ``"true"`` and ``"false"``.
+
+    Notes
+    -----
+    A table is a mapping: ``len(table)`` is the number of columns, ``dict(table)`` has all arrays. A column of
+    numbers is not copied: writing to it changes what :meth:`csv` gives.
+
+    Examples
+    --------
+    >>> table = scene.curve([0.0, 7e-3])
+    >>> table.columns
+    ['x_m', 'force_n', 'potential_j', 'stiffness_n_per_m']
+    >>> table.rows
+    2
     """
 
     def __init__(self, answer: _interwell.Answer) -> None:
@@ -72,6 +103,23 @@ class Table(Mapping[str, Array]):
         self._arrays: dict[str, Array] = {}
 
     def __getitem__(self, name: str) -> Array:
+        """Return a column.
+
+        Parameters
+        ----------
+        name : str
+            Name of the column; :attr:`columns` lists them.
+
+        Returns
+        -------
+        ndarray, shape (rows,)
+            float64, int64 or strings.
+
+        Raises
+        ------
+        KeyError
+            If there is no such column.
+        """
         if name not in self._arrays:
             values = self._answer.values(name)
             if not isinstance(values, np.ndarray):
@@ -88,17 +136,27 @@ class Table(Mapping[str, Array]):
 
     @property
     def columns(self) -> list[str]:
-        """Names of the columns."""
+        """Names of the columns, a list of str."""
         return self._answer.names
 
     @property
     def units(self) -> dict[str, str]:
-        """Unit of each column; empty for a pure number, a count or a word."""
+        """Unit of each column by its name; empty for a pure number, a count or a word.
+
+        Examples
+        --------
+        >>> scene.curve().units["stiffness_n_per_m"]
+        'N/m'
+        """
         return dict(zip(self._answer.names, self._answer.units))
 
     @property
     def words(self) -> list[str]:
-        """Sentences about the answer."""
+        """Sentences about the answer, a list of str; empty where there is nothing to say.
+
+        Of a branch: where it ended inside the range and why; of a spectrum: its settings; of basins: each
+        attractor; of a best design and of a record: the result.
+        """
         return self._answer.words
 
     @property
@@ -111,11 +169,36 @@ class Table(Mapping[str, Array]):
         return f"<{type(self).__name__} of {self.rows} rows: {', '.join(self.columns)}>"
 
     def csv(self) -> str:
-        """Return the table as CSV, byte for byte as the command line writes it."""
+        """Return the table as CSV, byte for byte as the command line writes it.
+
+        Returns
+        -------
+        str
+            A header and a line for each row. Numbers are the shortest decimals that read back as the same
+            float64; a missing value is an empty cell.
+
+        Examples
+        --------
+        >>> scene.curve([0.0]).csv().splitlines()
+        ['x_m,force_n,potential_j,stiffness_n_per_m', '0,0,0,-40']
+        """
         return self._answer.csv()
 
     def to_csv(self, path: str | os.PathLike[str]) -> None:
-        """Write the table as CSV."""
+        """Write the table as CSV; the file appears whole or not at all.
+
+        Parameters
+        ----------
+        path : str or path
+            The file; its name ends in ``.csv``, ``.txt`` or has no ending.
+
+        Raises
+        ------
+        SceneError
+            If the name ends otherwise, such as in ``.parquet``: take :meth:`to_pandas` for other formats.
+        OSError
+            If the file cannot be written.
+        """
         ending = os.path.splitext(os.fspath(path))[1].lower()
         if ending not in ("", ".csv", ".txt"):
             problem = f"tables are written as CSV: name a .csv, or take to_pandas() for {ending}"
@@ -124,7 +207,18 @@ class Table(Mapping[str, Array]):
         _write(path, self.csv().encode())
 
     def to_pandas(self) -> pandas.DataFrame:
-        """Return a data frame; ``attrs["units"]`` has the units."""
+        """Return a data frame; ``attrs["units"]`` has the units.
+
+        Returns
+        -------
+        pandas.DataFrame
+            A column for each of the table, a row for each row.
+
+        Raises
+        ------
+        ImportError
+            If pandas is not installed.
+        """
         import pandas
 
         frame = pandas.DataFrame({name: Table.__getitem__(self, name) for name in self.columns})
@@ -145,20 +239,32 @@ class Table(Mapping[str, Array]):
 
         Parameters
         ----------
-        quantity
+        quantity : str, optional
             Of a grid the column; of a run the panels, such as ``"displacement,power"``; of a spectrum
             ``"amplitude"`` or ``"psd"``.
-        x, y
+        x, y : (float, float), optional
             Ranges of the axes, in their units. Of a run ``x`` is a range of times in s.
-        dark
+        dark : bool
             Whether the colours are those of a dark page.
-        width_mm, height_mm
-            Size on paper in mm; without it the picture is for a screen.
+        width_mm, height_mm : float, optional
+            Size on paper in mm, the width 40 to 2000; without a width the picture is for a screen, and the
+            height has no effect.
 
         Returns
         -------
         Picture
             A notebook shows it; ``save("map.pdf")`` writes it.
+
+        Raises
+        ------
+        SceneError
+            If this table has no picture (an orbit, one threshold or one row of exponents, a best design,
+            attractors, events), a grid is over more fields than can be drawn, there is no such quantity, or
+            the width is out of its range.
+
+        Examples
+        --------
+        >>> scene.run().samples.plot("displacement", x=(8, 10), width_mm=85).save("run.pdf")
         """
         options = {
             "quantity": quantity,
@@ -176,6 +282,17 @@ class Grid(Table):
 
     ``grid["rms_velocity_m_per_s"]`` has the shape of the grid: one axis for each field, the slowest first.
     With a walk both ways there is one more axis before the last one: up, then down.
+
+    Attributes
+    ----------
+    over : dict of str to ndarray, shape (n,)
+        The values of each field, by its dotted path.
+
+    Examples
+    --------
+    >>> grid = scene.sweep({"stops.travel_limit_mm": [2, 4], "excitation.amplitude_g": [0.5, 1, 1.5]})
+    >>> grid.dims, grid.shape
+    (('travel_limit_mm', 'amplitude_g'), (2, 3))
     """
 
     def __init__(
@@ -188,17 +305,34 @@ class Grid(Table):
 
     @property
     def dims(self) -> tuple[str, ...]:
-        """Names of the axes: the columns of the fields, and ``direction`` with a walk both ways."""
+        """Names of the axes, a tuple of str: the fields, and ``direction`` with a walk both ways."""
         fields = self._answer.names[: len(self.over)]
         return (*fields[:-1], "direction", fields[-1]) if self._carry == "both" else tuple(fields)
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """Lengths of the axes."""
+        """Lengths of the axes; a tuple of int."""
         lengths = [len(values) for values in self.over.values()]
         return (*lengths[:-1], 2, lengths[-1]) if self._carry == "both" else tuple(lengths)
 
     def __getitem__(self, name: str) -> Array:
+        """Return a column in the shape of the grid.
+
+        Parameters
+        ----------
+        name : str
+            Name of the column; :attr:`columns` lists them.
+
+        Returns
+        -------
+        ndarray, shape ``grid.shape``
+            float64, int64 or strings, as in a :class:`Table`.
+
+        Raises
+        ------
+        KeyError
+            If there is no such column.
+        """
         column = super().__getitem__(name)
         if column.shape == self.shape:
             return column
@@ -213,11 +347,33 @@ class Grid(Table):
         return array
 
     def to_pandas(self) -> pandas.DataFrame:
-        """Return a data frame with a row for each cell, in the order of :meth:`csv`."""
+        """Return a data frame with a row for each cell, in the order of :meth:`csv`.
+
+        Returns
+        -------
+        pandas.DataFrame
+            ``attrs["units"]`` has the units.
+
+        Raises
+        ------
+        ImportError
+            If pandas is not installed.
+        """
         return Table(self._answer).to_pandas()
 
     def to_xarray(self) -> xarray.Dataset:
-        """Return a data set over the fields; each variable has its unit as the attribute ``units``."""
+        """Return a data set over the fields; each variable has its unit as the attribute ``units``.
+
+        Returns
+        -------
+        xarray.Dataset
+            With the dimensions :attr:`dims` and the values of the fields as coordinates.
+
+        Raises
+        ------
+        ImportError
+            If xarray is not installed.
+        """
         import xarray
 
         coordinates: dict[str, Any] = {}
@@ -236,13 +392,26 @@ class Grid(Table):
 
 
 class Run:
-    """One run of a scene.
+    """One run of a scene; the answer of :meth:`Scene.run`.
 
     Attributes
     ----------
-    samples
+    samples : Table
         ``t_s, x_m, v_m_per_s, base_accel_m_per_s2, phase``; with a transducer also
-        ``voltage_v, current_a, power_w``.
+        ``voltage_v, current_a, power_w``. A row for each sample, up to where the run ended. At the instant of
+        an event the state is that after it.
+
+    Notes
+    -----
+    ``t``, ``x``, ``v`` and ``base_accel`` are the columns of ``samples`` and are not copied.
+
+    Examples
+    --------
+    >>> run = scene.run(dt=0.01)
+    >>> run.t.shape
+    (1001,)
+    >>> run.summary["regime"]
+    'interwell'
     """
 
     def __init__(self, run: _interwell.Run, mass_kg: float, scene: Any) -> None:
@@ -255,32 +424,40 @@ class Run:
 
     @property
     def t(self) -> Array:
-        """Times in s, shape (n,)."""
+        """Times in s, float64 of shape (n,)."""
         return self.samples["t_s"]
 
     @property
     def x(self) -> Array:
-        """Displacement of the mass relative to its base in m, shape (n,)."""
+        """Displacement of the mass relative to its base in m, float64 of shape (n,)."""
         return self.samples["x_m"]
 
     @property
     def v(self) -> Array:
-        """Velocity relative to the base in m/s, shape (n,)."""
+        """Velocity relative to the base in m/s, float64 of shape (n,)."""
         return self.samples["v_m_per_s"]
 
     @property
     def base_accel(self) -> Array:
-        """Acceleration of the base in m/s², shape (n,)."""
+        """Acceleration of the base in m/s², float64 of shape (n,)."""
         return self.samples["base_accel_m_per_s2"]
 
     @property
     def phase(self) -> Array:
-        """What the mass does: words such as ``free`` or ``rest``, shape (n,)."""
+        """What the mass does, strings of shape (n,).
+
+        ``free``, or ``left_stop`` and ``right_stop`` at rest on that stop (in contact with it, where it is
+        compliant).
+        """
         return self.samples["phase"]
 
     @property
     def energy(self) -> Array:
-        """Kinetic and potential energy relative to the base in J, shape (n,)."""
+        """Kinetic and potential energy relative to the base in J, float64 of shape (n,).
+
+        The potential is that of the mechanism, 0 at x = 0; what a compliant stop or a transducer stores is
+        left out.
+        """
         potential = self._scene.curve(self.x)["potential_j"]
         energy: Array = 0.5 * self._mass_kg * self.v**2 + potential
         return energy
@@ -289,7 +466,16 @@ class Run:
     def summary(self) -> dict[str, Any]:
         """Statistics of the run, as the option ``--summary`` of the command line writes them.
 
-        The keys have the units: ``rms_velocity_m_per_s``.
+        Returns
+        -------
+        dict of str to object
+            The keys have the units: ``rms_velocity_m_per_s``. A number that the run does not have is None,
+            and what only other scenes have is left out. ``summary["outcome"]`` says how the run ended,
+            ``"done"`` at its end; ``summary["ledger"]`` is the energy balance in J.
+
+        Notes
+        -----
+        Most of it is of the settled window, from ``window_from_s`` to ``window_to_s``.
         """
         if self._summary is None:
             summary = json.loads(self._run.summary())
@@ -300,7 +486,25 @@ class Run:
 
     @property
     def events(self) -> Array:
-        """Events in order of time: a structured array, ``events["t_s"]``, ``events["kind"]``."""
+        """Events in order of time.
+
+        Returns
+        -------
+        ndarray, structured
+            Fields ``t_s``, ``kind``, ``side``, ``v_in_m_per_s`` and ``v_out_m_per_s`` (velocity before and
+            after, signed). Kinds are ``impact``, ``rest``, ``release``, ``crossing`` and, of compliant stops,
+            ``contact`` and ``separate``.
+
+        Notes
+        -----
+        The slow last impacts of a chatter that ends in rest are summed in closed form (Nordmark and Piiroinen
+        2009) and appear as its ``rest``.
+
+        Examples
+        --------
+        >>> str(scene.run().events["kind"][0])
+        'rest'
+        """
         if self._events is None:
             table = Table(self._run.events)
             columns = [table[name] for name in table.columns]
@@ -316,8 +520,20 @@ class Run:
 
         Parameters
         ----------
-        panels
-            Some of ``displacement``, ``velocity``, ``acceleration``, ``power``, ``energy``, ``portrait``.
+        panels : str or sequence of str, optional
+            Some of ``displacement``, ``velocity``, ``acceleration``, ``power``, ``energy``, ``portrait``; by
+            default all but ``power`` and ``energy``.
+        **options
+            ``x``, ``y``, ``dark``, ``width_mm``, ``height_mm`` of :meth:`Table.plot`.
+
+        Returns
+        -------
+        Picture
+
+        Raises
+        ------
+        SceneError
+            If there is no such panel, or an option is out of its range.
         """
         names = panels if panels is None or isinstance(panels, str) else ",".join(panels)
         return self.samples.plot(names, **options)
@@ -330,7 +546,16 @@ class Run:
 
 
 class Basins(Table):
-    """Basins of attraction: a row for each start."""
+    """Basins of attraction: a row for each start; the answer of :meth:`Scene.basins`.
+
+    Attributes
+    ----------
+    attractors : Table
+        A row for each attractor: ``attractor`` (from 1), ``regime``, ``period``, ``side``,
+        ``rms_velocity_m_per_s``, ``x_m`` and ``v_m_per_s`` (one of its states at time 0 of the drive),
+        ``starts`` (how many go to it), ``share`` of all starts, ``share_low`` and ``share_high`` (95 %
+        interval of Wilson 1927).
+    """
 
     def __init__(self, starts: _interwell.Answer, attractors: _interwell.Answer) -> None:
         super().__init__(starts)
@@ -339,7 +564,18 @@ class Basins(Table):
 
 
 class Identified(Table):
-    """What was identified from a record: rows over amplitude, impact or position."""
+    """What was identified from a record: rows over amplitude, impact or position.
+
+    The answer of :func:`identify`. Columns whose names hold ``low`` and ``high`` are the ends of 95 %
+    intervals. ``words`` has the columns that were read, the numbers and the remarks.
+
+    Attributes
+    ----------
+    summary : dict
+        The numbers of the whole record, each a dict of ``value`` and of ``low`` and ``high``, the 95 %
+        interval, which are None of a count; and ``of``, ``samples``, ``step_s``, ``jitter_s``, ``gaps``,
+        ``remarks``.
+    """
 
     def __init__(self, answer: _interwell.Answer, summary: str) -> None:
         super().__init__(answer)

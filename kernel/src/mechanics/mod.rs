@@ -1,4 +1,32 @@
 //! Static mechanics: restoring forces and their potential landscapes.
+//!
+//! [`Mechanism::build`] makes of the mechanism of a scene a [`ForceCurve`], one piecewise polynomial with its
+//! potential and stiffness, and the [`Landscape`] of that curve: equilibria, barrier, extrema and kinks. All
+//! motion is computed with this curve, whatever it came from. Units: displacement in m, force in N, potential
+//! in J, stiffness in N/m. The force is the derivative of the potential, that is, what holds the mass at x.
+//!
+//! Where a curve comes from, by source: flexures as geometrically exact beams ([`flexure`]; Reissner 1972),
+//! which are solved to [`FLEXURE_TOLERANCE`] and take much longer than anything else; magnets as point
+//! dipoles ([`magnet_force`]; Griffiths 1999); a measured [`ForceTable`] by a fit to a tolerance; a function
+//! of the program by [`ForceCurve::from_fn`]; polynomials as they stand. A tighter tolerance of a table or a
+//! function needs higher degrees or more pieces; the error that was found is in [`ForceCurve::fit`].
+//! Compliant stops have their law in [`Hertz`] (Johnson 1985).
+//!
+//! Errors: [`BuildError::Wrong`] names the field or file that is wrong, [`BuildError::Unsolved`] says that
+//! valid flexures have no solution; a table gives a [`TableError`], a function a [`FunctionError`].
+//!
+//! ```
+//! # use interwell_kernel as interwell;
+//! use interwell::mechanics::{ForceCurve, Landscape};
+//!
+//! // The force x^3 - x has wells at -1 and 1 m and a barrier of 1/4 J between them.
+//! let curve = ForceCurve::polynomial(&[0.0, -1.0, 0.0, 1.0]);
+//! let landscape = Landscape::of(&curve);
+//! let barrier = landscape.barrier.unwrap();
+//! assert!((barrier.right_well - 1.0).abs() < 1e-12);
+//! assert!((barrier.from_right_j - 0.25).abs() < 1e-12);
+//! assert_eq!(curve.stiffness(1.0), 2.0);
+//! ```
 
 mod curve;
 mod fit;

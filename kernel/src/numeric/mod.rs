@@ -1,4 +1,25 @@
 //! Mathematics without mechanics: number types, roots, fits, sums, decimals.
+//!
+//! What the integrator and the studies need and what must be held to rounding or have the same bits on every
+//! processor is written here: [`PolynomialRoots`] (the sign changes in a step, without allocation; Lane and
+//! Riesenfeld 1981) and [`real_roots`] (all roots, for setup), [`DoubleDouble`] (about 31 digits; Dekker
+//! 1971), [`Dual`] (derivatives; Clifford 1873), [`Lanes`] (several numbers by the same instructions),
+//! [`GaussLegendre`], [`CompensatedSum`] (Neumaier 1974), [`Decimal`] (numbers as a person writes them), and
+//! for measured data [`Periodogram`], [`Envelope`], [`orthogonal`] and [`regression`].
+//!
+//! Numbers have no unit here, or the unit of the caller. Functions state their preconditions instead of
+//! returning errors; where there may be no answer they return an `Option`.
+//!
+//! ```
+//! # use interwell_kernel as interwell;
+//! use interwell::numeric::PolynomialRoots;
+//!
+//! // (s - 1/4)(s - 1/2) changes sign twice in (0, 1].
+//! let coefficients = [0.125_f64, -0.75, 1.0];
+//! let roots = PolynomialRoots::new(&coefficients);
+//! assert_eq!(roots.count_sign_changes(), 2);
+//! assert!((roots.first().unwrap() - 0.25).abs() < 1e-12);
+//! ```
 
 mod bisect;
 mod collocation;

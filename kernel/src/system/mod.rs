@@ -1,4 +1,20 @@
 //! Access to threads, clocks and files of the machine; no other folder uses those of the standard library.
+//!
+//! [`threads`] distributes work so that the answer has the same bits for any number of threads; [`clock`] has
+//! wall and CPU time in s; [`files`] reads, and [`Sink`] and [`write_file`] write a file as a whole or not at
+//! all. [`Part`] writes a long file in blocks with a journal, so that an interruption loses no complete
+//! block, and [`checksum`] has the SHA-256 by which it is resumed. A block is synced before it counts, which
+//! costs a wait for the disk on a thread of its own.
+//!
+//! Errors: [`OpenError`] for an output that cannot be opened, [`PartError`] for a file that cannot be begun
+//! or resumed; `std::io::Error`, or a sentence, for the rest.
+//!
+//! ```
+//! # use interwell_kernel as interwell;
+//! use interwell::system::checksum::checksum;
+//!
+//! assert!(checksum(b"").starts_with("e3b0c44298fc1c14"));
+//! ```
 
 pub mod checksum;
 pub mod clock;

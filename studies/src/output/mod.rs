@@ -2,6 +2,24 @@
 //!
 //! Nothing is computed here. A number is written in the shortest form that parses back to the same double, a
 //! missing one as an empty cell (CSV) or `null` (JSON).
+//!
+//! [`csv()`] gives a table as text, [`csv_table`] reads it again; [`summary`] gives the summary of a run as
+//! JSON. A picture is made in three steps: one of the functions that end in `_chart` makes a [`Chart`] of an
+//! answer, [`Chart::figure`] lays it out for a screen or, by a [`Sheet`], for a width on paper in mm, and
+//! [`Format::bytes`] makes PNG, SVG or PDF of the [`Figure`]. [`Sink`] writes a file as a whole or not at
+//! all. A [`Manifest`] says what made a file, so that it can be made again.
+//!
+//! Errors: [`NoPicture`] and [`SheetError`] say why there is no picture, [`OpenError`] why there is no file.
+//!
+//! ```
+//! use interwell_studies::output::csv;
+//! use interwell_studies::questions::{Curve, Simulation};
+//!
+//! let simulation = Simulation::preset("nominal-cubic")?;
+//! let table = Curve { positions: Some(vec![0.0]) }.run(&simulation)?;
+//! assert_eq!(csv(&table), "x_m,force_n,potential_j,stiffness_n_per_m\n0,0,0,-40\n");
+//! # Ok::<(), interwell_studies::questions::Error>(())
+//! ```
 
 mod csv;
 mod json;

@@ -11,7 +11,34 @@ use crate::study::{
 };
 use crate::system::files::{canonical, is_file};
 
-/// Comparison of scenes under the sine and with the run settings of the first one.
+/// Comparison of scenes under the sine and with the run settings of the first one, each from rest.
+///
+/// [`Compare::table`] has one row per scene: `scene`, `release_g`, `crossing_g`, `crossing_low_g`,
+/// `crossing_high_g`, `crossing_undecided`, `rms_velocity_m_per_s`, `mean_load_power_w`, `max_abs_x_m`,
+/// `impact_speed_max_m_per_s`, `crosses_from_hz`, `crosses_to_hz`, `threshold_sensitivity` (a share) and
+/// `most_sensitive_to`. A value is missing where a scene has no such number.
+///
+/// Method: the release has a closed form; the crossing amplitude is found by a scan and bisection, as by
+/// [`Threshold`](super::Threshold); the band of frequencies by 40 steps per decade, from a tenth to ten times
+/// the frequency of the sine, whose ends are bisected to a thousandth; the sensitivity by changing one
+/// length, thickness or gap of the mechanism at a time by 1 % up and down. Each of these changes is a search
+/// of its own, for which flexures are solved anew.
+///
+/// Errors: [`Error::Unfit`] if the excitation of the first scene is no sine; [`Error::Scene`] if another
+/// scene has faults under it; [`Error::Argument`] for `until_settled`; [`Error::Cancelled`].
+///
+/// ```
+/// use interwell_studies::questions::{Compare, Progress, Simulation};
+///
+/// // Stops at 2 mm release the mass at a lower amplitude than stops at 4 mm.
+/// let far = Simulation::preset("nominal-cubic")?.with("run.tolerance", 1e-6)?;
+/// let near = far.with("stops.travel_limit_mm", 2.0)?;
+/// let question = Compare { with: vec![("near".into(), near)], name: "far".into(), until_settled: None };
+/// let rated = question.run(&far, &Progress::none())?;
+/// assert!(rated[1].release_g < rated[0].release_g);
+/// assert_eq!(Compare::table(&rated).rows(), 2);
+/// # Ok::<(), interwell_studies::questions::Error>(())
+/// ```
 #[derive(Debug, Clone, Default)]
 pub struct Compare {
     /// The other scenes, with their names.
@@ -42,7 +69,7 @@ impl Compare {
         rated.ok_or(Error::Cancelled)
     }
 
-    /// The rated scenes as a table, one row per scene.
+    /// The rated scenes as a table, one row per scene, with the columns named at [`Compare`].
     pub fn table(rated: &[Rated]) -> Table {
         comparison_table(rated)
     }
@@ -68,9 +95,35 @@ pub fn in_environment(document: &Document, environment: &Document) -> Document {
     changed
 }
 
-/// The best design for an environment.
+/// The best design for an environment: the values of one to four fields that maximise a result of the run.
 ///
-/// Fields and constraints are written as in the arguments of the command `best`.
+/// Fields and constraints are written as in the arguments of the command `best`. [`BestAnswer::table`] has
+/// one row: the fields, `maximised`, `value` (the mean over the environments), `margin_low` and `margin_high`
+/// of each field in its unit, `worst` and `quantile_5` of the samples, and where it is safer to step back to.
+///
+/// Method: results are discontinuous functions of the design, so no gradients are used. The whole range is
+/// scanned (by default 256, 32, 12 or 8 intervals per field for one to four fields) and the scan is repeated
+/// in smaller and smaller boxes around the best places. A maximum narrower than a step may be missed: a
+/// smaller step (`FIELD=A:B:STEP`) costs more runs, the more the more fields there are. `vary` adds 200
+/// random samples to the answer, and each environment adds a run at each place.
+///
+/// Errors: [`Error::Argument`] for a text that cannot be read, a field that an environment lacks, constraints
+/// that no place in the range keeps (the nearest one is named), or a result that no run has; [`Error::Scene`]
+/// for a scene with faults; [`Error::Unfit`] for a result of a transducer that the scene lacks.
+///
+/// ```
+/// use interwell_studies::questions::{Best, Progress, Simulation};
+///
+/// // The RMS velocity rises with the travel limit, so the constraint on the travel decides.
+/// let question = Best {
+///     over: vec!["stops.travel_limit_mm=1:6:0.5".to_owned()],
+///     subject_to: vec!["max_abs_x_m<=0.003".to_owned()],
+///     ..Best::default()
+/// };
+/// let best = question.run(&Simulation::preset("nominal-cubic")?, &Progress::none())?;
+/// assert!((best.design.optimum.at[0] - 3.0).abs() < 0.01);
+/// # Ok::<(), interwell_studies::questions::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Best {
     /// Fields of the design with their ranges, `FIELD=A:B[:STEP]`; one to four.
@@ -104,7 +157,7 @@ impl Default for Best {
     }
 }
 
-/// The best design, with the parsed question.
+/// The answer of [`Best::run`]: the best design, with the parsed question.
 #[derive(Debug, Clone)]
 pub struct BestAnswer {
     /// The parsed question.

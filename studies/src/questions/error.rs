@@ -11,7 +11,21 @@ use crate::study::{CellFaults, GridError};
 /// Why a question has no answer.
 ///
 /// [`faults`](Self::faults) lists what is wrong, with file, field, value and remedy. The message contains the
-/// same, one fault per line.
+/// same, one fault per line. [`is_wrong_input`](Self::is_wrong_input) tells what the caller can correct from
+/// what happened in the computation. That a run ends early (it leaves the force curve, or uses up its budget
+/// of steps or impacts) is an outcome in the answer and not an error, except where a question has no answer
+/// without the end of the run.
+///
+/// ```
+/// use interwell_studies::questions::Simulation;
+///
+/// let error = Simulation::preset("nominal-cubic")?.with("stops.restitution", 1.2).unwrap_err();
+/// assert!(error.is_wrong_input());
+/// let fault = &error.faults()[0];
+/// assert_eq!((fault.field.as_str(), fault.value.as_str()), ("stops.restitution", "1.2"));
+/// assert!(fault.problem.contains("must be 0 to 1"));
+/// # Ok::<(), interwell_studies::questions::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Error {

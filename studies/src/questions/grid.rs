@@ -64,7 +64,19 @@ macro_rules! over_fields {
 
 over_fields!(Sweep Section Exponents Threshold);
 
-/// A run for each cell of a grid, with one row per cell.
+/// What the settled motion does in each cell of a grid over fields: one run and one row per cell.
+///
+/// Columns: the swept fields in their own units, named by the shortest unique end of their path
+/// (`travel_limit_mm`); with `carry` the `direction`; then `rms_velocity_m_per_s`, `regime`, `crossings`,
+/// `impacts`, `max_abs_x_m`, `period`, `outcome`, or the chosen `columns`.
+///
+/// With `carry` a run begins in the state of the run before at its last whole forcing period, so that walks
+/// up and down show hysteresis (Duffing 1918; for the double well Holmes 1979). The cells of a walk are run
+/// one after another, other cells in batches: 41 by 101 cells of `nominal-cubic` take 0.1 s of CPU time.
+/// Energies, `mean_x_m` and `impact_share` are slower, since they need the energy ledger.
+///
+/// Errors: [`Error::Cells`] for the first cell that is not a valid scene or, with `carry`, whose drive does
+/// not repeat; [`Error::Unfit`] for `carry` with a transducer that has a state of its own.
 ///
 /// ```
 /// use interwell_studies::questions::{Progress, Simulation, Sweep};
@@ -74,7 +86,7 @@ over_fields!(Sweep Section Exponents Threshold);
 /// let sweep = sweep.and("excitation.amplitude_g", 0.5..=1.5, 3);
 /// let table = sweep.run(&simulation, &Progress::none())?;
 /// assert_eq!(table.rows(), 9);
-/// assert!(table.numbers("rms_velocity_m_per_s").is_some());
+/// assert!(table.words("outcome").iter().all(|outcome| *outcome == "done"));
 /// # Ok::<(), interwell_studies::questions::Error>(())
 /// ```
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -139,8 +151,27 @@ const MAX_SKIP: u64 = 1_000_000_000;
 /// Numbers of forcing periods that a section may keep.
 const KEPT: RangeInclusive<u64> = 1..=MAX_SECTION;
 
-/// Stroboscopic section or section at impacts of one motion, or of every cell of a grid, which gives a
-/// bifurcation diagram.
+/// The states of a motion once per forcing period (Poincaré's section) or at its impacts; over a field they
+/// give a bifurcation diagram.
+///
+/// Columns: the fields, with `carry` the `direction`, `index`, `t_s`, then `x_m,v_m_per_s` (at an event the
+/// state after it), or at impacts `side,phase_deg,v_in_m_per_s`. The states are those of the integrator's own
+/// polynomial. The more periods `options` skips, the fewer rows belong to a transient; at most 1e9 are
+/// skipped, and 1 to 4194304 kept. The cost is that of the forcing periods that are run.
+///
+/// Errors: [`Error::Scene`], in a grid [`Error::Cells`], if the drive does not repeat (impacts alone need no
+/// period) or the settled window holds no forcing period; [`Error::Unfit`] as for a [`Sweep`].
+///
+/// ```
+/// use interwell_studies::questions::{Progress, Section, Simulation};
+///
+/// // From 5 to 10 s at 3 Hz: 15 states, all at rest on the stop at 4 mm.
+/// let simulation = Simulation::preset("nominal-cubic")?;
+/// let table = Section::default().run(&simulation, &Progress::none())?;
+/// assert_eq!(table.rows(), 15);
+/// assert!(table.numbers("x_m").unwrap().iter().all(|x| (x - 4e-3).abs() < 1e-9));
+/// # Ok::<(), interwell_studies::questions::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Section {
     /// The fields, the slowest first; if there are none, the section is that of the scene.
@@ -178,7 +209,31 @@ impl Section {
     }
 }
 
-/// Lyapunov exponents of the settled motion of the scene, or of every cell of a grid.
+/// Lyapunov exponents of the settled motion: the rates in 1/s at which small perturbations grow or decay.
+///
+/// Columns: the fields, `exponent_1_per_s`, `exponent_1_se`, `exponent_2_per_s`, `exponent_2_se` (standard
+/// errors), `sum_per_s`, `exact_sum_per_s` (from damping and impacts alone) and `dimension` (Kaplan and Yorke
+/// 1979). Both exponents are minus infinity where the mass rests on a stop.
+///
+/// Method: of a motion that repeats, ln|multiplier| over its period; otherwise averages over
+/// `options.periods`, 1 to 1e7 (Benettin et al. 1980), through impacts by saltation (Müller 1995), with
+/// standard errors by batch means (Flegal and Jones 2010). More periods cost more and reduce these errors.
+///
+/// Errors: [`Error::Scene`] or [`Error::Cells`] if the drive changes and does not repeat; [`Error::Unfit`]
+/// for a transducer with a state of its own; [`Error::Failed`] if the motion ends early or touches a stop
+/// without speed (in a grid the values of that cell are missing).
+///
+/// ```
+/// use interwell_studies::questions::{Exponents, Progress, Simulation};
+///
+/// // Inside one well the exponents add up to -c/m, here -2 ratio sqrt(stiffness / mass).
+/// let simulation = Simulation::preset("nominal-cubic")?.with("stops", "None")?;
+/// let weak = simulation.with("excitation.amplitude_g", 0.2)?;
+/// let table = Exponents::default().run(&weak, &Progress::none())?;
+/// let sum = table.numbers("sum_per_s").unwrap()[0];
+/// assert!((sum + 2.0 * 0.023 * (80.0_f64 / 15.2e-3).sqrt()).abs() < 1e-6);
+/// # Ok::<(), interwell_studies::questions::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Exponents {
     /// The fields, the slowest first; if there are none, the exponents are those of the scene.
@@ -221,6 +276,30 @@ impl Exponents {
 
 /// The smallest value of a field at which the mass is released, or its settled motion crosses or is
 /// interwell: for one scene, or in every cell of a grid.
+///
+/// Columns: the fields of the grid, `of`, then `value`, `low`, `high` in the unit of the searched field,
+/// `undecided` and `windows`. `value` is missing if no value of the range has the motion. `low` and `high`
+/// are the nearest values that were tried whose motion is known; `windows` counts the changes above `value`.
+///
+/// Method: the release under one sine has a closed form. Otherwise all steps of the range are run from rest,
+/// each until its motion repeats (by default for at most 1000 forcing periods beyond the run of the scene),
+/// and the first change is bisected, since the values that cross need not form an interval. A window narrower
+/// than a step may be missed; a smaller step costs more runs.
+///
+/// Errors: [`Error::Argument`] for a wrong `field` or `resolution`; [`Error::Cells`] for cells in which no
+/// value of the range gives a valid scene, or one whose drive repeats, which interwell motion needs.
+///
+/// ```
+/// use interwell_studies::questions::{Onset, Progress, Simulation, Threshold};
+///
+/// // The mass is released when mass times base acceleration exceeds the force on the stop at 4 mm.
+/// let question = Threshold { of: Onset::Release, ..Threshold::default() };
+/// let table = question.run(&Simulation::preset("nominal-cubic")?, &Progress::none())?;
+/// let force_n = 40.0 * 4e-3 - 816_326.530_612_245 * 4e-3_f64.powi(3);
+/// let amplitude_g = force_n / (15.2e-3 * 9.806_65);
+/// assert!((table.numbers("value").unwrap()[0] - amplitude_g).abs() < 1e-9);
+/// # Ok::<(), interwell_studies::questions::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Threshold {
     /// The fields of the grid, the slowest first; if there are none, the table has one row.

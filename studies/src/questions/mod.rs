@@ -3,6 +3,58 @@
 //! A [`Simulation`] is a checked scene with its model. Each question is a struct of options with a method
 //! `run`, which takes a simulation and, unless it is short, a [`Progress`]. It returns tables in SI units, or
 //! an [`Error`] that lists all faults.
+//!
+//! | question | what it answers | answer |
+//! | --- | --- | --- |
+//! | [`Simulation::run`] | how the mass moves from one start | `dynamics::Run` |
+//! | [`Simulation::record`] | the same, with samples and events as tables | [`Recorded`] |
+//! | [`Curve`] | force, potential and stiffness over displacement | [`Table`] |
+//! | [`Sweep`] | what the settled motion does in each cell of a grid; with `carry`, hysteresis | [`Table`] |
+//! | [`Section`] | states once per period or at impacts; over a field a bifurcation diagram | [`Table`] |
+//! | [`Threshold`] | the smallest value of a field that releases the mass or makes it cross | [`Table`] |
+//! | [`Exponents`] | Lyapunov exponents: whether the motion is chaotic | [`Table`] |
+//! | [`Orbit`] | the periodic orbit near the motion, with its multipliers | `study::Orbit` |
+//! | [`Branch`] | how an orbit goes on over a field, with folds, flips and grazings | `study::Branch` |
+//! | [`Spectrum`] | which frequencies the motion holds | `study::Spectrum` |
+//! | [`Basins`] | which attractor each start goes to, and the share of each | [`BasinsAnswer`] |
+//! | [`Compare`] | how designs rate under one sine | a [`Rated`] per scene |
+//! | [`Best`] | which design is the best for an environment, and with which margins | [`BestAnswer`] |
+//! | [`Identify`] | damping, restitution or force of a measured record | [`IdentifyAnswer`] |
+//!
+//! Those with a type of their own have a method `table`, except for `study::Spectrum`, where it is a field.
+//! `docs/output.md` of the repository has the meaning of every column, `docs/studies.md` pictures and costs.
+//!
+//! # Units
+//!
+//! A column has its unit in its name: `x_m`, `v_m_per_s`, `release_g`; [`Column::unit`] gives it as text.
+//! Columns are in SI units, except those of fields and starts, which have the unit of the scene file
+//! (`travel_limit_mm`, `x_mm`), and amplitudes in g. A missing number is NaN, a missing count is `None`, a
+//! missing word is empty.
+//!
+//! # Options that questions share
+//!
+//! - `over`: fields by dotted path with their values, the slowest first. Fields of the mechanism may be among
+//!   them; each different mechanism (up to 4096 of them) is then built once.
+//! - `until_settled`: a run goes on, window after window, until its motion repeats, at most up to this time
+//!   in s. It costs most where a motion never repeats. It is at least the duration of the scene's run and at
+//!   most 1e9 s, and needs a drive that repeats. Thresholds, exponents, comparisons and designs go on by
+//!   default for at most 1000 forcing periods beyond the run; the others do not.
+//! - `carry`: the last field of a grid is walked, each run from the state of the one before. It needs a drive
+//!   that repeats.
+//! - [`Progress`]: reports, cancellation, threads. The answer has the same bits for any number of threads.
+//!
+//! # Errors
+//!
+//! | variant | when |
+//! | --- | --- |
+//! | [`Error::Scene`] | the scene, or a file that it names, is wrong, or does not suit the question |
+//! | [`Error::Cells`] | the same for cells of a grid |
+//! | [`Error::Argument`] | an option of the question is wrong; `name` says which |
+//! | [`Error::Unfit`] | the scene is right, but the question does not apply to it |
+//! | [`Error::Failed`] | scene and question are right, but the computation gave no answer |
+//! | [`Error::Cancelled`] | the flag of [`Progress::stopped_by`] was set |
+//!
+//! A run of a grid that ends early is none of these: the column `outcome` says why, and the others go on.
 
 mod design;
 mod error;

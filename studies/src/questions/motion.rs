@@ -11,7 +11,24 @@ use crate::study::{
     spectrum,
 };
 
-/// Force, potential and stiffness of the mechanism.
+/// Force, potential and stiffness of the mechanism over displacement.
+///
+/// Columns: `x_m`, `force_n` (dV/dx, what must be applied to hold the mass there), `potential_j` (which is 0
+/// at x = 0), `stiffness_n_per_m`. They are those of the piecewise polynomial with which every run computes;
+/// how well it follows a table or a function is in `Simulation::mechanism().curve.fit()`.
+///
+/// Errors: [`Error::Argument`] for a position outside a curve that ends.
+///
+/// ```
+/// use interwell_studies::questions::{Curve, Simulation};
+///
+/// // The wells of this double well lie at 7 mm, 0.49 mJ below the top of the barrier.
+/// let simulation = Simulation::preset("nominal-cubic")?;
+/// let table = Curve { positions: Some(vec![0.0, 7e-3]) }.run(&simulation)?;
+/// assert!(table.numbers("force_n").unwrap()[1].abs() < 1e-12);
+/// assert!((table.numbers("potential_j").unwrap()[1] + 0.49e-3).abs() < 1e-9);
+/// # Ok::<(), interwell_studies::questions::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Curve {
     /// Positions in m; by default 401 over a range that includes equilibria and stops.
@@ -27,7 +44,34 @@ impl Curve {
     }
 }
 
-/// The periodic orbit near the settled motion of a run.
+/// The periodic orbit near the settled motion of a run, stable or not, with its Floquet multipliers.
+///
+/// The table of the answer has one row: `period` (forcing periods), `x_m`, `v_m_per_s` (at `phase_deg`),
+/// `multiplier_1_re`, `multiplier_1_im`, `multiplier_2_re`, `multiplier_2_im`, `stable`, `impacts`, `rests`,
+/// `gentlest_impact_m_per_s`, `nearest_miss_m`.
+///
+/// Method: a motion that repeats after n forcing periods is a fixed point of the stroboscopic map, found by
+/// Newton's method. The derivative of the map is carried through impacts and releases by saltation matrices
+/// (Müller 1995; Kong et al. 2024); its eigenvalues are the multipliers, both 0 where the mass rests on a
+/// stop. It takes the run of the scene and some further periods.
+///
+/// Errors: [`Error::Argument`] for `period` or `phase_deg`; [`Error::Unfit`] if the drive does not repeat or
+/// is 0, or the transducer has a state of its own; [`Error::Failed`] if the run comes to no motion that
+/// repeats (name a period, start elsewhere, or lengthen the run), Newton's method does not converge, the
+/// motion touches a stop without speed or ends early, or there is only an orbit of a shorter period.
+///
+/// ```
+/// use interwell_studies::questions::{Orbit, Progress, Simulation};
+///
+/// // Without impacts the product of the multipliers is exp(-c T/m).
+/// let simulation = Simulation::preset("nominal-cubic")?.with("stops", "None")?;
+/// let weak = simulation.with("excitation.amplitude_g", 0.2)?;
+/// let orbit = Orbit::default().run(&weak, &Progress::none())?;
+/// let rate = 2.0 * 0.023 * (80.0_f64 / 15.2e-3).sqrt();
+/// assert!(orbit.is_stable() && orbit.period == 1);
+/// assert!((orbit.determinant() - (-rate / 3.0).exp()).abs() < 1e-9);
+/// # Ok::<(), interwell_studies::questions::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Orbit {
     /// Its period in forcing periods, at least 1; by default that of the settled motion.
@@ -54,6 +98,31 @@ impl study::Orbit {
 }
 
 /// A branch of periodic orbits, continued in a field and followed around folds.
+///
+/// The table of the answer has one row per orbit, in order along the branch: the field in its unit, the
+/// columns of [`Orbit`], and `event`: empty, `fold`, `flip`, `symmetry` or `grazing`. Its method `remarks`
+/// says where the branch ended inside the range, and why.
+///
+/// Method: pseudo-arclength continuation (Keller 1977). Events are located to some 1e-9 of the range. At a
+/// grazing the stroboscopic map changes like the square root of the distance (Nordmark 1991), so the motion
+/// that grazes is solved for with the instant of the touch as an unknown. Two events of a kind within a
+/// hundredth of the range can be missed. A branch of the prototype takes about a second.
+///
+/// Errors: those of [`Orbit`] for the first orbit, and [`Error::Argument`] for a field or a range that is
+/// wrong; a field of whole numbers has no branch. A branch that ends early is not an error.
+///
+/// ```
+/// use interwell_studies::questions::{Branch, Progress, Simulation};
+///
+/// // The stable motion in one well ends in a fold near 0.70 g; the branch goes back as an unstable one.
+/// let simulation = Simulation::preset("nominal-cubic")?.with("stops", "None")?;
+/// let question = Branch::over("excitation.amplitude_g", 0.6, 0.75);
+/// let branch = question.run(&simulation, &Progress::none())?;
+/// let table = branch.table();
+/// let fold = table.words("event").iter().position(|event| *event == "fold").unwrap();
+/// assert!((0.70..0.71).contains(&branch.values[fold]));
+/// # Ok::<(), interwell_studies::questions::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Branch {
     /// The field.
@@ -164,6 +233,30 @@ pub fn no_orbit(document: &Document, error: NoOrbit, at: &str) -> Error {
 }
 
 /// Amplitude and power spectral density of a settled motion.
+///
+/// The table of the answer has one row per line, from 0 to half the rate: `frequency_hz`, `amplitude` (half
+/// of peak to peak; m, m/s or m/s^2 by the signal) and `psd` (one-sided, the square of that unit per Hz).
+///
+/// Method: the settled window is sampled evenly, over whole periods where the drive repeats. Where the motion
+/// repeats too, its lines are exact and no window function is needed; otherwise that of von Hann is taken,
+/// and amplitude and density are scaled as in Heinzel et al. (2002). What lies above half the rate folds
+/// back: a higher `rate_hz` reduces this, which matters with impacts. Two runs are made, one for the verdict
+/// and one for the samples.
+///
+/// Errors: [`Error::Argument`] for `rate_hz` (at most 1e7 samples) or `until_settled`; [`Error::Unfit`] if
+/// the settled window has no length; [`Error::Failed`] if the run ends early.
+///
+/// ```
+/// use interwell_studies::questions::{Progress, Signal, Simulation, Spectrum};
+///
+/// // The base moves with one sine of 1.5 g at 3 Hz.
+/// let question = Spectrum { of: Signal::BaseAcceleration, ..Spectrum::default() };
+/// let table = question.run(&Simulation::preset("nominal-cubic")?, &Progress::none())?.table;
+/// let frequencies = table.numbers("frequency_hz").unwrap();
+/// let line = frequencies.iter().position(|frequency| (frequency - 3.0).abs() < 1e-9).unwrap();
+/// assert!((table.numbers("amplitude").unwrap()[line] - 1.5 * 9.806_65).abs() < 1e-9);
+/// # Ok::<(), interwell_studies::questions::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Spectrum {
     /// The signal.
@@ -202,7 +295,33 @@ impl Spectrum {
     }
 }
 
-/// The attractor that each start goes to.
+/// The attractor that each start goes to, and the share of the starts that go to each attractor.
+///
+/// [`BasinsAnswer::table`] has one row per start: `x_mm`, `v_m_per_s`, `attractor` (a number from 1),
+/// `periods` (forcing periods until that was known), `sure`. [`BasinsAnswer::attractors`] has one row per
+/// attractor: `attractor`, `regime`, `period`, `side`, `rms_velocity_m_per_s`, `x_m`, `v_m_per_s`, `starts`,
+/// `share` and its 95 % interval `share_low`, `share_high` (Wilson 1927).
+///
+/// Method: starts that share a release share everything after it, which is computed once. Without rest a
+/// start is followed until it enters an ellipse around a stable orbit (motions told by their return to known
+/// ones: Datseris and Wagemakers 2022). The shares of `random` starts are the basin stability of Menck et al.
+/// (2013). `sure` compares with ten times the tolerance, which costs somewhat less than half of the time.
+/// Without rests of the mass the cost per start is many times as large; at most 1e7 starts are taken.
+///
+/// Errors: [`Error::Argument`] for wrong ranges or numbers of starts, or if all starts lie beyond a stop or
+/// the end of the force curve; [`Error::Unfit`] if the drive changes and does not repeat, the transducer has
+/// a state of its own, or nothing takes energy. A start that reaches no attractor has no number.
+///
+/// ```
+/// use interwell_studies::questions::{Basins, Progress, Simulation};
+///
+/// // Below the release amplitude the mass stays at rest on the left or on the right stop.
+/// let weak = Simulation::preset("nominal-cubic")?.with("excitation.amplitude_g", 0.6)?;
+/// let found = Basins::of((-4.0, 4.0, 5), (-0.2, 0.2, 3)).run(&weak, &Progress::none())?;
+/// assert_eq!(found.table().rows(), 15);
+/// assert_eq!(found.attractors().words("side"), ["left", "right"]);
+/// # Ok::<(), interwell_studies::questions::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Basins {
     /// Smallest and largest displacement of the starts in mm, and how many.
@@ -213,7 +332,7 @@ pub struct Basins {
     pub random: Option<(u64, u64)>,
 }
 
-/// Basins of attraction.
+/// The answer of [`Basins::run`].
 #[derive(Debug)]
 pub struct BasinsAnswer {
     /// The starts, and what is known of each.
@@ -223,7 +342,7 @@ pub struct BasinsAnswer {
 }
 
 impl Basins {
-    /// A grid of starts.
+    /// A grid of starts: first and last displacement in mm and velocity in m/s, and how many.
     pub fn of(x_mm: (f64, f64, u64), v: (f64, f64, u64)) -> Self {
         let even = |(from, to, count): (f64, f64, u64)| EvenRange { from, to, count };
         Self { x_mm: even(x_mm), v: even(v), random: None }
@@ -285,7 +404,7 @@ fn no_basins(document: &Document, problem: NoBasins, x_mm: EvenRange) -> Error {
 }
 
 impl BasinsAnswer {
-    /// One row per start.
+    /// One row per start, the displacement the slower, or in the order in which they were drawn.
     pub fn table(&self) -> Table {
         self.answer.table(&self.basins, 0, self.answer.rows.len())
     }

@@ -13,13 +13,30 @@ type Report<'a> = &'a (dyn Fn(u64, Option<u64>) + Sync);
 
 /// How a question is run: a callback for its progress, a flag that cancels it, and its number of threads.
 ///
-/// ```
-/// use std::sync::atomic::AtomicBool;
-/// use interwell_studies::questions::Progress;
+/// [`Progress::none`] is the default: no reports, no cancellation, one thread per processor. The parts that
+/// are counted are cells of a grid, starts, orbits or runs, by the question; questions about one motion do
+/// not report. The callback is called by the threads that compute and should return soon. More threads than
+/// processors make nothing faster; the answer has the same bits for any number. A number of threads that is
+/// 0, or that the system does not grant, is an [`Error::Argument`] named `threads`.
 ///
-/// let stop = AtomicBool::new(false);
-/// let shown = |done: u64, all: Option<u64>| eprintln!("{done} of {all:?}");
-/// let progress = Progress::none().reporting_to(&shown).stopped_by(&stop).threads(2);
+/// ```
+/// use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+/// use interwell_studies::questions::{Error, Progress, Simulation, Sweep};
+///
+/// let simulation = Simulation::preset("nominal-cubic")?;
+/// let sweep = Sweep::over("excitation.amplitude_g", 0.5..=1.5, 5);
+/// let (stop, cells) = (AtomicBool::new(false), AtomicU64::new(0));
+/// let count = |_: u64, all: Option<u64>| {
+///     assert_eq!(all, Some(5));
+///     cells.fetch_add(1, Ordering::Relaxed);
+/// };
+/// let progress = Progress::none().reporting_to(&count).stopped_by(&stop).threads(2);
+/// sweep.run(&simulation, &progress)?;
+/// assert_eq!(cells.load(Ordering::Relaxed), 5);
+///
+/// stop.store(true, Ordering::Relaxed);
+/// assert_eq!(sweep.run(&simulation, &progress), Err(Error::Cancelled));
+/// # Ok::<(), Error>(())
 /// ```
 #[derive(Clone, Copy)]
 pub struct Progress<'a> {

@@ -21,7 +21,42 @@ words! {
     }
 }
 
-/// Identifies a quantity from a record, a CSV file with a header.
+/// Damping, restitution or force curve of a measured record, a CSV file with a header.
+///
+/// The table of the answer has, of damping, one row per some eight turning points (`turns`, `from_s`, `to_s`,
+/// `amplitude_m` or that of a velocity or acceleration, then `damping_ratio`, `frequency_hz`, `decay_per_s`);
+/// of restitution one row per impact (`t_s`, `side`, `v_in_m_per_s`, `v_out_m_per_s`, `restitution`); of a
+/// force one row per position (`x_m`, `force_n`, `force_rising_n`, `force_falling_n`). Estimates have columns
+/// with `low` and `high` in their names, the 95 % interval. The numbers of the whole record are in
+/// `found.summary`.
+///
+/// Method: of damping an exponential envelope through the turning points, each weighted by its own error,
+/// which gives the logarithmic decrement; of restitution polynomials through the flights on both sides of an
+/// impact; of a force the mean of both directions of the pull. With more `points` a force curve follows the
+/// samples more closely and averages fewer of them. A decay needs some ten samples per period, an impact some
+/// eight in the flight after it.
+///
+/// Errors: [`Error::Argument`] for an option that does not belong to the quantity or is out of its range;
+/// [`Error::Unfit`] for a file that cannot be read, a column that is not found, or a record from which
+/// nothing can be identified, with the reason.
+///
+/// ```
+/// use interwell_studies::questions::{Identify, WhatToIdentify};
+///
+/// // A free decay of 10 Hz with a damping ratio of 2 %, sampled at 1 kHz.
+/// let rate = std::f64::consts::TAU * 10.0;
+/// let damped = rate * (1.0 - 0.02_f64.powi(2)).sqrt();
+/// let row = |t: f64| format!("{t},{}\n", (-0.02 * rate * t).exp() * (damped * t).cos());
+/// let rows: String = (0..2000).map(|i| row(f64::from(i) * 1e-3)).collect();
+/// let path = std::env::temp_dir().join(format!("interwell-decay-{}.csv", std::process::id()));
+/// std::fs::write(&path, format!("t_s,x_mm\n{rows}")).unwrap();
+/// let answer = Identify::of(WhatToIdentify::Damping).run(&path);
+/// std::fs::remove_file(&path).unwrap();
+/// let ratio = answer?.found.summary[0];
+/// assert_eq!(ratio.name, "damping_ratio");
+/// assert!((ratio.value - 0.02).abs() < 1e-5);
+/// # Ok::<(), interwell_studies::questions::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Identify {
     /// The quantity.
@@ -45,7 +80,7 @@ pub struct Identify {
     pub points: Option<u32>,
 }
 
-/// The identified quantity, and the record from which it was identified.
+/// The answer of [`Identify::run`]: the identified quantity, and the record from which it was identified.
 #[derive(Debug, Clone)]
 pub struct IdentifyAnswer {
     /// The result.

@@ -11,7 +11,14 @@ use crate::numeric::number_text;
 use crate::scene::{Axis, Document, Excitation, Files, Scene};
 use crate::study::{Grid, Keep, Sampling, Table, sample_times, simulate};
 
-/// A checked scene with its model.
+/// A checked scene with its model: what every question is asked of.
+///
+/// It is made once from a built-in scene, a file or a text, which solves the mechanism (flexures take
+/// longest), and it does not change: [`with`](Self::with) returns another one, which shares the mechanism if
+/// no field of that was changed. Fields and their units are those of scene files. Either way an unknown field
+/// or a value out of its range gives [`Error::Scene`], with all faults at once, and flexures without a
+/// solution give [`Error::Failed`]. [`run`](Self::run) never fails: if a run cannot go on, its outcome says
+/// so.
 ///
 /// ```
 /// use interwell_kernel::dynamics::Request;
@@ -30,7 +37,7 @@ pub struct Simulation {
     warnings: Vec<String>,
 }
 
-/// One run with its samples and events.
+/// The answer of [`Simulation::record`]: one run with its samples and events, in SI units.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recorded {
     /// `t_s,x_m,v_m_per_s,base_accel_m_per_s2,phase`, with a transducer also `voltage_v,current_a,power_w`.
@@ -109,7 +116,8 @@ impl Simulation {
     }
 
     /// The simulation with this force curve in place of its mechanism. The fields of the mechanism are then
-    /// those of [`Pieces`](crate::scene::Mechanism::Pieces).
+    /// those of [`Pieces`](crate::scene::Mechanism::Pieces). Gives [`Error::Scene`] if the scene does not fit
+    /// the curve: its start lies beyond an end of it, or a damping ratio or a start at rest finds no well.
     pub fn with_force(&self, curve: &ForceCurve) -> Result<Self, Error> {
         let mut document = self.document.clone();
         document.scene.mechanism = curve.to_scene();
@@ -126,13 +134,26 @@ impl Simulation {
         self.with_document(document)
     }
 
-    /// Runs the scene once.
+    /// Runs the scene once and keeps what is requested.
     pub fn run(&self, request: &Request) -> Run {
         self.model.run(request)
     }
 
     /// Runs the scene once and keeps samples and events. With `until_settled` in s, the run continues window
     /// by window until the motion repeats, at most up to that time.
+    ///
+    /// Errors: [`Error::Argument`] for sample times that are not finite, lie outside the run or are too many
+    /// (at most 1e7), or for `until_settled`; [`Error::Cancelled`].
+    ///
+    /// ```
+    /// use interwell_studies::questions::{Progress, Sampling, Simulation};
+    ///
+    /// let simulation = Simulation::preset("nominal-cubic")?;
+    /// let recorded = simulation.record(&Sampling::Every(0.01), None, &Progress::none())?;
+    /// assert_eq!(recorded.samples.rows(), 1001);
+    /// assert_eq!(recorded.events.words("kind")[0], "rest");
+    /// # Ok::<(), interwell_studies::questions::Error>(())
+    /// ```
     pub fn record(
         &self,
         sampling: &Sampling,

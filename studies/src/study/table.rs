@@ -96,7 +96,22 @@ impl Column {
     }
 }
 
-/// Columns of one length.
+/// Columns of one length: the answer of every study.
+///
+/// A column is found by its name, which ends with its unit: [`numbers`](Self::numbers) and
+/// [`words`](Self::words) give the values of these types, [`column`](Self::column) those of any type. Missing
+/// values are described at [`Values`].
+///
+/// ```
+/// use interwell_studies::questions::{Table, Values};
+///
+/// let positions = Values::Numbers(vec![0.5e-3, 1.0e-3]);
+/// let table = Table::new().with("x_m", positions);
+/// assert_eq!(table.rows(), 2);
+/// assert_eq!(table.numbers("x_m"), Some(&[0.5e-3, 1.0e-3][..]));
+/// assert_eq!(table.column("x_m").unwrap().unit(), "m");
+/// assert!(table.words("x_m").is_empty());
+/// ```
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Table {
     columns: Vec<Column>,
