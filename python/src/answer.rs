@@ -21,7 +21,7 @@ pub struct Asked {
 /// Makes the chart of a table.
 type Charted = Box<dyn Fn(&Table, &Asked) -> Result<Chart, String> + Send + Sync>;
 
-/// The values of a column: numbers are an array of NumPy, which Python shares.
+/// The values of a column: numbers are an array of NumPy, which Python shares and cannot write to.
 enum Held {
     Numbers(Py<PyArray1<f64>>),
     Other(Values),
@@ -40,7 +40,11 @@ impl Answer {
     /// An answer whose table has no picture.
     pub fn new(py: Python<'_>, table: Table, caption: Caption) -> Self {
         let held = |values: Values| match values {
-            Values::Numbers(numbers) => Held::Numbers(PyArray1::from_vec(py, numbers).unbind()),
+            Values::Numbers(numbers) => {
+                let array = PyArray1::from_vec(py, numbers);
+                array.readwrite().make_nonwriteable();
+                Held::Numbers(array.unbind())
+            }
             other => Held::Other(other),
         };
         let columns = table.into_columns().into_iter().map(|column| (column.name, held(column.values)));

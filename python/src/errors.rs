@@ -12,17 +12,26 @@ pub fn raised(py: Python<'_>, error: &Error) -> PyErr {
     }
     let exception = || -> PyResult<PyErr> {
         let errors = py.import("interwell._errors")?;
-        let message = error.to_string();
+        let message = in_python(error.to_string());
         if !error.is_wrong_input() {
             return Ok(PyErr::from_value(errors.getattr("ComputationError")?.call1((message,))?));
         }
         let fault = errors.getattr("Fault")?;
-        let faults = error
-            .faults()
-            .into_iter()
-            .map(|found| fault.call1((found.file, found.line, found.field, found.value, found.problem)));
+        let faults = error.faults().into_iter().map(|found| {
+            let (field, problem) = (in_python(found.field), in_python(found.problem));
+            fault.call1((found.file, found.line, field, found.value, problem))
+        });
         let faults = faults.collect::<PyResult<Vec<_>>>()?;
         Ok(PyErr::from_value(errors.getattr("SceneError")?.call1((message, faults))?))
     };
     exception().unwrap_or_else(|error| error)
+}
+
+/// The text with the names of arguments in Python, which differ where those of the library are keywords.
+fn in_python(text: String) -> String {
+    match text.as_str() {
+        "from" => "start".to_owned(),
+        "to" => "end".to_owned(),
+        _ => text.replace("`from`", "`start`").replace("`to`", "`end`"),
+    }
 }

@@ -123,7 +123,7 @@ impl Simulation {
         breaks: Vec<f64>,
     ) -> PyResult<(Self, f64)> {
         let failed = RefCell::new(None);
-        let curve = ForceCurve::from_fn(values_of(force, &failed), range, tolerance, &breaks);
+        let curve = ForceCurve::from_fn(values_of(force, "force", &failed), range, tolerance, &breaks);
         if let Some(error) = failed.into_inner() {
             return Err(error);
         }
@@ -131,6 +131,19 @@ impl Simulation {
         let error = curve.fit().map_or(0.0, |FitReport { worst_n, .. }| *worst_n);
         let inner = work(py, &Way::default(), |_| self.inner.with_force(&curve))?;
         Ok((Self::new(inner), error))
+    }
+
+    /// The scene with the force curve through samples.
+    fn with_force_samples(
+        &self,
+        py: Python<'_>,
+        x_m: Vec<f64>,
+        force_n: Vec<f64>,
+        tolerance: f64,
+    ) -> PyResult<Self> {
+        let curve = ForceCurve::from_samples(&x_m, &force_n, tolerance);
+        let curve = curve.map_err(|problem| raised(py, &Error::argument("force", "", problem)))?;
+        work(py, &Way::default(), |_| self.inner.with_force(&curve)).map(Self::new)
     }
 
     /// The scene with the drive of a function of the time, or of samples of one period.
@@ -143,7 +156,7 @@ impl Simulation {
     ) -> PyResult<Self> {
         let failed = RefCell::new(None);
         let drive = if acceleration.is_callable() {
-            Excitation::from_fn(values_of(acceleration, &failed), frequency_hz, tolerance)
+            Excitation::from_fn(values_of(acceleration, "acceleration", &failed), frequency_hz, tolerance)
         } else {
             Excitation::from_samples(&acceleration.extract::<Vec<f64>>()?, frequency_hz)
         };
@@ -317,9 +330,6 @@ impl Simulation {
         let wrong = |name: &str, problem: &str| Err(raised(py, &Error::argument(name, "", problem)));
         if skip.is_some() != keep.is_some() {
             return wrong("skip", "skip and keep belong together: give both, in forcing periods");
-        }
-        if !phase_deg.is_finite() {
-            return wrong("phase_deg", "give an angle in degrees, such as 90");
         }
         let carry = carry.map(|word| named(py, "carry", word, &Carry::ALL, Carry::name)).transpose()?;
         let at = match at {
@@ -595,12 +605,23 @@ pub fn presets() -> Vec<(&'static str, String)> {
 }
 
 /// A Python function of a number. After its first exception, which is kept in `failed`, its values are NaN.
-fn values_of(function: &Bound<'_, PyAny>, failed: &RefCell<Option<PyErr>>) -> impl Fn(f64) -> f64 {
-    move |x: f64| {
+fn values_of(
+    function: &Bound<'_, PyAny>,
+    argument: &'static str,
+    failed: &RefCell<Option<PyErr>>,
+) -> impl Fn(f64) -> f64 {
+    move |at: f64| {
         if failed.borrow().is_some() {
             return f64::NAN;
         }
-        let value = function.call1((x,)).and_then(|value| value.extract::<f64>());
+        let value = function.call1((at,)).and_then(|value| {
+            let number = value.extract::<f64>();
+            number.map_err(|_| {
+                let shown = value.repr().map_or_else(|_| String::new(), |text| text.to_string());
+                let problem = format!("the function returned {shown} at {at}; it must return a number");
+                raised(function.py(), &Error::argument(argument, "", problem))
+            })
+        });
         value.unwrap_or_else(|error| {
             *failed.borrow_mut() = Some(error);
             f64::NAN

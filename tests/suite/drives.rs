@@ -348,7 +348,7 @@ fn accelerations(drive: &Excitation, times: &[f64]) -> Vec<f64> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 40, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(40) })]
 
     /// A smooth periodic function is followed as closely as was asked for, at times that were not compared,
     /// and the drive repeats.

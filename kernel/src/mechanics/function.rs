@@ -1,15 +1,22 @@
 //! Force curves that a program gives: made of a function, or of polynomials in a scene.
 
+use std::cell::RefCell;
+use std::collections::HashMap;
+
 use super::curve::{FitReport, ForceCurve, Piece};
 use super::fit::{fit, force_scale};
-use super::table::{ForceTable, MAX_POINTS};
+use super::table::{ForceTable, MAX_POINTS, MIN_POINTS};
+use crate::numeric::{bisect, number_text};
 use crate::scene;
 
 /// Smallest and largest tolerance of [`ForceCurve::from_fn`].
 const TOLERANCES: (f64, f64) = (1e-10, 0.1);
 
-/// Intervals between two given breaks at first.
+/// Intervals between the ends of the range at first, where there are no breaks.
 const INTERVALS: usize = 64;
+
+/// Smallest number of intervals between two breaks at first.
+const MIN_INTERVALS: usize = 8;
 
 /// Comparisons with the function in each interval between samples.
 const CHECKS: usize = 5;
@@ -20,7 +27,19 @@ const AT_SAMPLES: f64 = 0.5;
 /// Width of an interval, relative to the range, below which a function that is not followed has a step.
 const NARROWEST: f64 = 1e-12;
 
-/// Why a function has no force curve.
+/// Largest number of calls of the function; the fit of samples of as many intervals takes some seconds.
+const MAX_CALLS: usize = 30_000;
+
+/// Samples on each side of an interval from which a corner in it is extrapolated.
+const BESIDE: usize = 4;
+
+/// Largest error of the extrapolation, relative to the change of the force that the corner makes.
+const CORNER_ERROR: f64 = 1e-3;
+
+/// Width, relative to the range, down to which the interval around a corner is narrowed.
+const CORNER_WIDTH: f64 = 1e-6;
+
+/// Why a function or samples have no force curve.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum FunctionError {
     /// The range is empty or not finite.
@@ -36,12 +55,25 @@ pub enum FunctionError {
     /// A break lies outside the range.
     #[error("the break {0} m is not inside the range")]
     Break(f64),
-    /// The function has no finite value somewhere.
-    #[error("the force at x = {0} m is {1}; it must be finite in the whole range")]
+    /// The force is not finite somewhere.
+    #[error("the force at x = {at} m is {1}; it must be finite in the whole range", at = number_text(*.0))]
     NotFinite(f64, f64),
-    /// No curve follows the function.
-    #[error("no continuous curve follows the force near x = {0} m; a force must have no steps")]
+    /// The force has a step, or an infinite slope.
+    #[error(
+        "no curve follows the force near x = {at} m: it has a step or an infinite slope there",
+        at = number_text(*.0)
+    )]
     Step(f64),
+    /// The force is not followed with as many calls as are made.
+    #[error(
+        "{MAX_CALLS} values of the force are not enough to follow it near x = {at} m; give a larger \
+         tolerance, all the more if the force is noisy, and the corners of the force as breaks",
+        at = number_text(*.0)
+    )]
+    Rough(f64),
+    /// Samples that are no table.
+    #[error("the samples are no force curve: {0}")]
+    Samples(String),
     /// The fit of the samples failed.
     #[error("the force {0}")]
     Fit(String),
@@ -52,9 +84,9 @@ impl ForceCurve {
     ///
     /// The curve differs from the function by at most `tolerance` (1e-10 to 0.1) times the largest force
     /// between the wells. The error that was found at five places between any two samples is in
-    /// [`fit`](Self::fit). Places where the function bends sharply are found; those that are known are better
+    /// [`fit`](Self::fit). Corners are found and become breaks of the curve; those that are known are better
     /// given as `breaks`, in m. A function that is odd over a symmetric range gives a curve that is odd bit
-    /// for bit.
+    /// for bit. The function is called at most 30 000 times.
     ///
     /// ```
     /// use interwell_kernel::mechanics::ForceCurve;
@@ -73,49 +105,44 @@ impl ForceCurve {
         if !(low < high && low.is_finite() && high.is_finite()) {
             return Err(FunctionError::Range(low, high));
         }
-        if !(TOLERANCES.0 <= tolerance && tolerance <= TOLERANCES.1) {
-            return Err(FunctionError::Tolerance(tolerance));
-        }
+        check_tolerance(tolerance)?;
         if let Some(outside) = breaks.iter().find(|x| !(low < **x && **x < high)) {
             return Err(FunctionError::Break(*outside));
         }
-        let finite = |x: f64| match force(x) {
-            value if value.is_finite() => Ok(value),
-            value => Err(FunctionError::NotFinite(x, value)),
-        };
-        let mut ends = [&[low], breaks, &[high]].concat();
-        ends.sort_by(f64::total_cmp);
-        ends.dedup();
-        let even = |pair: &[f64]| {
-            let (from, to) = (pair[0], pair[1]);
-            (0..INTERVALS).map(move |i| {
-                let share = i as f64 / INTERVALS as f64;
-                from * (1.0 - share) + to * share
-            })
-        };
-        let x: Vec<f64> = ends.windows(2).flat_map(even).chain([high]).collect();
-        let values = x.iter().map(|x| finite(*x)).collect::<Result<Vec<f64>, _>>()?;
-        let mut table = ForceTable { x, force: values };
+        let function = Sampled { force, values: RefCell::default() };
+        let mut breaks = breaks.to_vec();
         loop {
-            let curve = fit(&table, AT_SAMPLES * tolerance).map_err(FunctionError::Fit)?;
-            let compared = compared(&curve, &table, tolerance, &finite)?;
-            let Some(first) = compared.refined.first() else {
-                return Ok(curve.with_fit(compared.report));
-            };
-            let narrow = |x: &f64| {
-                let right = table.x.partition_point(|sample| sample < x);
-                table.x[right] - table.x[right - 1] < NARROWEST * (high - low)
-            };
-            if compared.refined.iter().any(narrow) || table.x.len() + compared.refined.len() > MAX_POINTS {
-                let at = compared.refined.iter().copied().find(narrow).unwrap_or(*first);
-                return Err(FunctionError::Step(at));
+            breaks.sort_by(f64::total_cmp);
+            breaks.dedup();
+            match function.curve(range, tolerance, &breaks)? {
+                Attempt::Curve(curve) => return Ok(curve),
+                Attempt::Corners(found) => breaks.extend(mirrored(found, range)),
             }
-            let added = compared.refined.iter().map(|x| Ok((*x, finite(*x)?)));
-            let known = table.x.iter().copied().zip(table.force.iter().copied()).map(Ok);
-            let mut rows = known.chain(added).collect::<Result<Vec<(f64, f64)>, FunctionError>>()?;
-            rows.sort_by(|a, b| a.0.total_cmp(&b.0));
-            (table.x, table.force) = rows.into_iter().unzip();
         }
+    }
+
+    /// The curve through samples: forces in N at positions in m, at least four, in order of position. It
+    /// follows them to `tolerance` (1e-10 to 0.1) times the largest force between the wells, as that of a
+    /// table in a scene does. The error that was found at the samples is in [`fit`](Self::fit).
+    pub fn from_samples(x: &[f64], force: &[f64], tolerance: f64) -> Result<Self, FunctionError> {
+        check_tolerance(tolerance)?;
+        let wrong = |problem: String| Err(FunctionError::Samples(problem));
+        if x.len() != force.len() {
+            return wrong(format!("{} positions have {} forces; give one for each", x.len(), force.len()));
+        }
+        if !(MIN_POINTS..=MAX_POINTS).contains(&x.len()) {
+            return wrong(format!("there are {}; give {MIN_POINTS} to {MAX_POINTS}", x.len()));
+        }
+        if let Some(i) = (0..x.len()).find(|i| !(x[*i].is_finite() && force[*i].is_finite())) {
+            return wrong(format!("number {i} is {} m, {} N; give finite numbers", x[i], force[i]));
+        }
+        if let Some(i) = (1..x.len()).find(|i| x[i - 1] >= x[*i]) {
+            let (before, after) = (number_text(x[i - 1]), number_text(x[i]));
+            return wrong(format!(
+                "{after} m follows {before} m; sort them, with one force for each position"
+            ));
+        }
+        fit(&ForceTable { x: x.to_vec(), force: force.to_vec() }, tolerance).map_err(FunctionError::Fit)
     }
 
     /// The curve of polynomials in a scene that has passed its check.
@@ -151,48 +178,202 @@ impl ForceCurve {
     }
 }
 
+fn check_tolerance(tolerance: f64) -> Result<(), FunctionError> {
+    match TOLERANCES.0 <= tolerance && tolerance <= TOLERANCES.1 {
+        true => Ok(()),
+        false => Err(FunctionError::Tolerance(tolerance)),
+    }
+}
+
+/// A function with the values that are known.
+struct Sampled<F> {
+    force: F,
+    /// By the bits of the position.
+    values: RefCell<HashMap<u64, f64>>,
+}
+
+/// What came of a function with these breaks.
+enum Attempt {
+    Curve(ForceCurve),
+    /// Corners that are not among the breaks.
+    Corners(Vec<f64>),
+}
+
 /// A curve compared with its function.
 struct Compared {
     /// The largest error that was found.
     report: FitReport,
-    /// Middles of the intervals between samples in which the curve is too far off.
-    refined: Vec<f64>,
+    /// Intervals between samples in which the curve is too far off.
+    refined: Vec<(f64, f64)>,
 }
 
-fn compared(
-    curve: &ForceCurve,
-    table: &ForceTable,
-    tolerance: f64,
-    force: &impl Fn(f64) -> Result<f64, FunctionError>,
-) -> Result<Compared, FunctionError> {
-    let scale = force_scale(table);
-    let allowed = tolerance * scale
-        + 16.0 * f64::EPSILON * table.force.iter().fold(0.0_f64, |largest, force| largest.max(force.abs()));
-    let (low, high) = curve.domain();
-    let (mut worst, mut at, mut refined) = (0.0_f64, low, Vec::new());
-    for pair in table.x.windows(2) {
-        let mut largest = 0.0_f64;
-        for check in 1..=CHECKS {
-            let share = check as f64 / (CHECKS + 1) as f64;
-            let x = (pair[0] * (1.0 - share) + pair[1] * share).clamp(low, high);
-            let error = (curve.force(x) - force(x)?).abs();
-            if error > worst {
-                (worst, at) = (error, x);
+impl<F: Fn(f64) -> f64> Sampled<F> {
+    fn value(&self, x: f64) -> Result<f64, FunctionError> {
+        let mut values = self.values.borrow_mut();
+        if let Some(known) = values.get(&x.to_bits()) {
+            return Ok(*known);
+        }
+        if values.len() >= MAX_CALLS {
+            return Err(FunctionError::Rough(x));
+        }
+        let value = (self.force)(x);
+        values.insert(x.to_bits(), value);
+        if value.is_finite() { Ok(value) } else { Err(FunctionError::NotFinite(x, value)) }
+    }
+
+    fn curve(
+        &self,
+        (low, high): (f64, f64),
+        tolerance: f64,
+        breaks: &[f64],
+    ) -> Result<Attempt, FunctionError> {
+        let ends = [&[low], breaks, &[high]].concat();
+        let count = INTERVALS.div_ceil(ends.len() - 1).max(MIN_INTERVALS);
+        let even = |pair: &[f64]| {
+            let (from, to) = (pair[0], pair[1]);
+            (0..count).map(move |i| {
+                let share = i as f64 / count as f64;
+                from * (1.0 - share) + to * share
+            })
+        };
+        let x: Vec<f64> = ends.windows(2).flat_map(even).chain([high]).collect();
+        let values = x.iter().map(|x| self.value(*x)).collect::<Result<Vec<f64>, _>>()?;
+        let mut table = ForceTable { x, force: values };
+        loop {
+            let curve = fit(&table, AT_SAMPLES * tolerance).map_err(FunctionError::Fit)?;
+            let compared = self.compared(&curve, &table, tolerance)?;
+            if compared.refined.is_empty() {
+                return Ok(Attempt::Curve(curve.with_fit(compared.report)));
             }
-            largest = largest.max(error);
-        }
-        if largest > allowed {
-            refined.push(0.5 * (pair[0] + pair[1]));
+            let mut corners = Vec::new();
+            for interval in &compared.refined {
+                corners.extend(self.corner(*interval, &ends)?);
+            }
+            if !corners.is_empty() {
+                return Ok(Attempt::Corners(corners));
+            }
+            let narrow = |(from, to): &&(f64, f64)| to - from < NARROWEST * (high - low);
+            if let Some((from, to)) = compared.refined.iter().find(narrow) {
+                return Err(FunctionError::Step(0.5 * (from + to)));
+            }
+            let middle = |(from, to): &(f64, f64)| {
+                let x = 0.5 * (from + to);
+                Ok((x, self.value(x)?))
+            };
+            let known = table.x.iter().copied().zip(table.force.iter().copied()).map(Ok);
+            let added = compared.refined.iter().map(middle);
+            let mut rows = known.chain(added).collect::<Result<Vec<(f64, f64)>, FunctionError>>()?;
+            rows.sort_by(|a, b| a.0.total_cmp(&b.0));
+            (table.x, table.force) = rows.into_iter().unzip();
         }
     }
-    let samples = Some(table.x.len() + CHECKS * (table.x.len() - 1));
-    let mut report =
-        FitReport { worst_n: worst, worst_at_m: Some(at), scale_n: scale, samples, warnings: Vec::new() };
-    if let Some(fit) = curve.fit() {
-        report.warnings.clone_from(&fit.warnings);
-        if fit.worst_n > worst {
-            (report.worst_n, report.worst_at_m) = (fit.worst_n, fit.worst_at_m);
+
+    fn compared(
+        &self,
+        curve: &ForceCurve,
+        table: &ForceTable,
+        tolerance: f64,
+    ) -> Result<Compared, FunctionError> {
+        let scale = force_scale(table);
+        let largest = table.force.iter().fold(0.0_f64, |largest, force| largest.max(force.abs()));
+        let allowed = tolerance * scale + 16.0 * f64::EPSILON * largest;
+        let (low, high) = curve.domain();
+        let (mut worst, mut at, mut refined) = (0.0_f64, low, Vec::new());
+        for pair in table.x.windows(2) {
+            let mut largest = 0.0_f64;
+            for check in 1..=CHECKS {
+                let share = check as f64 / (CHECKS + 1) as f64;
+                let x = (pair[0] * (1.0 - share) + pair[1] * share).clamp(low, high);
+                let error = (curve.force(x) - self.value(x)?).abs();
+                if error > worst {
+                    (worst, at) = (error, x);
+                }
+                largest = largest.max(error);
+            }
+            if largest > allowed {
+                refined.push((pair[0], pair[1]));
+            }
+        }
+        let samples = Some(table.x.len() + CHECKS * (table.x.len() - 1));
+        let mut report =
+            FitReport { worst_n: worst, worst_at_m: Some(at), scale_n: scale, samples, warnings: Vec::new() };
+        if let Some(fit) = curve.fit() {
+            report.warnings.clone_from(&fit.warnings);
+            if fit.worst_n > worst {
+                (report.worst_n, report.worst_at_m) = (fit.worst_n, fit.worst_at_m);
+            }
+        }
+        Ok(Compared { report, refined })
+    }
+
+    /// The corner in an interval, if the function has one there and is smooth beside it, up to the next of
+    /// `ends`. Narrower and narrower intervals around it locate it to rounding.
+    fn corner(&self, interval: (f64, f64), ends: &[f64]) -> Result<Option<f64>, FunctionError> {
+        let (low, high) = (ends[0], ends[ends.len() - 1]);
+        let (mut from, mut to) = interval;
+        loop {
+            let width = to - from;
+            let beside = BESIDE as f64 * width;
+            let (left, right) = (from - beside, to + beside);
+            if left < low || high < right || ends.iter().any(|end| left < *end && *end < right) {
+                return Ok(None);
+            }
+            let Some((x, is_located)) = self.meeting(from, to)? else { return Ok(None) };
+            if is_located || width < CORNER_WIDTH * (high - low) {
+                return Ok(Some(x));
+            }
+            (from, to) = (x - width / 16.0, x + width / 16.0);
         }
     }
-    Ok(Compared { report, refined })
+
+    /// Where the cubics through the samples on both sides of an interval meet, if the function follows them
+    /// up to there and turns from one to the other. Also whether rounding limits the place.
+    fn meeting(&self, from: f64, to: f64) -> Result<Option<(f64, bool)>, FunctionError> {
+        let width = to - from;
+        let side = |edge: f64, step: f64| -> Result<Vec<(f64, f64)>, FunctionError> {
+            let places = (0..BESIDE).map(|i| edge + step * i as f64);
+            places.map(|x| Ok((x, self.value(x)?))).collect()
+        };
+        let (left, right) = (side(from, -width)?, side(to, width)?);
+        let difference = |x: f64| extrapolated(&left, x) - extrapolated(&right, x);
+        let (before, after) = (difference(from), difference(to));
+        if !(before * after < 0.0) {
+            return Ok(None);
+        }
+        let (x, _) = bisect(from, to, 60, |x| difference(x) * before > 0.0);
+        let change = (after - before).abs();
+        let largest = left.iter().chain(&right).fold(0.0_f64, |largest, (_, value)| largest.max(value.abs()));
+        let rounding = 64.0 * f64::EPSILON * largest;
+        for i in 0..=2 * CHECKS {
+            let share = i as f64 / (2 * CHECKS) as f64;
+            let place = from * (1.0 - share) + to * share;
+            let side = if place < x { &left } else { &right };
+            if !((self.value(place)? - extrapolated(side, place)).abs() <= CORNER_ERROR * change + rounding) {
+                return Ok(None);
+            }
+        }
+        Ok((change * CORNER_ERROR > rounding).then_some((x, change * CORNER_ERROR < 16.0 * rounding)))
+    }
+}
+
+/// Makes corners of a range about 0 that are each other's mirror image within rounding exactly so.
+fn mirrored(mut corners: Vec<f64>, (low, high): (f64, f64)) -> Vec<f64> {
+    if low == -high {
+        for i in 0..corners.len() {
+            let image = corners.iter().position(|x| (x + corners[i]).abs() < 1e-9 * high);
+            if let Some(image) = image.filter(|_| corners[i] > 0.0) {
+                corners[image] = -corners[i];
+            }
+        }
+    }
+    corners
+}
+
+/// The value at `x` of the polynomial through these points.
+fn extrapolated(points: &[(f64, f64)], x: f64) -> f64 {
+    let term = |(i, (at, value)): (usize, &(f64, f64))| {
+        let others = points.iter().enumerate().filter(|(j, _)| *j != i);
+        others.fold(*value, |term, (_, (other, _))| term * (x - other) / (at - other))
+    };
+    points.iter().enumerate().map(term).sum()
 }

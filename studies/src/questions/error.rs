@@ -183,21 +183,29 @@ fn scene_faults(error: &SceneError) -> Vec<FaultAt> {
             faults.iter().map(fault).collect()
         }
         SceneError::Argument(error) => {
-            vec![FaultAt { field: error.argument.clone(), ..FaultAt::new("", &error.problem) }]
+            let written = error.argument.trim_start_matches("--set ").trim_start_matches("--over ");
+            let (field, value) = written.split_once('=').unwrap_or((written, ""));
+            let (field, value) = (field.to_owned(), value.to_owned());
+            vec![FaultAt { field, value, ..FaultAt::new("", &error.problem) }]
         }
     }
 }
 
-/// Replaces options of the command line in a text by names of arguments: `--until-settled` by
+/// Replaces options of the command line in a text by names of arguments: --until-settled by
 /// `until_settled`. A word is an option if, after brackets and quotes, it begins with two hyphens
 /// and a letter.
 fn with_argument_names(text: &str) -> String {
     let renamed = |word: &str| {
         let (open, rest) = word.split_at(word.len() - word.trim_start_matches(['(', '\'', '"', '`']).len());
-        match rest.strip_prefix("--").filter(|name| name.starts_with(|c: char| c.is_ascii_lowercase())) {
-            Some(name) => format!("{open}{}", name.replace('-', "_")),
-            None => word.to_owned(),
-        }
+        let Some(option) =
+            rest.strip_prefix("--").filter(|name| name.starts_with(|c: char| c.is_ascii_lowercase()))
+        else {
+            return word.to_owned();
+        };
+        let end = option.find(|c: char| !(c.is_ascii_alphanumeric() || c == '-')).unwrap_or(option.len());
+        let (name, after) = option.split_at(end);
+        let quote = if open.ends_with(['\'', '"', '`']) { "" } else { "`" };
+        format!("{open}{quote}{}{quote}{after}", name.replace('-', "_"))
     };
     text.split_inclusive(char::is_whitespace).map(renamed).collect()
 }
@@ -270,9 +278,9 @@ mod tests {
     fn options_become_arguments_and_paths_stay() {
         assert_eq!(
             with_argument_names(
-                "take a longer step (--dt)\nor `--until-settled`; not my--scene-2.ron or --2"
+                "take a longer step (--dt)\nor `--until-settled`, --from; not my--scene-2.ron or --2"
             ),
-            "take a longer step (dt)\nor `until_settled`; not my--scene-2.ron or --2"
+            "take a longer step (`dt`)\nor `until_settled`, `from`; not my--scene-2.ron or --2"
         );
     }
 }

@@ -3,6 +3,7 @@
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 
+use super::motion::{phase, refuse_electrical_state};
 use super::{Error, Progress, Simulation, check_until_settled};
 use crate::dynamics::Model;
 use crate::mechanics::{ForceCurve, Mechanism};
@@ -10,8 +11,8 @@ use crate::numeric::number_text;
 use crate::scene::Mechanism::Linear;
 use crate::scene::{Axis, Damping, Document, Scene, Start, Stops, Transducer, is_whole};
 use crate::study::{
-    self, Carry, DIRECTION, ELECTRICAL_STATE, ExponentCells, ExponentOptions, Grid, GridStudy, IMPACTS,
-    MAX_SECTION, NoExponents, NoThresholds, Onset, Question, STANDARD_COLUMNS, SUMMARY_FIELDS, Scan,
+    self, Carry, DIRECTION, ExponentCells, ExponentOptions, Grid, GridStudy, IMPACTS, MAX_SECTION,
+    NoExponents, NoThresholds, Onset, Question, STANDARD_COLUMNS, SUMMARY_FIELDS, Scan, SectionAt,
     SectionOptions, Sections, SummaryField, SweepEnd, SweepOptions, Table, Task, drive_fault, exponents,
     exponents_row, section, threshold_table,
 };
@@ -185,6 +186,9 @@ impl Section {
     pub fn run(&self, simulation: &Simulation, progress: &Progress) -> Result<Table, Error> {
         let document = simulation.document();
         let SectionOptions { periods, carry, .. } = self.options;
+        if let SectionAt::Phase(degrees) = self.options.at {
+            phase(degrees)?;
+        }
         if let Some((skip, keep)) = periods.filter(|(skip, keep)| *skip > MAX_SKIP || !KEPT.contains(keep)) {
             let problem = format!("skip at most {MAX_SKIP} forcing periods, and keep 1 to {MAX_SECTION}");
             return Err(Error::argument("skip", format!("{skip}, keep = {keep}"), problem));
@@ -414,23 +418,6 @@ impl Threshold {
             }
         };
         Ok(Scan { field: axis.field, values, resolution, until_settled: None })
-    }
-}
-
-/// Refuses a transducer with an electrical state, in the scene or in a cell over `axes`, for studies whose
-/// state consists of displacement and velocity only. `what` names the study in the error.
-pub fn refuse_electrical_state(document: &Document, axes: &[Axis], what: &str) -> Result<(), Error> {
-    let swept = |name: &str| axes.iter().any(|axis| axis.field == format!("transducer.{name}"));
-    let cells_may_have = match document.scene.transducer {
-        Transducer::None => false,
-        Transducer::Electromagnetic { inductance_mh, .. } => {
-            swept("inductance_mh") || inductance_mh > 0.0 && swept("load_ohm")
-        }
-        Transducer::Piezoelectric { .. } => swept("load_kohm"),
-    };
-    match cells_may_have || document.scene.transducer.has_state() {
-        true => Err(Error::unfit(document, format!("{what}: {ELECTRICAL_STATE}"))),
-        false => Ok(()),
     }
 }
 

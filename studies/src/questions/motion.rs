@@ -1,14 +1,13 @@
 //! Questions about one scene: force curve, periodic motions, spectrum and basins of attraction.
 
-use super::grid::refuse_electrical_state;
 use super::{Error, Progress, Simulation};
 use crate::dynamics::Model;
 use crate::numeric::{Taper, number_text};
-use crate::scene::{Axis, Document, is_whole};
+use crate::scene::{Axis, Document, Transducer, is_whole};
 use crate::study::{
-    self, Answer, BranchEnd, CURVE_POINTS, EvenRange, Family, NoBasins, NoOrbit, NoSpectrum, Signal,
-    SpectrumOptions, Starts, StartsError, Table, Task, branch, curve, default_positions, orbit, orbit_table,
-    spectrum,
+    self, Answer, BranchEnd, CURVE_POINTS, ELECTRICAL_STATE, EvenRange, Family, NoBasins, NoOrbit,
+    NoSpectrum, Signal, SpectrumOptions, Starts, StartsError, Table, Task, branch, curve, default_positions,
+    orbit, orbit_table, spectrum,
 };
 
 /// Force, potential and stiffness of the mechanism over displacement.
@@ -206,7 +205,7 @@ fn check_period(period: Option<u32>) -> Result<(), Error> {
 }
 
 /// The phase in forcing periods.
-fn phase(degrees: f64) -> Result<f64, Error> {
+pub(super) fn phase(degrees: f64) -> Result<f64, Error> {
     match degrees.is_finite() {
         true => Ok(degrees / 360.0),
         false => Err(Error::number("phase_deg", degrees, "give a phase in degrees, such as 90")),
@@ -221,6 +220,23 @@ pub fn can_have_orbits(document: &Document, model: &Model) -> Result<(), Error> 
         return Err(Error::unfit(document, problem));
     }
     refuse_electrical_state(document, &[], "orbit")
+}
+
+/// Refuses a transducer with an electrical state, in the scene or in a cell over `axes`, for studies whose
+/// state consists of displacement and velocity only. `what` names the study in the error.
+pub fn refuse_electrical_state(document: &Document, axes: &[Axis], what: &str) -> Result<(), Error> {
+    let swept = |name: &str| axes.iter().any(|axis| axis.field == format!("transducer.{name}"));
+    let cells_may_have = match document.scene.transducer {
+        Transducer::None => false,
+        Transducer::Electromagnetic { inductance_mh, .. } => {
+            swept("inductance_mh") || inductance_mh > 0.0 && swept("load_ohm")
+        }
+        Transducer::Piezoelectric { .. } => swept("load_kohm"),
+    };
+    match cells_may_have || document.scene.transducer.has_state() {
+        true => Err(Error::unfit(document, format!("{what}: {ELECTRICAL_STATE}"))),
+        false => Ok(()),
+    }
 }
 
 /// The error for an orbit that was not found; `at` is a prefix that names the place, such as `at FIELD =

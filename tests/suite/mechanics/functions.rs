@@ -3,6 +3,8 @@
 use interwell::mechanics::{ForceCurve, FunctionError, Mechanism};
 use interwell::scene::{Document, Files};
 use proptest::prelude::*;
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
 
 use super::build;
 
@@ -31,7 +33,7 @@ fn through_a_scene(curve: &ForceCurve) -> ForceCurve {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 40, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(40) })]
 
     /// Polynomial, wave and exponential over a random range: the curve is as close as it was asked to be, its
     /// report is true, and a scene holds it bit for bit.
@@ -78,6 +80,7 @@ proptest! {
         let force = |x: f64| if x < at { left * (x - at) } else { right * (x - at) };
         let found = ForceCurve::from_fn(force, (-0.01, 0.01), 1e-6, &[]).unwrap();
         prop_assert!(worst(&found, force) <= 1.5e-6 * found.fit().unwrap().scale_n);
+        prop_assert!(found.breaks().len() == 1 && (found.breaks()[0] - at).abs() < 1e-13);
         let named = ForceCurve::from_fn(force, (-0.01, 0.01), 1e-6, &[at]).unwrap();
         prop_assert_eq!(named.breaks(), &[at]);
         let (before, after) = named.stiffness_on_both_sides(at);
@@ -85,6 +88,107 @@ proptest! {
         let kinks = &Mechanism::new(named).landscape.kinks;
         prop_assert!(kinks.len() == 1 && kinks[0].x == at);
     }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(60) })]
+
+    /// Corners of a double well give the same wells, kinks and stiffnesses whether they are named or found,
+    /// for any tolerance.
+    #[test]
+    fn corners_found_are_corners_named(
+        places in proptest::collection::vec(-8.5e-3..8.5e-3_f64, 1..4),
+        steps in proptest::collection::vec(0.5..200.0_f64, 4),
+        digits in 6.0..9.0_f64,
+    ) {
+        let force = |x: f64| {
+            let bends = places.iter().zip(&steps).map(|(at, step)| step * (x - at).max(0.0));
+            -40.0 * x + 8e5 * x.powi(3) + bends.sum::<f64>()
+        };
+        let mut apart = places.clone();
+        apart.sort_by(f64::total_cmp);
+        // corners that all but coincide are one bend
+        prop_assume!(apart.windows(2).all(|pair| pair[1] - pair[0] > 1e-4));
+        let (range, tolerance) = ((-9e-3, 9e-3), 10.0_f64.powf(-digits));
+        let calls = std::cell::Cell::new(0);
+        let counted = |x: f64| {
+            calls.set(calls.get() + 1);
+            force(x)
+        };
+        let found = ForceCurve::from_fn(counted, range, tolerance, &[]).unwrap();
+        prop_assert!(calls.get() < 6_000, "{} calls", calls.get());
+        let named = ForceCurve::from_fn(force, range, tolerance, &places).unwrap();
+        let landscapes = [found, named].map(|curve| Mechanism::new(curve).landscape);
+        let kinks = |i: usize| landscapes[i].kinks.iter().map(|kink| kink.x).collect::<Vec<_>>();
+        prop_assert_eq!(kinks(0).len(), kinks(1).len(), "{:?} {:?}", kinks(0), kinks(1));
+        let same = kinks(0).into_iter().zip(kinks(1)).all(|(found, named)| (found - named).abs() < 1e-9);
+        prop_assert!(same, "{:?} {:?}", kinks(0), kinks(1));
+        let stiffness = |i: usize| landscapes[i].damping_stiffness();
+        match (stiffness(0), stiffness(1)) {
+            (Some(found), Some(named)) => {
+                // both are slopes at an end of a piece, which the tolerance bounds less well than the force
+                let bound = 0.02 * named.abs() + 1.0;
+                prop_assert!((found - named).abs() < bound, "{} is not {}", found, named);
+            }
+            (found, named) => prop_assert_eq!(found, named),
+        }
+    }
+}
+
+#[test]
+fn an_odd_function_with_corners_has_an_odd_curve() {
+    for at in [1.0e-3, 2.345_678e-3, 6.9e-3] {
+        let bend = |x: f64| 50.0 * ((x - at).max(0.0) - (-x - at).max(0.0));
+        let curve = ForceCurve::from_fn(|x| -40.0 * x + 8e5 * x.powi(3) + bend(x), (-9e-3, 9e-3), 1e-8, &[]);
+        let curve = curve.unwrap();
+        assert!(curve.is_odd(), "{:?}", curve.breaks());
+        assert!(curve.breaks().iter().any(|x| (x - at).abs() < 1e-12), "{:?}", curve.breaks());
+    }
+}
+
+#[test]
+fn the_corners_of_an_interpolation_are_found() {
+    // forces at 60 random places, joined by lines
+    let mut random = ChaCha8Rng::seed_from_u64(7);
+    let mut next = || (random.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
+    let mut x: Vec<f64> = (0..60).map(|_| -9e-3 + 18e-3 * next()).chain([-9e-3, 9e-3]).collect();
+    x.sort_by(f64::total_cmp);
+    x.dedup_by(|b, a| *b - *a < 2e-5);
+    let force: Vec<f64> = x.iter().map(|x| -40.0 * x + 8e5 * x.powi(3) + 0.05 * next()).collect();
+    let line = |at: f64| {
+        let right = x.partition_point(|x| *x < at).clamp(1, x.len() - 1);
+        let share = (at - x[right - 1]) / (x[right] - x[right - 1]);
+        force[right - 1] * (1.0 - share) + force[right] * share
+    };
+    let curve = ForceCurve::from_fn(line, (-9e-3, 9e-3), 1e-8, &[]).unwrap();
+    assert!(worst(&curve, line) <= 1.5e-8 * curve.fit().unwrap().scale_n);
+    for inner in &x[1..x.len() - 1] {
+        assert!(curve.breaks().iter().any(|found| (found - inner).abs() < 1e-11), "{inner}");
+    }
+}
+
+#[test]
+fn noise_is_refused_after_a_bounded_number_of_calls() {
+    let noisy = |x: f64| -40.0 * x + 8e5 * x.powi(3) + 1e-3 * ((x * 1e9).sin() * 43758.5).fract();
+    let error = ForceCurve::from_fn(noisy, (-9e-3, 9e-3), 1e-8, &[]).unwrap_err();
+    assert!(matches!(error, FunctionError::Rough(_) | FunctionError::Step(_)), "{error}");
+}
+
+#[test]
+fn samples_become_a_curve_or_are_refused() {
+    let x: Vec<f64> = (0..200).map(|i| -9e-3 + 18e-3 * f64::from(i) / 199.0).collect();
+    let force: Vec<f64> = x.iter().map(|x| -40.0 * x + 8e5 * x.powi(3)).collect();
+    let curve = ForceCurve::from_samples(&x, &force, 1e-8).unwrap();
+    assert!(worst(&curve, |x| -40.0 * x + 8e5 * x.powi(3)) < 1e-8 * curve.fit().unwrap().scale_n * 2.0);
+    let refused =
+        |x: &[f64], force: &[f64]| ForceCurve::from_samples(x, force, 1e-3).unwrap_err().to_string();
+    assert!(refused(&x, &force[1..]).contains("200 positions have 199 forces"));
+    assert!(refused(&x[..3], &force[..3]).contains("give 4 to"));
+    let mut turned = x.clone();
+    turned[7] = turned[6];
+    assert!(refused(&turned, &force).contains("sort them"));
+    turned[7] = f64::NAN;
+    assert!(refused(&turned, &force).contains("number 7"));
 }
 
 #[test]
