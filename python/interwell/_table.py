@@ -302,6 +302,7 @@ class Grid(Table):
         self.over: dict[str, Array] = dict(over)
         """The values of each field."""
         self._carry = carry
+        self._shaped: dict[str, Array] = {}
 
     @property
     def dims(self) -> tuple[str, ...]:
@@ -333,18 +334,16 @@ class Grid(Table):
         KeyError
             If there is no such column.
         """
-        column = super().__getitem__(name)
-        if column.shape == self.shape:
-            return column
-        array = column.reshape(self.shape)
-        # a walk down has its rows from the last value to the first
-        if self._carry == "down":
-            array = array[..., ::-1]
-        elif self._carry == "both":
-            array = array.copy()
-            array[..., 1, :] = array[..., 1, ::-1].copy()
-        self._arrays[name] = array
-        return array
+        if name not in self._shaped:
+            array = super().__getitem__(name).reshape(self.shape)
+            # a walk down has its rows from the last value to the first
+            if self._carry == "down":
+                array = array[..., ::-1]
+            elif self._carry == "both":
+                array = array.copy()
+                array[..., 1, :] = array[..., 1, ::-1].copy()
+            self._shaped[name] = array
+        return self._shaped[name]
 
     def to_pandas(self) -> pandas.DataFrame:
         """Return a data frame with a row for each cell, in the order of :meth:`csv`.

@@ -68,6 +68,26 @@ def test_walks_have_the_order_of_the_fields() -> None:
     assert both.to_xarray().rms_velocity_m_per_s.sel(direction="down").shape == (2, 3)
 
 
+@pytest.mark.parametrize("carry", ["up", "down", "both"])
+def test_walks_over_one_field(carry: str) -> None:
+    scene = iw.Scene.preset("duffing").set({"run.duration_s": 60, "run.settle_s": 30})
+    field, values = "excitation.amplitude_g", np.array([0.02, 0.03, 0.04])
+    grid = scene.sweep({field: values}, carry=carry)
+    assert grid.shape == ((2, 3) if carry == "both" else (3,))
+    assert (grid["amplitude_g"] == values).all()
+    data, frame = grid.to_xarray(), grid.to_pandas()
+    assert (data.amplitude_g == values).all()
+    for way in ["up", "down"] if carry == "both" else [carry]:
+        order = values if way == "up" else values[::-1]
+        rows = frame[frame.direction == way].reset_index(drop=True)
+        assert (rows.amplitude_g == order).all(), "rows are those of the CSV"
+        walked = data.sel(direction=way) if carry == "both" else data
+        assert (walked.direction == way).all()
+        for value, rms in zip(rows.amplitude_g, rows.rms_velocity_m_per_s):
+            assert walked.rms_velocity_m_per_s.sel(amplitude_g=value) == rms
+    assert len(set(frame.rms_velocity_m_per_s)) > 2, "the order matters"
+
+
 def coil() -> iw.Scene:
     return iw.Scene.preset("harvester").set({"transducer.inductance_mh": 10})
 
