@@ -157,7 +157,7 @@ class Table(Mapping[str, Array]):
             values = self._answer.values(name)
             if not isinstance(values, np.ndarray):
                 values = _column(name, values)
-                values.flags.writeable = False
+            values.flags.writeable = False
             self._arrays[name] = values
         return self._arrays[name]
 

@@ -108,7 +108,7 @@ def test_yes_and_no() -> None:
 def test_arrays_are_made_once_and_stay(tmp_path: pathlib.Path) -> None:
     scene = iw.Scene.preset("paper")
     grid, run = scene.sweep({"mass_g": [10, 15]}, carry="down"), scene.run()
-    for array in (grid["mass_g"], grid["regime"], run.events, run["phase"]):
+    for array in (grid["mass_g"], grid["regime"], run.events, run["phase"], run.x):
         assert not array.flags.writeable
     assert grid["regime"] is grid["regime"]
     grid.to_xarray().rms_velocity_m_per_s[0] = 0.0
