@@ -10,8 +10,8 @@ Columns and keys have their unit at the end of the name (``x_m``, ``v_m_per_s``)
 unit of scene files (``mass_g``, ``travel_limit_mm``).
 
 A wrong scene or argument is a :class:`SceneError`, a ``ValueError`` whose ``faults`` have file, line, field,
-value and remedy. A :class:`ComputationError`, a ``RuntimeError``, says why a right question has no answer.
-Ctrl-C ends a question with ``KeyboardInterrupt``.
+value and the problem with its remedy. A :class:`ComputationError`, a ``RuntimeError``, says why a right
+question has no answer. Ctrl-C ends a question with ``KeyboardInterrupt``.
 
 Examples
 --------

@@ -2,33 +2,66 @@
 
 from __future__ import annotations
 
+import json
 import os
-from typing import Any, Callable, Iterable, Mapping, Sequence, Union
+from typing import Any, Callable, Iterable, Iterator, Mapping, Sequence, Union
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _interwell
-from ._errors import Fault, SceneError
+from ._check import _count, _entries, _mapping, _names, _near, _numbers, _shown, _wrong
+from ._errors import SceneError
 from ._table import Array, Basins, Grid, Identified, Run, Table, _write
 
 Over = Mapping[str, npt.ArrayLike]
 Progress = Union[bool, Callable[[int, Union[int, None]], None]]
 
 
+# fields whose values are texts
+_TEXTS = ("title", "notes", "path", "field")
+
+
 def _value(value: Any) -> str:
     """Return a value as a scene file has it."""
-    if isinstance(value, np.generic):
-        value = value.item()
+    if hasattr(value, "__array__"):
+        value = np.asarray(value).tolist()
     if value is None:
         return "None"
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, float):
-        return {"nan": "NaN"}.get(repr(value), repr(value))
-    if isinstance(value, (list, tuple, np.ndarray)):
+        # counts are read back as floats, and a file has them without a point
+        whole = value.is_integer() and abs(value) < 2**53
+        return str(int(value)) if whole else {"nan": "NaN"}.get(repr(value), repr(value))
+    if isinstance(value, (list, tuple)):
         return "[" + ", ".join(_value(item) for item in value) + "]"
+    if isinstance(value, Mapping):
+        return _choice(value) if _is_choice(value) else f"({_struct(value)})"
     return str(value)
+
+
+def _quoted(text: str) -> str:
+    return json.dumps(text, ensure_ascii=False)
+
+
+def _is_choice(value: Any) -> bool:
+    """Whether a value is a choice with its fields: ``{"Sine": {..}}``."""
+    return isinstance(value, Mapping) and len(value) == 1 and str(*value)[:1].isupper()
+
+
+def _choice(value: Mapping[str, Any]) -> str:
+    [(name, inner)] = value.items()
+    is_struct = isinstance(inner, Mapping) and not _is_choice(inner)
+    return f"{name}({_struct(inner) if is_struct else _value(inner)})"
+
+
+def _struct(fields: Mapping[str, Any]) -> str:
+    def written(name: str, value: Any) -> str:
+        text = _value(value)
+        return _quoted(text) if name in _TEXTS and text[:1] != '"' else text
+
+    return ", ".join(f"{name}: {written(name, value)}" for name, value in fields.items())
 
 
 def _changes(fields: Mapping[str, Any], prefix: str = "") -> list[tuple[str, str]]:
@@ -36,42 +69,26 @@ def _changes(fields: Mapping[str, Any], prefix: str = "") -> list[tuple[str, str
     changes: list[tuple[str, str]] = []
     for name, value in fields.items():
         path = f"{prefix}{name}"
-        if isinstance(value, Mapping):
+        if isinstance(value, Mapping) and not _is_choice(value):
             changes += _changes(value, f"{path}.")
         else:
             changes.append((path, _value(value)))
     return changes
 
 
-def _numbers(name: str, values: npt.ArrayLike) -> Array:
-    """Return the values as an array of one axis."""
-    try:
-        array = np.atleast_1d(np.asarray(values, dtype=float))
-    except (TypeError, ValueError) as error:
-        raise _wrong(name, repr(values), "give numbers, such as numpy.linspace(0, 2, 101)") from error
-    if array.ndim != 1:
-        raise _wrong(name, f"an array of shape {array.shape}", "give values along one axis")
-    return array
-
-
 def _over(over: Over | None) -> tuple[list[tuple[str, list[float]]], dict[str, Array]]:
-    arrays: dict[str, Array] = {}
-    for field, values in (over or {}).items():
-        arrays[field] = _numbers(field, values)
+    given = _mapping("over", {} if over is None else over, '{"mass_g": [10, 20]}')
+    arrays = {field: _numbers(field, values) for field, values in given.items()}
     return [(field, array.tolist()) for field, array in arrays.items()], arrays
 
 
-def _count(name: str, value: int | None, below: int = 2**32) -> int | None:
-    """Return a whole number that is not negative."""
-    if value is None:
-        return None
-    if not isinstance(value, (int, np.integer)) or not 0 <= value < below:
-        raise _wrong(name, repr(value), "give a whole number from 0 up")
-    return int(value)
-
-
-def _wrong(field: str, value: str, problem: str) -> SceneError:
-    return SceneError(f"{field} = {value}: {problem}", [Fault("", None, field, value, problem)])
+def _starts(name: str, value: Any, drawn: bool) -> tuple[float, float, int]:
+    """Return the range of starts and how many; drawn at random they need no number."""
+    low, high, *number = _entries(name, value, "(first, last, count)", *((2, 3) if drawn else (3,)))
+    count = number[0] if number else 1.0
+    if not (count.is_integer() and 0 <= count < 2**32):
+        raise _wrong(name, _shown(value), "give a whole number of starts in (first, last, count)")
+    return low, high, int(count)
 
 
 class _Bar:
@@ -100,6 +117,9 @@ class _Told:
     """The function that is told of progress; a bar is closed at the end."""
 
     def __init__(self, progress: Progress, unit: str) -> None:
+        if not (progress is None or isinstance(progress, bool) or callable(progress)):
+            problem = "give True, False, or a function of the parts that are done and all of them"
+            raise _wrong("progress", _shown(progress), problem)
         self._bar = _Bar(unit) if progress is True else None
         self._told = self._bar if progress is True else (progress or None)
 
@@ -126,7 +146,7 @@ def presets() -> dict[str, str]:
     return dict(_interwell.presets())
 
 
-class Scene:
+class Scene(Mapping[str, Any]):
     """A scene: mass, mechanism, damping, stops, excitation, start and run.
 
     Parameters
@@ -143,9 +163,12 @@ class Scene:
 
     Notes
     -----
-    A scene does not change: :meth:`set` returns another one. Fields, units and ranges are those of scene
-    files; a field has its unit in its name (``mass_g``, ``stops.travel_limit_mm``). The mechanism is solved
-    once, when the scene is made; flexures take longest.
+    A scene does not change: :meth:`set` returns another one. It is a mapping of its fields to their values.
+    Fields, units and ranges are those of scene files; a field has its unit in its name (``mass_g``,
+    ``stops.travel_limit_mm``). The mechanism is solved once, when the scene is made; flexures take longest.
+
+    Scenes with the same text are equal, if files that they name are the same too. A pickled scene is its
+    text with absolute paths; where it is loaded, the files are read again and the mechanism is solved again.
 
     Ctrl-C ends every question with ``KeyboardInterrupt``. The lock of the interpreter is released while a
     question is computed. A wrong argument is a :class:`SceneError`, or a ``TypeError`` or ``ValueError``
@@ -160,14 +183,66 @@ class Scene:
     4.0
     """
 
+    __slots__ = ("_simulation", "_folder", "_changed", "__weakref__")
+
+    _simulation: _interwell.Simulation
+    _folder: str | None
+    _changed: bool
+
     def __init__(self, source: str | os.PathLike[str]) -> None:
-        self._simulation = _interwell.Simulation.load(os.fspath(source))
+        source = os.fspath(source)
+        self._simulation = _interwell.Simulation.load(source)
+        is_built_in = self._simulation.name == f"built-in {source}"
+        self._folder = None if is_built_in else os.path.dirname(os.path.abspath(source))
+        self._changed = False
 
     @classmethod
-    def _of(cls, simulation: _interwell.Simulation) -> Scene:
+    def _of(cls, simulation: _interwell.Simulation, before: Scene | None = None) -> Scene:
+        """Return the scene of a simulation, or the scene that one became."""
         scene = cls.__new__(cls)
         scene._simulation = simulation
+        scene._folder = None if before is None else before._folder
+        scene._changed = before is not None
         return scene
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if name not in Scene.__slots__:
+            raise AttributeError(f"a scene does not change: scene.set({name}=...) returns another one")
+        super().__setattr__(name, value)
+
+    def _files(self) -> list[tuple[str, str, str]]:
+        """Return the fields of paths, with the path in the text and the absolute one or built-in name."""
+        named = [(field, str(self[field])) for field in self.fields if field.endswith(".path")]
+        return [(field, path, os.path.join(self._folder or "", path)) for field, path in named]
+
+    def _key(self) -> tuple[str, ...]:
+        """Return what equal scenes have in common."""
+        text, files = self.text, self._files()
+        for _, path, whole in files:
+            text = text.replace(f"path: {_quoted(path)}", f"path: {_quoted(whole)}")
+        return text, *(whole for _, _, whole in files)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        changes = [(field, _quoted(whole)) for field, path, whole in self._files() if whole != path]
+        try:
+            text = self._simulation.with_all(changes).text if changes else self.text
+        except SceneError as error:
+            raise TypeError(f"a scene is pickled with files that can be read: {error}") from error
+        return _unpickled, (text, self.name, self._changed)
+
+    def __copy__(self) -> Scene:
+        return self
+
+    def __deepcopy__(self, _: Any) -> Scene:
+        return self
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Scene):
+            return NotImplemented
+        return self is other or self._key() == other._key()
+
+    def __hash__(self) -> int:
+        return hash(self._key())
 
     @classmethod
     def preset(cls, name: str) -> Scene:
@@ -232,8 +307,10 @@ class Scene:
         changes : mapping, optional
             Values by dotted path, ``{"stops.travel_limit_mm": 1.5}``, or nested as in ``fields``.
         **fields
-            Values by name, nested: ``excitation={"amplitude_g": 1.3}``. A text is a value as a scene file has
-            it: ``stops="Rigid(travel_limit_mm: 4, restitution: 0.36)"``.
+            Values by name, nested: ``excitation={"amplitude_g": 1.3}``. A choice is a dict with its name,
+            ``stops={"Rigid": {"travel_limit_mm": 4, "restitution": 0.36}}``, as ``run.summary["scene"]``
+            shows it, or a text as a scene file has it, ``"Rigid(travel_limit_mm: 4, restitution: 0.36)"``.
+            ``"None"`` and None are the choice of nothing.
 
         Returns
         -------
@@ -252,8 +329,11 @@ class Scene:
         --------
         >>> scene.set(excitation={"amplitude_g": 1.3})["excitation.amplitude_g"]
         1.3
+        >>> scene.set(mechanism={"Cubic": {"linear_n_per_m": -40, "cubic_n_per_m3": 8e5}})["mechanism"]
+        'Cubic'
         """
-        return self._of(self._simulation.with_all(_changes({**(changes or {}), **fields})))
+        given = _mapping("changes", changes or {}, '{"stops.travel_limit_mm": 1.5}')
+        return self._of(self._simulation.with_all(_changes({**given, **fields})), self)
 
     def with_force(
         self,
@@ -303,10 +383,10 @@ class Scene:
         >>> cubic["mechanism.error_n"] < 1e-9
         True
         """
-        ends = (float(range[0]), float(range[1]))
+        first, last = _entries("range", range, "(first, last) in m", 2)
         places = [float(place) for place in breaks]
-        simulation, _ = self._simulation.with_force(force, ends, float(tolerance), places)
-        return self._of(simulation)
+        simulation, _ = self._simulation.with_force(force, (first, last), float(tolerance), places)
+        return self._of(simulation, self)
 
     def with_drive(
         self,
@@ -317,14 +397,15 @@ class Scene:
     ) -> Scene:
         """Return the scene with a periodic drive of one's own in place of its excitation.
 
-        The drive becomes a sum of sines, the trigonometric interpolation of the function or of the samples. The
-        function is not called again.
+        The drive becomes a sum of sines, the trigonometric interpolation of the function or of the samples.
+        The function is not called again.
 
         Parameters
         ----------
         acceleration
-            Acceleration of the base in m/s²: a function of the time in s, of which the period from 0 on is used,
-            or 1 to 4096 evenly spaced samples of one period, the first at time 0, without the period's end.
+            Acceleration of the base in m/s²: a function of the time in s, of which the period from 0 on is
+            used, or 1 to 4096 evenly spaced samples of one period, the first at time 0, without the period's
+            end.
         frequency_hz
             One over the period, in Hz, with at most 11 digits.
         tolerance
@@ -341,7 +422,7 @@ class Scene:
             given = acceleration
         else:
             given = _numbers("acceleration", acceleration).tolist()
-        return self._of(self._simulation.with_drive(given, float(frequency_hz), float(tolerance)))
+        return self._of(self._simulation.with_drive(given, float(frequency_hz), float(tolerance)), self)
 
     def __getitem__(self, field: str) -> Any:
         """Return the value of a field.
@@ -353,20 +434,35 @@ class Scene:
 
         Returns
         -------
-        float, str or None
-            A number in the unit of the field's name (counts are floats too), or a word: a text, ``"true"`` or
-            ``"false"``, the name of a choice. None where the field is neither, such as a list, and for a
-            transducer that is not there.
+        float, bool, str or None
+            A number in the unit of the field's name (counts are floats too), True or False, or a word: a text
+            or the name of a choice. None where the field is neither, such as a list, and for a transducer
+            that is not there.
 
         Raises
         ------
         KeyError
-            If the scene has no such field.
+            If the scene has no such field; it names fields that may be meant.
         """
         number, word = self._simulation.get(field)
-        if number is None and word is None and field not in self._simulation.fields:
-            raise KeyError(field)
-        return word if number is None else number
+        if number is not None:
+            return number
+        if word is None and field not in self._simulation.fields:
+            raise KeyError(f"no field {field!r}{_near(field, self.fields)}")
+        is_flag = word in ("true", "false") and field.rpartition(".")[2] not in _TEXTS
+        return word == "true" if is_flag else word
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.fields)
+
+    def __len__(self) -> int:
+        return len(self.fields)
+
+    def __contains__(self, field: object) -> bool:
+        return field in self.fields
+
+    def _ipython_key_completions_(self) -> list[str]:
+        return self.fields
 
     @property
     def fields(self) -> list[str]:
@@ -375,7 +471,7 @@ class Scene:
 
     @property
     def name(self) -> str:
-        """Name in messages: that of the file, or ``built-in NAME``."""
+        """Name in messages: that of the file, or ``built-in NAME``. It stays when fields are changed."""
         return self._simulation.name
 
     @property
@@ -443,7 +539,7 @@ class Scene:
         _write(path, self.text.encode())
 
     def __repr__(self) -> str:
-        return f"<Scene {self.name}: {self.title}>"
+        return f"<Scene {self.name!r}{', changed' if self._changed else ''}: {self.title}>"
 
     def run(
         self,
@@ -489,7 +585,7 @@ class Scene:
         >>> scene.run(dt=1e-3).x.shape
         (10001,)
         """
-        times = None if at is None else np.atleast_1d(np.asarray(at, dtype=float)).tolist()
+        times = None if at is None else _numbers("at", at).tolist()
         run = self._simulation.run(dt, times, until_settled)
         return Run(run, 1e-3 * self["mass_g"], self)
 
@@ -521,7 +617,7 @@ class Scene:
         >>> scene.curve([0.0])["stiffness_n_per_m"]
         array([-40.])
         """
-        listed = None if positions is None else np.atleast_1d(np.asarray(positions, dtype=float)).tolist()
+        listed = None if positions is None else _numbers("positions", positions).tolist()
         return Table(self._simulation.curve(listed))
 
     def sweep(
@@ -580,12 +676,14 @@ class Scene:
         array([['intrawell', 'interwell', 'interwell'],
                ['rest', 'interwell', 'interwell']], dtype='<U9')
         """
-        names = [columns] if isinstance(columns, str) else list(columns)
+        names = _names("columns", columns)
         axes, arrays = _over(over)
         if not axes:
             raise _wrong("over", "{}", "name a field and its values")
         with _Told(progress, "cells") as told:
-            answer = self._simulation.sweep(axes, names, until_settled, carry, _count("threads", threads), told)
+            answer = self._simulation.sweep(
+                axes, names, until_settled, carry, _count("threads", threads), told
+            )
         return Grid(answer, arrays, carry)
 
     def section(
@@ -675,7 +773,7 @@ class Scene:
         field : str
             The field that is searched, by dotted path.
         range : (float, float)
-            Its first and last value, in the unit of the field.
+            Its first and last value, in the unit of the field that stands in its name.
         of : str
             ``"release"`` (the mass leaves the stop it rests on), ``"crossing"`` (the settled motion crosses)
             or ``"interwell"`` (its crossings repeat).
@@ -696,8 +794,8 @@ class Scene:
         -------
         Table
             The fields of ``over``, ``of``, ``value`` (NaN where none of the range does it), ``low`` and
-            ``high`` (the nearest values tried that are known not to do it, and to do it), ``undecided``
-            (``"true"`` or ``"false"``), ``windows`` (how often the answer changes above).
+            ``high`` (the nearest values tried that are known not to do it, and to do it), all three in the
+            unit of the field, ``undecided`` (bool), ``windows`` (how often the answer changes above).
 
         Raises
         ------
@@ -716,7 +814,7 @@ class Scene:
         array([0.7229])
         """
         axes, _ = _over(over)
-        ends = f"{_value(float(range[0]))}:{_value(float(range[1]))}"
+        ends = ":".join(_value(end) for end in _entries("range", range, "(first, last)", 2))
         searched = f"{field}={ends}" + ("" if step is None else f":{_value(float(step))}")
         with _Told(progress, "values") as told:
             answer = self._simulation.threshold(
@@ -726,8 +824,8 @@ class Scene:
 
     def basins(
         self,
-        x_mm: tuple[float, float, int],
-        v_m_per_s: tuple[float, float, int],
+        x_mm: tuple[float, float, int] | tuple[float, float],
+        v_m_per_s: tuple[float, float, int] | tuple[float, float],
         *,
         random: int | None = None,
         seed: int = 0,
@@ -741,16 +839,20 @@ class Scene:
         x_mm, v_m_per_s : (float, float, int)
             First and last displacement in mm and velocity in m/s of the starts, and how many.
         random, seed : int, optional
-            Draw so many starts from both ranges, in place of a grid; the two counts then have no effect.
+            Draw so many starts from both ranges, in place of a grid; the two counts then have no effect and
+            may be left out.
         threads, progress
             See :meth:`sweep`. Progress counts starts, then once more those that are checked.
 
         Returns
         -------
         Basins
-            A row for each start, the displacement the slower: ``x_mm``, ``v_m_per_s``, ``attractor`` (from
-            1), ``periods`` (forcing periods until it was known), ``sure`` (``"true"`` or ``"false"``). Values
-            are missing for starts beyond a stop or the curve, and for those that reach no attractor.
+            A row for each start: ``x_mm``, ``v_m_per_s``, ``attractor`` (from 1), ``periods`` (forcing
+            periods until it was known), ``sure`` (bool, or None where missing). Values are missing for starts
+            beyond a stop or the curve, and for those that reach no attractor. The rows of a grid go through
+            all velocities for the first displacement, then for the next, so that
+            ``basins["attractor"].reshape(x_count, v_count)`` has the displacements along its first axis.
+            Random starts are in the order in which they were drawn.
 
         Raises
         ------
@@ -773,8 +875,10 @@ class Scene:
         """
         seeds = (_count("random", random, 2**64) or 0, _count("seed", seed, 2**64) or 0)
         drawn = None if random is None else seeds
-        ranges = [("x_mm", x_mm), ("v_m_per_s", v_m_per_s)]
-        starts_x, starts_v = ((low, high, _count(name, count) or 0) for name, (low, high, count) in ranges)
+        starts_x, starts_v = (
+            _starts(name, given, random is not None)
+            for name, given in [("x_mm", x_mm), ("v_m_per_s", v_m_per_s)]
+        )
         with _Told(progress, "starts") as told:
             starts, attractors = self._simulation.basins(
                 starts_x, starts_v, drawn, _count("threads", threads), told
@@ -988,6 +1092,7 @@ class Scene:
         until_settled: float | None = None,
         threads: int | None = None,
         progress: Progress = False,
+        **named: Scene | str | os.PathLike[str],
     ) -> Table:
         """Rate this scene and others under the sine of this one; a row for each.
 
@@ -998,36 +1103,49 @@ class Scene:
         until_settled, threads, progress
             See :meth:`sweep`; by default each run goes on for up to 1000 forcing periods beyond the scene's
             run. Progress counts the scenes and the changes of their sizes.
+        **named : Scene, str or path
+            Further scenes, by the names that they have in the table: ``near=scene.set(...)``.
 
         Returns
         -------
         Table
-            ``scene``, ``release_g``, ``crossing_g``, ``crossing_low_g``, ``crossing_high_g``,
-            ``crossing_undecided``, ``rms_velocity_m_per_s``, ``mean_load_power_w``, ``max_abs_x_m``,
-            ``impact_speed_max_m_per_s``, ``crosses_from_hz``, ``crosses_to_hz``, ``threshold_sensitivity`` (a
-            share), ``most_sensitive_to``. Values are missing where a scene has no such number.
+            ``scene`` (its name, with ``(changed)`` where fields were changed), ``release_g``,
+            ``crossing_g``, ``crossing_low_g``, ``crossing_high_g``, ``crossing_undecided`` (bool),
+            ``rms_velocity_m_per_s``, ``mean_load_power_w``, ``max_abs_x_m``, ``impact_speed_max_m_per_s``,
+            ``crosses_from_hz``, ``crosses_to_hz``, ``threshold_sensitivity`` (a share),
+            ``most_sensitive_to``. Values are missing where a scene has no such number.
 
         Raises
         ------
         SceneError
-            If the excitation of this scene is no sine, another scene cannot be read, or one has faults under
-            it.
+            If an argument is no scene, the excitation of this scene is no sine, another scene cannot be read,
+            or one has faults under it.
 
         Notes
         -----
         All scenes start at rest, with the excitation and the run of this one. The sensitivity is the largest
-        change of ``crossing_g`` when one length, thickness or gap of the mechanism changes by 1 %; flexures
-        are solved anew for each.
+        change of ``crossing_g`` when one length, thickness or gap of the mechanism changes by 1 %. Each row
+        scans frequencies and these sizes; flexures are solved anew for each size, which takes seconds.
 
         Examples
         --------
-        >>> near = scene.set({"stops.travel_limit_mm": 2})
-        >>> scene.compare(near)["release_g"].round(3)
+        >>> table = scene.compare(near=scene.set({"stops.travel_limit_mm": 2}))
+        >>> table["scene"]
+        array(['nominal-cubic', 'near'], dtype='<U13')
+        >>> table["release_g"].round(3)
         array([0.723, 0.493])
         """
-        scenes = [other if isinstance(other, Scene) else Scene(other) for other in others]
-        names = [scene.name.removeprefix("built-in ") for scene in (self, *scenes)]
-        pairs = [(name, scene._simulation) for name, scene in zip(names[1:], scenes)]
+        names, scenes = list(named), [_scene(name, given) for name, given in named.items()]
+        first: list[str] = []
+        unnamed = [self, *(_scene("others", other) for other in others)]
+        for scene in unnamed:
+            plain = scene.name.removeprefix("built-in ") + (" (changed)" if scene._changed else "")
+            number = 1
+            while (name := plain if number == 1 else f"{plain} {number}") in (*first, *names):
+                number += 1
+            first.append(name)
+        names, scenes = first + names, unnamed + scenes
+        pairs = [(name, scene._simulation) for name, scene in zip(names[1:], scenes[1:])]
         with _Told(progress, "parts") as told:
             answer = self._simulation.compare(
                 names[0], pairs, until_settled, _count("threads", threads), told
@@ -1039,6 +1157,7 @@ class Scene:
         over: Mapping[str, tuple[float, ...]],
         *,
         maximise: str = "rms_velocity_m_per_s",
+        maximize: None = None,
         subject_to: Sequence[str] | str = (),
         environment: Sequence[str] | str = (),
         vary: Mapping[str, float | str] | None = None,
@@ -1056,14 +1175,17 @@ class Scene:
             and the step of the first scan: ``{"stops.travel_limit_mm": (0.5, 7)}``. A smaller step is surer
             to find a narrow maximum, and costs more runs.
         maximise : str
-            The number of the summary that is to be largest.
+            The number of the summary that is to be largest, in its unit.
+        maximize : None
+            Refused: the argument is ``maximise``.
         subject_to : str or sequence of str
             What every environment must keep to: ``"max_abs_x_m<=0.003"``.
         environment : str or sequence of str
             In place of the scene's own excitation: scenes, records (CSV), or values of a field,
             ``"excitation.amplitude_g=0.8,1,1.2"``. An ending ``*WEIGHT`` weighs one.
         vary : mapping of str to float or str, optional
-            Tolerances of fields, in the unit of the field or as a share: ``{"stops.travel_limit_mm": "1%"}``.
+            Tolerances of fields to either side: a number is in the unit of the field, ``0.1``, a text may be
+            a share of the value, ``"1%"``: ``{"stops.travel_limit_mm": "1%", "mass_g": 0.1}``.
         seed : int
             Seed of the 200 samples within these tolerances.
         until_settled, threads, progress
@@ -1074,9 +1196,10 @@ class Scene:
         -------
         Table
             The fields, ``maximised``, ``value`` (mean over the environments), ``margin_low``, ``margin_high``
-            (how far to either side a tenth of it is lost or a constraint broken; NaN where that is nowhere in
-            the range), ``worst``, ``quantile_5``, and where it is safer to step back to. ``table.words`` has
-            the same in sentences.
+            (how far to either side, in the unit of the field, a tenth of it is lost or a constraint broken;
+            NaN where that is nowhere in the range), ``worst``, ``quantile_5`` (as ``value``, in the unit of
+            what is largest), and where it is safer to step back to. ``table.words`` has the same in
+            sentences.
 
         Raises
         ------
@@ -1095,10 +1218,17 @@ class Scene:
         >>> best["travel_limit_mm"].round(2)
         array([3.])
         """
-        ranges = [f"{field}=" + ":".join(_value(end) for end in ends) for field, ends in over.items()]
-        varied = [f"{field}=+-{_value(by)}" for field, by in (vary or {}).items()]
-        limits = [subject_to] if isinstance(subject_to, str) else list(subject_to)
-        places = [environment] if isinstance(environment, str) else list(environment)
+        if maximize is not None:
+            raise TypeError("best() has no argument maximize: write maximise=...")
+        design = _mapping("over", over, '{"stops.travel_limit_mm": (0.5, 7)}')
+        form = "(least, largest) or (least, largest, step)"
+        ranges = [
+            f"{field}=" + ":".join(map(_value, _entries(field, ends, form, 2, 3)))
+            for field, ends in design.items()
+        ]
+        tolerances = _mapping("vary", vary or {}, '{"stops.travel_limit_mm": "1%"}')
+        varied = [f"{field}=+-{_value(by)}" for field, by in tolerances.items()]
+        limits, places = _names("subject_to", subject_to), _names("environment", environment)
         with _Told(progress, "runs") as told:
             answer = self._simulation.best(
                 ranges,
@@ -1112,6 +1242,23 @@ class Scene:
                 told,
             )
         return Table(answer)
+
+
+def _unpickled(text: str, name: str, changed: bool) -> Scene:
+    scene = Scene.from_text(text, name)
+    scene._changed = changed
+    return scene
+
+
+def _scene(argument: str, given: Any) -> Scene:
+    """Return an argument of :meth:`Scene.compare` as a scene."""
+    if isinstance(given, Scene):
+        return given
+    if not isinstance(given, (str, os.PathLike)):
+        one = "one by one, compare(*scenes)" if argument == "others" else "by name"
+        problem = f"give scenes, scene files or names of built-in scenes {one}"
+        raise _wrong(argument, _shown(given), problem)
+    return Scene(given)
 
 
 def identify(

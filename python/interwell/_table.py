@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _interwell
-from ._errors import Fault, SceneError
+from ._check import _entries, _shown, _wrong
 
 if TYPE_CHECKING:
     import pandas
@@ -19,12 +19,30 @@ if TYPE_CHECKING:
 
 Array = npt.NDArray[Any]
 
+# columns of yes or no, and columns of words that may have no rows
+_FLAGS = ("crossing_undecided", "settled", "stable", "steady", "sure", "undecided")
+_WORDS = ("direction", "event", "kind", "phase", "side")
+
+
+def _column(name: str, values: list[Any]) -> Array:
+    """Return an array of words, of counts, or of yes and no."""
+    if not values:
+        return np.array([], dtype=bool if name in _FLAGS else str if name in _WORDS else int)
+    kinds = set(values)
+    if kinds <= {"true", "false", ""} and (name in _FLAGS or kinds != {""}):
+        flags = [None if value == "" else value == "true" for value in values]
+        return np.array(flags, dtype=object if "" in kinds else bool)
+    return np.array(values, dtype=float) if None in kinds else np.array(values)
+
 
 def _write(path: str | os.PathLike[str], content: bytes) -> None:
     """Write a file whole or not at all."""
     path = os.fspath(path)
     folder = os.path.dirname(path) or "."
-    handle, temporary = tempfile.mkstemp(dir=folder, prefix=".interwell-")
+    try:
+        handle, temporary = tempfile.mkstemp(dir=folder, prefix=".interwell-")
+    except OSError as error:
+        raise OSError(error.errno, error.strerror, path) from None
     try:
         with os.fdopen(handle, "wb") as file:
             file.write(content)
@@ -32,9 +50,15 @@ def _write(path: str | os.PathLike[str], content: bytes) -> None:
         os.umask(umask)
         os.chmod(temporary, 0o666 & ~umask)
         os.replace(temporary, path)
-    except BaseException:
+    except BaseException as error:
         os.unlink(temporary)
+        if isinstance(error, OSError):
+            raise OSError(error.errno, error.strerror, path) from None
         raise
+
+
+def _unpicklable(thing: object, instead: str) -> TypeError:
+    return TypeError(f"a {type(thing).__name__} cannot be pickled: pass {instead} on")
 
 
 class Picture:
@@ -53,6 +77,12 @@ class Picture:
 
     def _repr_svg_(self) -> str:
         return self._svg.decode()
+
+    def __repr__(self) -> str:
+        return "<Picture: a notebook shows it, save(path) writes it>"
+
+    def __reduce__(self) -> Any:
+        raise _unpicklable(self, "the file of save(path)")
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the picture; the file appears whole or not at all.
@@ -82,12 +112,13 @@ class Table(Mapping[str, Array]):
 
     ``table["x_m"]`` is the column ``x_m``. Columns of numbers are float64, with NaN where a value is missing;
     counts are int64, or float64 with NaN where one is missing; words are strings, empty where one is missing.
-    Answers of yes or no are the words ``"true"`` and ``"false"``.
+    Answers of yes or no are bool, or objects, True, False and None, where one is missing; in :meth:`csv` they
+    are ``true`` and ``false``.
 
     Notes
     -----
-    A table is a mapping: ``len(table)`` is the number of columns, ``dict(table)`` has all arrays. A column of
-    numbers is not copied: writing to it changes what :meth:`csv` gives.
+    A table is a mapping: ``len(table)`` is the number of columns, ``dict(table)`` has all arrays. The arrays
+    are read-only; ``table["x_m"].copy()`` can be written to. Tables are equal if all columns are.
 
     Examples
     --------
@@ -113,7 +144,7 @@ class Table(Mapping[str, Array]):
         Returns
         -------
         ndarray, shape (rows,)
-            float64, int64 or strings.
+            float64, int64, strings or bool; read-only.
 
         Raises
         ------
@@ -121,18 +152,46 @@ class Table(Mapping[str, Array]):
             If there is no such column.
         """
         if name not in self._arrays:
+            if name not in self._answer.names:
+                raise KeyError(f"no column {name!r}; there are {self._listed()}")
             values = self._answer.values(name)
             if not isinstance(values, np.ndarray):
-                missing = any(value is None for value in values)
-                values = np.array(values, dtype=float) if missing else np.array(values)
+                values = _column(name, values)
+            values.flags.writeable = False
             self._arrays[name] = values
         return self._arrays[name]
+
+    def _listed(self) -> str:
+        return ", ".join(self.columns)
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._answer.names)
 
     def __len__(self) -> int:
         return len(self._answer.names)
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._answer.names
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Table):
+            return NotImplemented
+        if type(self) is not type(other) or self.columns != other.columns:
+            return False
+        pairs = [(self[name], other[name]) for name in self.columns]
+        return all(np.array_equal(a, b, equal_nan=a.dtype.kind == b.dtype.kind == "f") for a, b in pairs)
+
+    def __reduce__(self) -> Any:
+        raise _unpicklable(self, "to_pandas(), csv() or dict(table)")
+
+    def __copy__(self) -> Any:
+        return self
+
+    def __deepcopy__(self, _: Any) -> Any:
+        return self
+
+    def _ipython_key_completions_(self) -> list[str]:
+        return self.columns
 
     @property
     def columns(self) -> list[str]:
@@ -166,7 +225,7 @@ class Table(Mapping[str, Array]):
         return len(self._answer.values(names[0])) if names else 0
 
     def __repr__(self) -> str:
-        return f"<{type(self).__name__} of {self.rows} rows: {', '.join(self.columns)}>"
+        return f"<{type(self).__name__} of {self.rows} rows: {self._listed()}>"
 
     def csv(self) -> str:
         """Return the table as CSV, byte for byte as the command line writes it.
@@ -202,8 +261,7 @@ class Table(Mapping[str, Array]):
         ending = os.path.splitext(os.fspath(path))[1].lower()
         if ending not in ("", ".csv", ".txt"):
             problem = f"tables are written as CSV: name a .csv, or take to_pandas() for {ending}"
-            fault = Fault("", None, "path", os.fspath(path), problem)
-            raise SceneError(f"path = {os.fspath(path)}: {problem}", [fault])
+            raise _wrong("path", os.fspath(path), problem)
         _write(path, self.csv().encode())
 
     def to_pandas(self) -> pandas.DataFrame:
@@ -243,12 +301,12 @@ class Table(Mapping[str, Array]):
             Of a grid the column; of a run the panels, such as ``"displacement,power"``; of a spectrum
             ``"amplitude"`` or ``"psd"``.
         x, y : (float, float), optional
-            Ranges of the axes, in their units. Of a run ``x`` is a range of times in s.
+            Ranges of the axes, in their units, the lower end first. Of a run ``x`` is a range of times in s.
         dark : bool
             Whether the colours are those of a dark page.
         width_mm, height_mm : float, optional
-            Size on paper in mm, the width 40 to 2000; without a width the picture is for a screen, and the
-            height has no effect.
+            Size on paper in mm, each 40 to 2000; without a width, which a height needs, the picture is for a
+            screen.
 
         Returns
         -------
@@ -259,17 +317,25 @@ class Table(Mapping[str, Array]):
         ------
         SceneError
             If this table has no picture (an orbit, one threshold or one row of exponents, a best design,
-            attractors, events), a grid is over more fields than can be drawn, there is no such quantity, or
-            the width is out of its range.
+            attractors, events), a grid is over more fields than can be drawn, there is no such quantity, a
+            range is empty, or the size is out of its range.
 
         Examples
         --------
         >>> scene.run().samples.plot("displacement", x=(8, 10), width_mm=85).save("run.pdf")
         """
+        ranges: dict[str, tuple[float, float] | None] = {"x": None, "y": None}
+        for name, given in (("x", x), ("y", y)):
+            if given is not None:
+                low, high = _entries(name, given, "(low, high)", 2)
+                if not -np.inf < low < high < np.inf:
+                    raise _wrong(name, _shown(given), "give two finite numbers, the lower first")
+                ranges[name] = (low, high)
+        if height_mm is not None and width_mm is None:
+            raise _wrong("height_mm", _shown(height_mm), "give width_mm too: a picture on paper has both")
         options = {
             "quantity": quantity,
-            "x": x,
-            "y": y,
+            **ranges,
             "dark": dark,
             "width_mm": width_mm,
             "height_mm": height_mm,
@@ -281,7 +347,8 @@ class Grid(Table):
     """A table with a row for each cell of a grid over fields.
 
     ``grid["rms_velocity_m_per_s"]`` has the shape of the grid: one axis for each field, the slowest first.
-    With a walk both ways there is one more axis before the last one: up, then down.
+    With a walk both ways there is one more axis before the last one: up, then down. Values of a walk down too
+    are in the order of the field, unlike the rows of :meth:`csv` and :meth:`to_pandas`.
 
     Attributes
     ----------
@@ -302,6 +369,7 @@ class Grid(Table):
         self.over: dict[str, Array] = dict(over)
         """The values of each field."""
         self._carry = carry
+        self._shaped: dict[str, Array] = {}
 
     @property
     def dims(self) -> tuple[str, ...]:
@@ -326,25 +394,27 @@ class Grid(Table):
         Returns
         -------
         ndarray, shape ``grid.shape``
-            float64, int64 or strings, as in a :class:`Table`.
+            float64, int64, strings or bool, as in a :class:`Table`.
 
         Raises
         ------
         KeyError
             If there is no such column.
         """
-        column = super().__getitem__(name)
-        if column.shape == self.shape:
-            return column
-        array = column.reshape(self.shape)
-        # a walk down has its rows from the last value to the first
-        if self._carry == "down":
-            array = array[..., ::-1]
-        elif self._carry == "both":
-            array = array.copy()
-            array[..., 1, :] = array[..., 1, ::-1].copy()
-        self._arrays[name] = array
-        return array
+        if name not in self._shaped:
+            array = super().__getitem__(name).reshape(self.shape)
+            # a walk down has its rows from the last value to the first
+            if self._carry == "down":
+                array = array[..., ::-1]
+            elif self._carry == "both":
+                array = array.copy()
+                array[..., 1, :] = array[..., 1, ::-1].copy()
+            array.flags.writeable = False
+            self._shaped[name] = array
+        return self._shaped[name]
+
+    def __repr__(self) -> str:
+        return f"<Grid {' x '.join(map(str, self.shape))}: {self._listed()}>"
 
     def to_pandas(self) -> pandas.DataFrame:
         """Return a data frame with a row for each cell, in the order of :meth:`csv`.
@@ -359,7 +429,7 @@ class Grid(Table):
         ImportError
             If pandas is not installed.
         """
-        return Table(self._answer).to_pandas()
+        return super().to_pandas()
 
     def to_xarray(self) -> xarray.Dataset:
         """Return a data set over the fields; each variable has its unit as the attribute ``units``.
@@ -384,7 +454,7 @@ class Grid(Table):
         if "direction" in self.dims:
             coordinates["direction"] = ["up", "down"]
         variables = {
-            name: (self.dims, self[name], {"units": units[name]})
+            name: (self.dims, self[name].copy(), {"units": units[name]})
             for name in self.columns
             if name not in coordinates
         }
@@ -403,7 +473,8 @@ class Run:
 
     Notes
     -----
-    ``t``, ``x``, ``v`` and ``base_accel`` are the columns of ``samples`` and are not copied.
+    ``t``, ``x``, ``v`` and ``base_accel`` are the columns of ``samples`` and are not copied. ``run["x_m"]``,
+    ``run.csv()``, ``run.to_csv(path)`` and ``run.to_pandas()`` are those of ``samples``.
 
     Examples
     --------
@@ -469,13 +540,15 @@ class Run:
         Returns
         -------
         dict of str to object
-            The keys have the units: ``rms_velocity_m_per_s``. A number that the run does not have is None,
-            and what only other scenes have is left out. ``summary["outcome"]`` says how the run ended,
-            ``"done"`` at its end; ``summary["ledger"]`` is the energy balance in J.
+            The keys have the units: ``rms_velocity_m_per_s``. ``summary["outcome"]`` says how the run ended,
+            ``"done"`` at its end; ``summary["ledger"]`` is the energy balance in J; ``summary["scene"]`` is
+            the scene, in a form that :meth:`Scene.set` takes.
 
         Notes
         -----
-        Most of it is of the settled window, from ``window_from_s`` to ``window_to_s``.
+        Most of it is of the settled window, from ``window_from_s`` to ``window_to_s``. A value that the run
+        does not have is None, and what only other scenes have (a transducer, a ramp) is left out: take
+        ``summary.get(key)``. A grid has a column for each, with NaN, or empty words, in both cases.
         """
         if self._summary is None:
             summary = json.loads(self._run.summary())
@@ -490,10 +563,13 @@ class Run:
 
         Returns
         -------
-        ndarray, structured
-            Fields ``t_s``, ``kind``, ``side``, ``v_in_m_per_s`` and ``v_out_m_per_s`` (velocity before and
-            after, signed). Kinds are ``impact``, ``rest``, ``release``, ``crossing`` and, of compliant stops,
-            ``contact`` and ``separate``.
+        ndarray, structured, read-only
+            Fields ``t_s`` (time in s), ``kind``, ``side`` (``left`` or ``right``: the stop, or the well that
+            is entered), ``v_in_m_per_s`` and ``v_out_m_per_s`` (velocity before and after, signed).
+
+            Kinds are ``impact`` (a rebound from a rigid stop), ``rest`` (the mass comes to rest on a stop),
+            ``release`` (it leaves that stop), ``crossing`` (it passes the top of the barrier) and, of
+            compliant stops, ``contact`` and ``separate``.
 
         Notes
         -----
@@ -512,6 +588,7 @@ class Run:
             events = np.empty(table.rows, dtype=kinds)
             for name, column in zip(table.columns, columns):
                 events[name] = column
+            events.flags.writeable = False
             self._events = events
         return self._events
 
@@ -537,6 +614,37 @@ class Run:
         """
         names = panels if panels is None or isinstance(panels, str) else ",".join(panels)
         return self.samples.plot(names, **options)
+
+    def __getitem__(self, name: str) -> Array:
+        """Return a column of the samples; see :meth:`Table.__getitem__`."""
+        return self.samples[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.samples)
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """Return the samples as a data frame; see :meth:`Table.to_pandas`."""
+        return self.samples.to_pandas()
+
+    def csv(self) -> str:
+        """Return the samples as CSV; see :meth:`Table.csv`."""
+        return self.samples.csv()
+
+    def to_csv(self, path: str | os.PathLike[str]) -> None:
+        """Write the samples as CSV; see :meth:`Table.to_csv`."""
+        self.samples.to_csv(path)
+
+    def _ipython_key_completions_(self) -> list[str]:
+        return self.samples.columns
+
+    def __reduce__(self) -> Any:
+        raise _unpicklable(self, "summary, to_pandas() or csv()")
+
+    def __copy__(self) -> Run:
+        return self
+
+    def __deepcopy__(self, _: Any) -> Run:
+        return self
 
     def _repr_svg_(self) -> str:
         return self.plot()._repr_svg_()

@@ -182,6 +182,8 @@ def test_columns_of_the_csv(command: Command) -> None:
             written = row[name]
             if isinstance(value, str):
                 assert value == written
+            elif value is None or isinstance(value, bool):
+                assert written == {None: "", True: "true", False: "false"}[value]
             elif written == "":
                 assert np.isnan(value) or np.isinf(value)
             else:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import copy
 import os
 import pathlib
+import pickle
 import random
 import signal
 import subprocess
@@ -68,6 +70,165 @@ def test_walks_have_the_order_of_the_fields() -> None:
     assert both.to_xarray().rms_velocity_m_per_s.sel(direction="down").shape == (2, 3)
 
 
+@pytest.mark.parametrize("carry", ["up", "down", "both"])
+def test_walks_over_one_field(carry: str) -> None:
+    scene = iw.Scene.preset("duffing").set({"run.duration_s": 60, "run.settle_s": 30})
+    field, values = "excitation.amplitude_g", np.array([0.02, 0.03, 0.04])
+    grid = scene.sweep({field: values}, carry=carry)
+    assert grid.shape == ((2, 3) if carry == "both" else (3,))
+    assert (grid["amplitude_g"] == values).all()
+    data, frame = grid.to_xarray(), grid.to_pandas()
+    assert (data.amplitude_g == values).all()
+    for way in ["up", "down"] if carry == "both" else [carry]:
+        order = values if way == "up" else values[::-1]
+        rows = frame[frame.direction == way].reset_index(drop=True)
+        assert (rows.amplitude_g == order).all(), "rows are those of the CSV"
+        walked = data.sel(direction=way) if carry == "both" else data
+        assert (walked.direction == way).all()
+        for value, rms in zip(rows.amplitude_g, rows.rms_velocity_m_per_s):
+            assert walked.rms_velocity_m_per_s.sel(amplitude_g=value) == rms
+    assert len(set(frame.rms_velocity_m_per_s)) > 2, "the order matters"
+
+
+def test_yes_and_no() -> None:
+    paper = iw.Scene.preset("paper")
+    assert paper["run.recurrence"] is True and paper["mechanism.plane_strain"] is False
+    assert paper.set(title="true")["title"] == "true"
+    assert paper.orbit()["stable"].dtype == paper.threshold()["undecided"].dtype == bool
+    settled = paper.sweep({"mass_g": [10, 15]}, columns="settled")
+    assert settled["settled"].tolist() == [True, True] and "true" in settled.csv()
+    starts = iw.Scene.preset("paper").basins((-4, 4, 5), (-0.2, 0.2, 3))
+    assert starts["sure"].dtype == object and set(starts["sure"]) == {True, None}
+    assert starts["x_mm"].reshape(5, 3)[:, 0].tolist() == [-4, -2, 0, 2, 4]
+    assert np.isnan(starts["attractor"]).tolist() == [sure is None for sure in starts["sure"]]
+    quiet = paper.set(excitation="None", stops="None").run().events
+    assert len(quiet) == 0 and quiet.dtype["kind"].kind == "U"
+
+
+def test_arrays_are_made_once_and_stay(tmp_path: pathlib.Path) -> None:
+    scene = iw.Scene.preset("paper")
+    grid, run = scene.sweep({"mass_g": [10, 15]}, carry="down"), scene.run()
+    for array in (grid["mass_g"], grid["regime"], run.events, run["phase"], run.x):
+        assert not array.flags.writeable
+    assert grid["regime"] is grid["regime"]
+    grid.to_xarray().rms_velocity_m_per_s[0] = 0.0
+    assert run["x_m"] is run.x and run.csv() == run.samples.csv() and list(run) == run.samples.columns
+    assert run.to_pandas().equals(run.samples.to_pandas())
+    run.to_csv(tmp_path / "run.csv")
+    assert (tmp_path / "run.csv").read_text() == run.csv()
+
+
+def test_a_scene_is_a_mapping_that_stays() -> None:
+    scene = iw.Scene.preset("paper")
+    assert "stops" in scene and "stop" not in scene and 3 not in scene
+    assert list(scene) == scene.fields and dict(scene)["mass_g"] == scene["mass_g"]
+    for field, meant in [("amplitude_g", "excitation.amplitude_g"), ("mas_g", "mass_g")]:
+        with pytest.raises(KeyError, match=f"did you mean {meant}"):
+            scene[field]
+    with pytest.raises(AttributeError, match="set\\(mass_g="):
+        scene.mass_g = 3
+    changed = scene.set(mass_g=20)
+    assert changed != scene and changed.set(mass_g=scene["mass_g"]) == scene != "paper"
+    assert len({scene, iw.Scene("paper"), changed}) == 2
+    assert "changed" in repr(changed) and "changed" not in repr(scene)
+    for thing in (scene, scene.sweep({"mass_g": [15]}), scene.run()):
+        assert thing._ipython_key_completions_() == list(thing)
+
+
+def test_values_of_set() -> None:
+    xarray = pytest.importorskip("xarray")
+    scene = iw.Scene.preset("paper")
+    for value in (np.array(3.5), xarray.DataArray(3.5), np.float32(3.5)):
+        assert scene.set(mass_g=value)["mass_g"] == 3.5
+    count = "mechanism.parallel.count"
+    assert scene.set({count: scene[count]}) == scene, "a count is read as a float"
+    parts = [{"Linear": {"n_per_m": 3}}, {"Cubic": {"linear_n_per_m": -40, "cubic_n_per_m3": np.float64(8e5)}}]
+    written = "Sum([Linear(n_per_m: 3), Cubic(linear_n_per_m: -40, cubic_n_per_m3: 8e5)])"
+    assert scene.set(mechanism={"Sum": parts}) == scene.set(mechanism=written)
+    table = scene.set(mechanism={"Table": {"path": pathlib.Path("force_dl2.7.csv"), "tolerance": 1e-4}})
+    assert table["mechanism.path"] == "force_dl2.7.csv"
+    for name in iw.presets():
+        scene = iw.Scene.preset(name).set({"run.duration_s": 0.1, "run.settle_s": 0.05})
+        assert scene.set(scene.run().summary["scene"]) == scene, name
+    open_circuit = iw.Scene.preset("harvester").set({"transducer.load_ohm": float("inf")})
+    assert open_circuit.set(open_circuit.run().summary["scene"]) == open_circuit
+
+
+def test_scenes_are_pickled(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    cubic = iw.Scene.preset("nominal-cubic")
+    of_a_function = cubic.with_force(lambda x: -40 * x + 8e5 * x**3, (-9e-3, 9e-3))
+    for scene in (iw.Scene.preset("walking"), cubic.set(mass_g=20), of_a_function):
+        assert copy.copy(scene) is copy.deepcopy(scene) is scene
+        again = pickle.loads(pickle.dumps(scene))
+        assert again == scene and hash(again) == hash(scene) and repr(again) == repr(scene)
+        assert again.run().csv() == scene.run().csv()
+    # a scene with a file beside it
+    (tmp_path / "force.csv").write_text(cubic.curve().csv())
+    path = str(tmp_path / "force.csv")
+    table = cubic.set(mechanism={"Table": {"path": path, "tolerance": 1e-6}})
+    (tmp_path / "scene.ron").write_text(table.text.replace(path, "force.csv"))
+    monkeypatch.chdir(tmp_path)
+    scene = iw.Scene("scene.ron")
+    pickled = pickle.dumps(scene)
+    monkeypatch.chdir("/")
+    again = pickle.loads(pickled)
+    assert again == scene and again["mechanism.path"] == path and hash(again) == hash(scene)
+    assert again.run().csv() == scene.run().csv()
+    (tmp_path / "force.csv").unlink()
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(TypeError, match="force.csv"):
+        pickle.dumps(scene)
+
+
+def test_answers_are_compared_and_not_pickled() -> None:
+    scene = iw.Scene.preset("paper")
+    run, grid = scene.run(), scene.sweep({"mass_g": [15]}, columns="all")
+    assert run.samples == scene.run().samples != scene.run(dt=0.1).samples
+    assert grid == scene.sweep({"mass_g": [15]}, columns="all") != run.samples
+    assert copy.deepcopy(grid) is grid and copy.deepcopy(run) is run
+    for answer, instead in [(run, "summary"), (grid, "to_pandas"), (run.plot(), "save")]:
+        with pytest.raises(TypeError, match=instead):
+            pickle.dumps(answer)
+
+
+def test_names_of_compared_scenes() -> None:
+    cubic = iw.Scene.preset("nominal-cubic")
+    near = cubic.set({"stops.travel_limit_mm": 2})
+    table = cubic.compare(near, near, "monostable", near=near)
+    names = ["nominal-cubic", "nominal-cubic (changed)", "nominal-cubic (changed) 2", "monostable", "near"]
+    assert table["scene"].tolist() == names
+    assert len(set(table["release_g"][[1, 2, 4]])) == 1
+    assert near.compare(cubic)["scene"].tolist() == ["nominal-cubic (changed)", "nominal-cubic"]
+
+
+def test_what_is_shown() -> None:
+    scene = iw.Scene.preset("paper")
+    over = {"mass_g": [10, 15], "excitation.amplitude_g": [0.5, 1, 1.5]}
+    assert repr(scene.sweep(over)).startswith("<Grid 2 x 3: mass_g, amplitude_g, ")
+    assert repr(scene.curve().plot()).startswith("<Picture")
+    assert repr(scene) == "<Scene 'built-in paper': Prototype with travel limits>"
+
+
+def test_a_missing_folder_is_named(tmp_path: pathlib.Path) -> None:
+    scene, path = iw.Scene.preset("paper"), tmp_path / "no" / "file.csv"
+    for write in (scene.save, scene.curve().to_csv, scene.curve().plot().save):
+        place = path.with_suffix(".svg") if "save" in write.__name__ else path
+        with pytest.raises(FileNotFoundError) as caught:
+            write(place)
+        assert caught.value.filename == str(place)
+    (tmp_path / "folder.csv").mkdir()
+    with pytest.raises(OSError) as failed:
+        scene.curve().to_csv(tmp_path / "folder.csv")
+    assert failed.value.filename == str(tmp_path / "folder.csv")
+    assert os.listdir(tmp_path) == ["folder.csv"]
+
+
+def test_maximize_is_not_the_word() -> None:
+    with pytest.raises(TypeError, match="maximise"):
+        iw.Scene.preset("paper").best({"mass_g": (1, 2)}, maximize="max_abs_x_m")
+
+
+
 def coil() -> iw.Scene:
     return iw.Scene.preset("harvester").set({"transducer.inductance_mh": 10})
 
@@ -117,6 +278,31 @@ BAD = [
     (lambda: iw.Scene.preset("paper").exponents(periods=-1), "periods", "periods"),
     (lambda: iw.Scene.preset("paper").curve().to_csv("curve.parquet"), "to_pandas", "path"),
     (lambda: iw.Scene.preset("paper").curve([99.0]), "99", "positions"),
+    (lambda: iw.Scene.preset("paper").curve("x"), "numbers", "positions"),
+    (lambda: iw.Scene.preset("paper").set([("mass_g", 3)]), "dict", "changes"),
+    (lambda: iw.Scene.preset("paper").run(at=[[0, 1], [2, 3]]), "shape (2, 2)", "at"),
+    (lambda: iw.Scene.preset("paper").with_force(lambda x: x, (-1, 0, 1)), "(first, last)", "range"),
+    (lambda: iw.Scene.preset("paper").threshold(range=(0, 1, 2)), "(first, last)", "range"),
+    (lambda: iw.Scene.preset("paper").threshold(range="01"), "(first, last)", "range"),
+    (lambda: iw.Scene.preset("paper").threshold(range=1), "(first, last)", "range"),
+    (lambda: iw.Scene.preset("paper").basins((0, 1), (0, 1, 2)), "(first, last, count)", "x_mm"),
+    (lambda: iw.Scene.preset("paper").basins((0, 1, 2), (0, "a", 2)), "numbers", "v_m_per_s"),
+    (lambda: iw.Scene.preset("paper").basins((0, 1, 2.5), (0, 1, 2)), "whole number", "x_mm"),
+    (lambda: iw.Scene.preset("paper").basins((0, 1, 2, 3), (0, 1), random=9), "count", "x_mm"),
+    (lambda: iw.Scene.preset("paper").best({"mass_g": (1,)}), "largest", "mass_g"),
+    (lambda: iw.Scene.preset("paper").best({"mass_g": (1, 2, 3, 4)}), "step", "mass_g"),
+    (lambda: iw.Scene.preset("paper").best([("mass_g", 1, 2)]), "dict", "over"),
+    (lambda: iw.Scene.preset("paper").best({"mass_g": (1, 2)}, vary=["mass_g"]), "dict", "vary"),
+    (lambda: iw.Scene.preset("paper").best({"mass_g": (1, 2)}, subject_to=3), "text", "subject_to"),
+    (lambda: iw.Scene.preset("paper").sweep([("mass_g", [1])]), "dict", "over"),
+    (lambda: iw.Scene.preset("paper").sweep({"mass_g": [15]}, columns=[3]), "text", "columns"),
+    (lambda: iw.Scene.preset("paper").sweep({"mass_g": [15]}, progress="yes"), "function", "progress"),
+    (lambda: iw.Scene.preset("paper").compare(["balanced"]), "one by one", "others"),
+    (lambda: iw.Scene.preset("paper").compare(until=60), "scenes", "until"),
+    (lambda: iw.Scene.preset("paper").curve().plot(x=(2, 1)), "lower first", "x"),
+    (lambda: iw.Scene.preset("paper").curve().plot(y=(1, float("inf"))), "finite", "y"),
+    (lambda: iw.Scene.preset("paper").run().plot(x=(1,)), "(low, high)", "x"),
+    (lambda: iw.Scene.preset("paper").curve().plot(height_mm=60), "width_mm", "height_mm"),
 ]
 
 
