@@ -51,7 +51,9 @@ class Simulation:
         tolerance: float,
         breaks: Sequence[float],
     ) -> tuple[Simulation, float]: ...
-    def with_force_samples(self, x_m: Sequence[float], force_n: Sequence[float], tolerance: float) -> Simulation: ...
+    def with_force_samples(
+        self, x_m: Sequence[float], force_n: Sequence[float], tolerance: float
+    ) -> Simulation: ...
     def with_drive(
         self,
         acceleration: Callable[[float], float] | Sequence[float],

@@ -337,28 +337,30 @@ class Scene(Mapping[str, Any]):
 
     def with_force(
         self,
-        force: Callable[[float], float],
-        range: tuple[float, float],
+        force: Callable[[float], float] | Table | tuple[npt.ArrayLike, npt.ArrayLike],
+        range: tuple[float, float] | None = None,
         *,
-        tolerance: float = 1e-8,
+        tolerance: float | None = None,
         breaks: Iterable[float] = (),
     ) -> Scene:
-        """Return the scene with the force of a function in place of its mechanism.
+        """Return the scene with a force of one's own in place of its mechanism.
 
-        The function is sampled once and becomes a piecewise polynomial; it is not called again.
+        A function is sampled once and becomes a piecewise polynomial; it is not called again.
 
         Parameters
         ----------
-        force : callable
-            Force in N that holds the mass at a position in m; the derivative of the potential. It is called
-            with one float and returns one.
+        force : callable, (array_like, array_like) or Table
+            Force in N that holds the mass at a position in m; the derivative of the potential. A function is
+            called with one float and returns one. Otherwise positions in m, in ascending order, and the force
+            at each, or a table with the columns ``x_m`` and ``force_n``, such as that of :func:`identify`.
         range : (float, float)
-            First and last position in m.
-        tolerance : float
-            Largest error of the curve, relative to the largest force between the wells, 1e-10 to 0.1. A
+            First and last position in m, of a function.
+        tolerance : float, optional
+            Largest error of the curve, relative to the largest force between the wells, 1e-10 to 0.1: at all
+            places that are compared with a function (by default 1e-8), or at the samples (by default 1e-3). A
             smaller one needs higher degrees or more pieces.
         breaks : iterable of float
-            Positions in m at which the force has a corner, where they are known. Others are found.
+            Positions in m at which a function has a corner, where they are known. Others are found.
 
         Returns
         -------
@@ -368,14 +370,15 @@ class Scene(Mapping[str, Any]):
         Raises
         ------
         SceneError
-            If the range, the tolerance or a break is wrong, the force is not finite or has a step, or the
-            scene does not fit the curve: its start lies beyond an end of it, or a damping ratio or a start at
-            rest finds no well. An exception of ``force`` itself is passed on.
+            If the range, the tolerance or a break is wrong, the force is not finite, has a step or is noisy,
+            positions do not ascend, or the scene does not fit the curve: its start lies beyond an end of it,
+            or a damping ratio or a start at rest finds no well. An exception of ``force`` is passed on.
 
         Notes
         -----
-        The curve is compared with the function at five places between any two samples. A function that is odd
-        over a symmetric range gives a curve that is odd bit for bit.
+        The curve is compared with the function at five places between any two samples; the function is called
+        at most 30 000 times. A function that is odd over a symmetric range gives a curve that is odd bit for
+        bit.
 
         Examples
         --------
@@ -383,10 +386,25 @@ class Scene(Mapping[str, Any]):
         >>> cubic["mechanism.error_n"] < 1e-9
         True
         """
-        first, last = _entries("range", range, "(first, last) in m", 2)
-        places = [float(place) for place in breaks]
-        simulation, _ = self._simulation.with_force(force, (first, last), float(tolerance), places)
-        return self._of(simulation, self)
+        if callable(force):
+            first, last = _entries("range", range, "(first, last) in m", 2)
+            places = [float(place) for place in breaks]
+            relative = 1e-8 if tolerance is None else float(tolerance)
+            simulation, _ = self._simulation.with_force(force, (first, last), relative, places)
+            return self._of(simulation, self)
+        if range is not None:
+            raise _wrong("range", _shown(range), "leave it out: samples have a first and a last position")
+        if isinstance(force, Table):
+            missing = [name for name in ("x_m", "force_n") if name not in force]
+            if missing:
+                raise _wrong("force", _shown(force), f"the table has no column {missing[0]}")
+            force = (force["x_m"], force["force_n"])
+        if not isinstance(force, (tuple, list)) or len(force) != 2:
+            problem = "give a function, a pair (x_m, force_n), or a table with these columns"
+            raise _wrong("force", _shown(force), problem)
+        x, values = _numbers("force", force[0]).tolist(), _numbers("force", force[1]).tolist()
+        relative = 1e-3 if tolerance is None else float(tolerance)
+        return self._of(self._simulation.with_force_samples(x, values, relative), self)
 
     def with_drive(
         self,

@@ -141,6 +141,43 @@ def test_identify(command: Command, tmp_path: pathlib.Path) -> None:
     assert all(found.summary[key] == written[key] for key in found.summary)
 
 
+def test_force_of_samples(tmp_path: pathlib.Path) -> None:
+    x = np.linspace(-9e-3, 9e-3, 181)
+    force = -40.0 * x + 40.0 / 49e-6 * x**3
+    exact = iw.Scene.preset("nominal-cubic")
+    scene = exact.with_force((x, force), tolerance=1e-8)
+    assert scene.barrier_j == pytest.approx(exact.barrier_j, rel=1e-6)
+    # a slow pull, forth and back
+    path = tmp_path / "pull.csv"
+    rows = [f"{a},{b}" for a, b in zip([*x, *x[::-1]], [*force, *force[::-1]])]
+    path.write_text("x_m,force_n\n" + "\n".join(rows))
+    fitted = exact.with_force(iw.identify(path, "force"))
+    assert fitted.barrier_j == pytest.approx(exact.barrier_j, rel=1e-2)
+
+
+def test_corners_need_no_names() -> None:
+    def force(x: float) -> float:
+        return -40.0 * x + 8e5 * x**3 + 20.0 * max(0.0, x - 4e-3)
+
+    found, named = (
+        iw.Scene.preset("paper").with_force(force, (-9e-3, 9e-3), breaks=breaks).run().summary
+        for breaks in ([], [4e-3])
+    )
+    assert found["rms_velocity_m_per_s"] == pytest.approx(named["rms_velocity_m_per_s"], rel=1e-5)
+
+
+def test_drive_of_ones_own() -> None:
+    scene = iw.Scene.preset("nominal-cubic")
+    cubed = scene.with_drive(lambda t: 20.0 * np.sin(6.0 * np.pi * t) ** 3, 3.0)
+    times = np.linspace(0.0, 1.0, 97)
+    exact = 20.0 * np.sin(6.0 * np.pi * times) ** 3
+    assert np.abs(cubed.run(at=times).base_accel - exact).max() < 20.0 * 1e-6
+    samples = 20.0 * np.sin(2.0 * np.pi * np.arange(16) / 16) ** 3
+    sampled = scene.with_drive(samples, 3.0)
+    assert np.abs(sampled.run(at=times).base_accel - exact).max() < 1e-11
+    assert sampled.orbit()["period"][0] >= 1
+
+
 def test_force_of_a_function(command: Command, tmp_path: pathlib.Path) -> None:
     def force(x: float) -> float:
         return -40.0 * x + 40.0 / 49e-6 * x**3
