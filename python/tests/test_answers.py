@@ -151,7 +151,7 @@ def test_force_of_samples(tmp_path: pathlib.Path) -> None:
     path = tmp_path / "pull.csv"
     rows = [f"{a},{b}" for a, b in zip([*x, *x[::-1]], [*force, *force[::-1]])]
     path.write_text("x_m,force_n\n" + "\n".join(rows))
-    fitted = exact.with_force(iw.identify(path, "force"))
+    fitted = exact.with_force(iw.identify(path, "force", points=41))
     assert fitted.barrier_j == pytest.approx(exact.barrier_j, rel=1e-2)
 
 

@@ -270,7 +270,7 @@ BAD = [
     (lambda: iw.Scene.preset("paper").with_force(lambda x: "a", (-1, 1)), "must return a number", "force"),
     (lambda: iw.Scene.preset("paper").with_force(([0, 1, 2, 2], [0, 1, 2, 3])), "sort them", "force"),
     (lambda: iw.Scene.preset("paper").with_force(([0, 1], [0, 1]), (0, 1)), "leave it out", "range"),
-    (lambda: iw.Scene.preset("paper").with_force([1, 2, 3]), "function", "force"),
+    (lambda: iw.Scene.preset("paper").with_force([1, 2, 3]), "a function", "force"),
     (lambda: iw.Scene.preset("paper").with_drive(lambda t: float("inf"), 3.0), "finite", "acceleration"),
     (lambda: iw.Scene.preset("paper").with_drive(lambda t: float(t > 0.1), 3.0), "Recorded", "acceleration"),
     (lambda: iw.Scene.preset("paper").with_drive([], 3.0), "0 samples", "acceleration"),
