@@ -15,6 +15,9 @@ pub struct Arguments {
     /// Scene files or built-in scenes [default: paper]
     #[arg(value_name = "SCENE")]
     pub scenes: Vec<String>,
+    /// Print a link that opens each scene, in place of what it models
+    #[arg(long)]
+    pub link: bool,
 }
 
 /// Reports every scene. Wrong scenes are reported on standard error, and make the command fail.
@@ -25,7 +28,8 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let mut outputs = Outputs::new(&names).with(Output::DATA, Some(common.out()))?;
     let mut wrong = Vec::new();
     for spec in scenes {
-        match report(spec, common) {
+        let text = if options.link { link(spec, common) } else { report(spec, common) };
+        match text {
             Ok(text) => outputs.write(Output::DATA, &text)?,
             Err(error) => wrong.push(error),
         }
@@ -40,6 +44,12 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         Failure::Failed(error) if any_wrong => Failure::Wrong(error),
         last => last,
     })
+}
+
+fn link(spec: &str, common: &Common) -> Result<String, Failure> {
+    let (document, _) = load(spec, common, None)?;
+    let link = document.link().map_err(|error| Failure::argument(format!("{}: {error}", document.name)))?;
+    Ok(link + "\n")
 }
 
 fn report(spec: &str, common: &Common) -> Result<String, Failure> {

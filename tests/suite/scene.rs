@@ -5,6 +5,7 @@ use interwell::scene::*;
 mod checking;
 mod files;
 mod flexures;
+mod links;
 mod properties;
 mod reading;
 mod setting;

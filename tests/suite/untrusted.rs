@@ -44,6 +44,11 @@ fn set_arguments() {
 }
 
 #[test]
+fn links() {
+    corpus("link", promises::link);
+}
+
+#[test]
 fn over_arguments() {
     corpus("over", promises::over);
 }

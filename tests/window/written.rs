@@ -35,6 +35,36 @@ fn scenes_go_through_the_clipboard() {
 }
 
 #[test]
+fn a_link_opens_the_scene_with_its_changes() {
+    let mut harness = opened();
+    harness.state_mut().session.edit_once(|scene| scene.mass_g = 16.0);
+    harness.step();
+    let ctx = harness.ctx.clone();
+    harness.state_mut().carry_out(&ctx, Command::CopyLink);
+    harness.step();
+    let link = copied(&harness).unwrap();
+    assert!(link.starts_with("?scene=first-look#"), "{link}");
+    // in another window: by argument, and pasted
+    let linked = window(&link, WIDE);
+    let mut pasted = window("paper", WIDE);
+    pasted.event(Event::Paste(link.clone()));
+    pasted.run_steps(3);
+    for other in [&linked, &pasted] {
+        let (here, there) = (&harness.state().session, &other.state().session);
+        assert_eq!(there.scene(), here.scene());
+        let line = interwell::app::export::command_line(there).unwrap().0;
+        assert_eq!(line, "interwell --headless simulate first-look --set mass_g=16");
+    }
+    let mut lesson = window("?lesson=03-a-stop-that-helps", WIDE);
+    lesson.run_steps(2);
+    assert!(lesson.state().lesson().is_some());
+    pasted.event(Event::Paste(link[..link.len() - 3].to_owned()));
+    pasted.run_steps(3);
+    assert!(pasted.state().message().is_some_and(|text| text.contains("copy the whole link")));
+    assert_eq!(pasted.state().session.scene(), harness.state().session.scene());
+}
+
+#[test]
 fn the_command_line_says_what_is_shown() {
     let mut harness = opened();
     harness.state_mut().session.edit_once(|scene| scene.mass_g = 16.0);

@@ -8,6 +8,7 @@ use super::data::Scene;
 use super::error::{ArgumentError, Fault, Origin, PlacedFault, SceneError, clip};
 use super::fields::{FieldPath, all_fields, replace};
 use super::files::{Files, ReadError, read_from, read_text};
+use super::link::is_link;
 use super::manifest::{self, SweepRequest};
 use super::presets::{self, PRESETS};
 use super::record;
@@ -71,6 +72,9 @@ impl Document {
     /// The scene in an argument of a command: anything that [`load`](Self::load) takes, the manifest of a
     /// sweep, or `-` for a scene on standard input.
     pub fn of_argument(spec: &str) -> Result<Self, SceneError> {
+        if is_link(spec) {
+            return Self::from_link(spec);
+        }
         if let Some(document) = Self::built_in(spec) {
             return document;
         }
@@ -88,8 +92,12 @@ impl Document {
         }
     }
 
-    /// Reads a scene file or the built-in scene of that name. A path such as `./paper` is always a file.
+    /// Reads a scene file, the built-in scene of that name, or the scene of a link. A path such as `./paper` is
+    /// always a file.
     pub fn load(spec: &str) -> Result<Self, SceneError> {
+        if is_link(spec) {
+            return Self::from_link(spec);
+        }
         if let Some(document) = Self::built_in(spec) {
             return document;
         }
@@ -148,7 +156,7 @@ impl Document {
         };
         self.assign(field.trim(), value.trim(), &shown)?;
         if let Some(assigned) = self.assigned.last_mut() {
-            assigned.change = Some(assigned.argument["--set ".len()..].to_owned());
+            assigned.change = Some(argument.to_owned());
         }
         Ok(())
     }
@@ -177,7 +185,7 @@ impl Document {
     }
 
     /// The files that the scene names (its table and its records), as written.
-    fn paths(&self) -> Vec<String> {
+    pub(super) fn paths(&self) -> Vec<String> {
         named_paths(&mut self.scene.clone()).into_iter().map(|path| path.clone()).collect()
     }
 

@@ -37,6 +37,7 @@ mod field_table;
 mod fields;
 mod files;
 pub mod lesson;
+mod link;
 mod manifest;
 mod measured;
 mod mechanism;
@@ -66,6 +67,7 @@ pub use field_table::{
 };
 pub use fields::{FieldPath, all_fields, is_whole, numeric_fields};
 pub use files::{FileError, Files, MAX_TABLE_BYTES};
+pub use link::{LinkError, is_link, linked_lesson};
 pub use manifest::{PROGRAM, SweepRequest, is_manifest};
 pub use measured::{
     Channel, ChosenColumn, ColumnOptions, ColumnRequest, MAX_MEASURED_BYTES, MAX_MEASURED_ROWS, Measured,

@@ -7,8 +7,8 @@ use std::path::Path;
 
 use crate::output::write_file;
 use crate::scene::{
-    Document, Excitation, FileError, Files, Scene, SceneError, Source, Start, named_paths, numeric_fields,
-    write,
+    Document, Excitation, FileError, Files, Scene, SceneError, Source, Start, is_link, named_paths,
+    numeric_fields, write,
 };
 use crate::system;
 
@@ -35,9 +35,9 @@ impl Editor {
         Self { document, saved, named, undo: Vec::new(), redo: Vec::new(), gesture: None }
     }
 
-    /// An editor on the scene of a lesson, which differs from the scene that its source names. The source
-    /// does not change, and a scene file is not overwritten.
-    pub fn in_lesson(mut document: Document) -> Self {
+    /// An editor on the scene of a lesson or of a link, which differs from the scene that its source names.
+    /// The source does not change, and a scene file is not overwritten.
+    pub fn changed(mut document: Document) -> Self {
         let named = match document.source {
             Source::BuiltIn(name) => Document::load(name).ok(),
             Source::File(_) | Source::Text => None,
@@ -50,7 +50,8 @@ impl Editor {
     }
 
     pub fn open(spec: &str) -> Result<Self, SceneError> {
-        Document::load(spec).map(Self::new)
+        let document = Document::load(spec)?;
+        Ok(if is_link(spec) { Self::changed(document) } else { Self::new(document) })
     }
 
     /// An editor on a scene as text, which has no file.

@@ -11,7 +11,7 @@ use crate::app::session::editor::Editor;
 use crate::app::session::measured::MeasuredRecord;
 use crate::app::ui::style::STATUS;
 use crate::app::views::View;
-use crate::scene::Quantity;
+use crate::scene::{Quantity, is_link};
 use crate::system::clock::WallClock;
 use crate::system::files;
 
@@ -86,6 +86,7 @@ impl Window {
     fn proceed(&mut self, ctx: &egui::Context, next: Next) {
         match next {
             Next::Open(spec) => self.open_another(&spec),
+            Next::Text(text) if is_link(&text) => self.open_another(text.trim()),
             Next::Text(text) => self.open_editor(Editor::from_text(&text).map_err(CannotRun::from)),
             Next::Choose => self.choose(Wanted::Open),
             Next::Quit => {

@@ -19,7 +19,7 @@ use crate::app::words::capital;
 use crate::app::words::fields::name_and_unit;
 use crate::app::words::lesson::{bold_words, letter, numbered, plain};
 use crate::scene::lesson::{BuiltInLesson, LessonDocument, LessonError, Step};
-use crate::scene::{Document, PRESETS, SceneError};
+use crate::scene::{Document, PRESETS, SceneError, is_link, linked_lesson};
 use crate::study::result_fields;
 use crate::system::files;
 
@@ -80,6 +80,13 @@ struct Suspended {
 }
 
 pub(super) fn read(spec: &str) -> Result<LessonDocument, CannotRun> {
+    let spec = match linked_lesson(spec) {
+        Some(name) if BuiltInLesson::find(name).is_none() => {
+            let problem = format!("there is no built-in lesson {name:.40}; `lessons` lists them");
+            return Err(SceneError::Unreadable { name: "the link".to_owned(), problem }.into());
+        }
+        linked => linked.unwrap_or(spec),
+    };
     LessonDocument::load(spec, &result_fields()).map_err(|error| match error {
         LessonError::Wrong(error) => error.into(),
         LessonError::NoSuchLesson { spec, .. } => {
@@ -88,8 +95,12 @@ pub(super) fn read(spec: &str) -> Result<LessonDocument, CannotRun> {
     })
 }
 
-/// Whether `spec` is a lesson: a file or, if there is none, the name, number or words of a built-in one.
+/// Whether `spec` is a lesson: a link to one, a file or, if there is none, the name, number or words of a
+/// built-in one.
 pub(super) fn is_lesson(spec: &str) -> bool {
+    if is_link(spec) {
+        return linked_lesson(spec).is_some();
+    }
     let path = Path::new(spec);
     let built_in = || !files::exists(path) && BuiltInLesson::find(spec).is_some();
     PRESETS.iter().all(|preset| preset.name != spec) && (LessonDocument::is_lesson(path) || built_in())
@@ -140,7 +151,7 @@ impl Window {
 
     /// A session on a scene of a lesson, at the lesson's speed.
     fn session_on(&self, lesson: &OpenLesson, scene: Document, plays: bool) -> Result<Session, CannotRun> {
-        let mut session = Session::new(Editor::in_lesson(scene), Arc::clone(&self.wake))?;
+        let mut session = Session::new(Editor::changed(scene), Arc::clone(&self.wake))?;
         session.player.speed = lesson.lesson().speed.unwrap_or(session.player.speed);
         session.player.set_playing(plays);
         session.explore.walks.chosen.clone_from(&lesson.lesson().walk);

@@ -63,6 +63,7 @@ impl Window {
                 self.figures.open(view, &self.session, &self.memory);
             }
             Command::CopyScene => self.copy_scene(ctx),
+            Command::CopyLink => self.copy_link(ctx),
             Command::PasteScene => ctx.send_viewport_cmd(egui::ViewportCommand::RequestPaste),
             Command::CopyCommand => self.copy_command(ctx),
             Command::CopyMapCommand => self.copy_map_command(ctx),
@@ -155,6 +156,16 @@ impl Window {
             Command::Notes => self.show_notes(),
             Command::Shortcuts => self.shortcuts = Some(ctx.input(|input| input.time)),
             Command::About => self.messages.alert("interwell", ABOUT),
+        }
+    }
+
+    fn copy_link(&mut self, ctx: &egui::Context) {
+        match self.session.editor.document().link() {
+            Ok(link) => {
+                ctx.copy_text(link);
+                self.messages.notify("Copied: a link that opens this scene");
+            }
+            Err(error) => self.messages.alert("This scene has no link", error.to_string()),
         }
     }
 

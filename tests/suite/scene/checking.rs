@@ -102,8 +102,8 @@ fn every_relation_between_fields_is_checked() {
         (&[("app", "(stops_when_on: Uneven())")], "app.stops_when_on = Uneven()"),
         (
             &axis("[(field: \"stops.left_mm\", from: 1, to: 2, step: 1)]"),
-            "sweep.0.field = \"stops.left_mm\": the scene has no numeric field `stops.left_mm`; \
-             it has: mass_g, mechanism.linear_n_per_m,",
+            "sweep.0.field = \"stops.left_mm\": the scene has no numeric field `stops.left_mm`; did \
+             you mean `stops.travel_limit_mm`? It has: mass_g, mechanism.linear_n_per_m,",
         ),
         (
             &axis("[(field: \"mass_g\", from: 1, to: 2, step: 0)]"),

@@ -95,8 +95,8 @@ fn paths_that_are_not_there_list_those_that_are() {
     for (argument, expected) in [
         (
             "mechanism.parallel.lenght_mm=26",
-            "no field `mechanism.parallel.lenght_mm`; it has: title, notes, mass_g, mechanism, \
-             mechanism.preload_mm,",
+            "no field `mechanism.parallel.lenght_mm`; did you mean `mechanism.parallel.length_mm`? It has: \
+             title, notes, mass_g, mechanism, mechanism.preload_mm,",
         ),
         ("mechanism.linear_n_per_m=1", "mechanism.parallel.length_mm, "),
         ("mechanism.plane_strain=1", "expected boolean"),

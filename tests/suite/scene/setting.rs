@@ -178,7 +178,10 @@ fn a_wrong_over_names_the_argument() {
         (&["mass_g"], "write FIELD=FROM:TO:STEP"),
         (&["mass_g=1:1e15:1e-15"], "999999999999999000000000000001 values are more"),
         (&["stops.restitution=0:2:1"], "stops.restitution takes 0 to 1, not 2"),
-        (&["stops.left_mm=1,2"], "no numeric field `stops.left_mm`; it has: mass_g, "),
+        (
+            &["amplitude_g=1,2"],
+            "no numeric field `amplitude_g`; did you mean `excitation.amplitude_g`? It has: mass_g, ",
+        ),
         (&["stops=1,2"], "no numeric field `stops`"),
         (&["mass_g=1,2", "mass_g=3"], "--over: mass_g is swept twice"),
         (

@@ -143,6 +143,26 @@ pub fn set(bytes: &[u8]) {
     }
 }
 
+/// A link: the text itself, and the text as what stands behind the `#`.
+pub fn link(bytes: &[u8]) {
+    let Some(text) = harmless(bytes) else { return };
+    for link in [text.to_owned(), format!("?scene=paper#{text}"), format!("?scene=#{text}")] {
+        if !scene::is_link(&link) {
+            continue;
+        }
+        match Document::of_argument(&link) {
+            Err(error) => in_words(error, ""),
+            Ok(document) => {
+                reads_back(&document.scene);
+                match document.check() {
+                    Err(error) => in_words(error, ""),
+                    Ok(_) => drop(document.link()),
+                }
+            }
+        }
+    }
+}
+
 /// Arguments of `--over`, a line each, on the built-in scene that the first line names.
 pub fn over(bytes: &[u8]) {
     let Some((document, given)) = preset_and_arguments(bytes) else { return };

@@ -4,7 +4,7 @@ use super::condition::Condition;
 use super::document::Stage;
 use super::{LESSON_FORMAT, Lesson, MAX_OPTION_LENGTH, MAX_STEP_LENGTH, Step};
 use crate::numeric::number_text;
-use crate::scene::axis::Axis;
+use crate::scene::axis::{Axis, nearest};
 use crate::scene::check::check;
 use crate::scene::data::{Excitation, Scene};
 use crate::scene::error::Fault;
@@ -231,11 +231,9 @@ fn union(scenes: &[&Scene], fields: fn(&Scene) -> Vec<String>) -> Vec<String> {
     all
 }
 
-/// The known name that is most similar to an unknown one, as the end of a sentence.
+/// The known name that an unknown one may mean, as the end of a sentence.
 fn suggested<'a>(unknown: &str, known: impl Iterator<Item = &'a String>) -> String {
-    let similarity = |name: &&String| strsim::jaro_winkler(name, unknown);
-    let best = known.max_by(|a, b| similarity(a).total_cmp(&similarity(b)));
-    best.map_or(String::new(), |best| format!("; did you mean {best}?"))
+    nearest(unknown, known).map_or(String::new(), |best| format!("; did you mean {best}?"))
 }
 
 struct Found(Vec<Fault>);
