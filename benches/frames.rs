@@ -78,19 +78,19 @@ impl Screen {
         let window = Window::open(Some(preset), Settings::default(), Arc::new(|| ())).unwrap();
         let ctx = Context::default();
         prepare(&ctx);
-        let mut own = Self { ctx, window, frame: 0, drawn: (0, 0) };
-        first(&mut own.window);
-        own.window.session.player.speed = 1.0;
-        own.open(open);
+        let mut screen = Self { ctx, window, frame: 0, drawn: (0, 0) };
+        first(&mut screen.window);
+        screen.window.session.player.speed = 1.0;
+        screen.open(open);
         if matches!(open, Open::All | Open::Only(Some(View::Map)) | Open::Layout(Layout::Map)) {
-            own.fill_map();
+            screen.fill_map();
         }
         for _ in 0..SETTLING {
-            own.step();
+            screen.step();
         }
-        own.window.session.wait(LONG);
-        own.fill_explored();
-        own
+        screen.window.session.wait(LONG);
+        screen.fill_explored();
+        screen
     }
 
     /// Waits for what views of the layout Explore work out, where any is open.
@@ -171,7 +171,7 @@ impl Screen {
         output.textures_delta.clear();
         let shapes = output.shapes.len();
         let meshes = std::hint::black_box(self.ctx.tessellate(output.shapes, output.pixels_per_point));
-        let corners = meshes.iter().map(|own| match &own.primitive {
+        let corners = meshes.iter().map(|clipped| match &clipped.primitive {
             Primitive::Mesh(mesh) => mesh.vertices.len(),
             Primitive::Callback(_) => 0,
         });

@@ -39,7 +39,7 @@ fn alone_and_together(model: &Model) -> (f64, f64) {
     for _ in 0..shared::rounds(ROUNDS) {
         let some = &many[..8];
         alone.push(
-            shared::cpu(|| some.iter().map(|own| own.run(&Request::default()).summary.steps).sum::<u64>())
+            shared::cpu(|| some.iter().map(|each| each.run(&Request::default()).summary.steps).sum::<u64>())
                 / 8.0,
         );
         together.push(shared::cpu(|| Model::run_all(&many, None, None)) / TOGETHER as f64);
@@ -102,10 +102,10 @@ fn flexures() {
         let model = shared::preset("paper", changes);
         let exact = model.run_reference(&Request::default(), REFERENCE).summary.rms_velocity.unwrap();
         for tolerance in [1e-3, 1e-6, 1e-9, 1e-12] {
-            let own = model.with_tolerance(tolerance);
-            let run = own.run(&Request::default()).summary;
+            let tried = model.with_tolerance(tolerance);
+            let run = tried.run(&Request::default()).summary;
             let error = (run.rms_velocity.unwrap() / exact - 1.0).abs();
-            let (alone, together) = alone_and_together(&own);
+            let (alone, together) = alone_and_together(&tried);
             let (alone, together) = (alone * 1e6, together * 1e6);
             println!(
                 "| {name} | {tolerance:.0e} | {error:.1e} | {} | {alone:.0} us | {together:.0} us |",
@@ -130,8 +130,8 @@ fn against_the_cubic() {
         cpu_of(&all, true) / all.len() as f64
     });
     for (what, [cubic, flexures]) in [
-        ("1.1 g, alone", one.map(|own| own.0)),
-        ("1.1 g, among 128 like it", one.map(|own| own.1)),
+        ("1.1 g, alone", one.map(|costs| costs.0)),
+        ("1.1 g, among 128 like it", one.map(|costs| costs.1)),
         ("2001 from 1.1 to 1.102 g, batched", unlike),
     ] {
         println!("| {what} | {:.0} us | {:.0} us | {:.1} |", cubic * 1e6, flexures * 1e6, flexures / cubic);
@@ -163,8 +163,8 @@ fn impacts() {
     println!("\n| restitution | impacts | steps | CPU | a step |");
     println!("| --- | --- | --- | --- | --- |");
     for restitution in ["0", "0.2", "0.36", "0.5", "0.6"] {
-        let own = format!("stops.restitution={restitution}");
-        let model = shared::preset("nominal-cubic", &[&own, "run.tolerance=1e-6", "run.recurrence=false"]);
+        let change = format!("stops.restitution={restitution}");
+        let model = shared::preset("nominal-cubic", &[&change, "run.tolerance=1e-6", "run.recurrence=false"]);
         let run = model.run(&Request::default()).summary;
         let (alone, _) = alone_and_together(&model);
         let (cpu, step) = (alone * 1e6, alone * 1e9 / run.steps as f64);
@@ -286,8 +286,9 @@ fn compliant() {
     println!("| --- | --- | --- | --- | --- | --- |");
     let stops = "stops=Hertz(travel_limit_mm: 1.5, radius_mm: 5, young_gpa: 69, loss_s_per_m: 4.854)";
     for tolerance in ["1e-3", "1e-6", "1e-9"] {
-        let own = format!("run.tolerance={tolerance}");
-        let of = |changes: &[&str]| cells(&shared::changed("paper", &[changes, &[&own]].concat()), (7, 11));
+        let change = format!("run.tolerance={tolerance}");
+        let of =
+            |changes: &[&str]| cells(&shared::changed("paper", &[changes, &[&change]].concat()), (7, 11));
         let (rigid, compliant) = (of(&["run.recurrence=false"]), of(&[stops]));
         let runs = |models: &[Model]| {
             let run = |model: &Model| model.run(&Request::default()).summary;
@@ -296,8 +297,8 @@ fn compliant() {
         let moves: Vec<bool> = runs(&compliant).iter().map(|run| run.regime.name() != "rest").collect();
         for moving in [true, false] {
             let some = |models: &[Model]| {
-                let own = models.iter().zip(&moves).filter(|(_, moves)| **moves == moving);
-                own.map(|(model, _)| model.clone()).collect::<Vec<_>>()
+                let chosen = models.iter().zip(&moves).filter(|(_, moves)| **moves == moving);
+                chosen.map(|(model, _)| model.clone()).collect::<Vec<_>>()
             };
             let (rigid, compliant) = (some(&rigid), some(&compliant));
             let steps: u64 = runs(&compliant).iter().map(|run| run.steps).sum();

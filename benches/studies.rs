@@ -52,11 +52,11 @@ fn spectra() {
     let (k, m, c, w) = (40.0, linear.mass(), linear.damping(), TAU * 3.0);
     let exact = m * STANDARD_GRAVITY / (k - m * w * w).hypot(c * w);
     row("spectrum", "linear spring, 30 periods", "its response", || {
-        let own = spectrum(&linear, &plain, &task).unwrap().table;
-        let amplitude = own.numbers("amplitude").unwrap();
-        amplitude.iter().enumerate().fold(0.0, |worst: f64, (line, own)| {
+        let table = spectrum(&linear, &plain, &task).unwrap().table;
+        let amplitude = table.numbers("amplitude").unwrap();
+        amplitude.iter().enumerate().fold(0.0, |worst: f64, (line, height)| {
             let exact_here = if line == 30 { exact } else { 0.0 };
-            worst.max((own - exact_here).abs() / exact)
+            worst.max((height - exact_here).abs() / exact)
         })
     });
     let chaos = shared::preset("duffing-chaos", &[]);
@@ -67,8 +67,8 @@ fn spectra() {
             taper: Some(interwell::numeric::Taper::None),
             ..plain
         };
-        let own = spectrum(&chaos, &options, &task).unwrap().table;
-        let (frequency, density) = (own.numbers("frequency_hz").unwrap(), own.numbers("psd").unwrap());
+        let table = spectrum(&chaos, &options, &task).unwrap().table;
+        let (frequency, density) = (table.numbers("frequency_hz").unwrap(), table.numbers("psd").unwrap());
         ((density.iter().sum::<f64>() * frequency[1]).sqrt() / rms - 1.0).abs()
     });
 }
@@ -125,13 +125,13 @@ fn branches() {
     let grazing = (1.0 - w * w).hypot(c * w) / STANDARD_GRAVITY;
     row("orbit --branch", "`impact-oscillator`, 166 motions past a grazing", "the grazing", || {
         over("impact-oscillator", (0.05, 0.06), &|found| {
-            let at = found.events.iter().position(|own| *own == Some(BranchEvent::Grazing)).unwrap();
+            let at = found.events.iter().position(|event| *event == Some(BranchEvent::Grazing)).unwrap();
             (found.values[at] / grazing - 1.0).abs()
         })
     });
     row("orbit --branch", "`duffing`, 0.1 to 1 g, 195 motions", "the product of the multipliers", || {
         over("duffing", (0.1, 1.0), &|found| {
-            let of = |own: &Orbit| (own.jacobian.determinant() / own.determinant() - 1.0).abs();
+            let of = |orbit: &Orbit| (orbit.jacobian.determinant() / orbit.determinant() - 1.0).abs();
             found.orbits.iter().map(of).fold(0.0, f64::max)
         })
     });
@@ -184,12 +184,12 @@ fn diagrams() {
     let exact = -m * STANDARD_GRAVITY * re / (re * re + im * im);
     let problem = "linear spring, 400 amplitudes of 300 periods";
     row("section --over", problem, "its response", || {
-        let own = diagram("monostable", &changes);
-        let rows = own.numbers("amplitude_g").unwrap().iter().zip(own.numbers("x_m").unwrap());
+        let table = diagram("monostable", &changes);
+        let rows = table.numbers("amplitude_g").unwrap().iter().zip(table.numbers("x_m").unwrap());
         rows.fold(0.0, |worst: f64, (g, x)| worst.max((x / (exact * g) - 1.0).abs()))
     });
     let far = |a: &Table, b: &Table| {
-        let [a, b] = [a, b].map(|own| own.numbers("x_m").unwrap());
+        let [a, b] = [a, b].map(|table| table.numbers("x_m").unwrap());
         a.iter().zip(b).fold(0.0, |worst: f64, (a, b)| worst.max((a - b).abs() / 1.5e-3))
     };
     let fine = diagram("paper", &["run.tolerance=1e-13"]);
@@ -217,10 +217,10 @@ fn maps() {
     let one = Pool::new(1).unwrap();
     let fine = basins("run.tolerance=1e-13", 200, &one);
     row("basins", "`paper` at 0.7 g, 40 000 starts", "the share of others at 1e-13", || {
-        let own = basins("run.tolerance=1e-9", 200, &one);
-        let to = |answer: &Answer, row: usize| answer.rows[row].map(|own| own.0);
-        let others = (0..own.rows.len()).filter(|row| to(&own, *row) != to(&fine, *row)).count();
-        others as f64 / own.rows.len() as f64
+        let coarse = basins("run.tolerance=1e-9", 200, &one);
+        let to = |answer: &Answer, row: usize| answer.rows[row].map(|end| end.0);
+        let others = (0..coarse.rows.len()).filter(|row| to(&coarse, *row) != to(&fine, *row)).count();
+        others as f64 / coarse.rows.len() as f64
     });
 }
 
@@ -250,7 +250,7 @@ fn threshold_of(pool: &Pool) {
 fn lessons(pool: &Pool) {
     let all = interwell::scene::lesson::LESSONS;
     let load = |name: &str| interwell::scene::lesson::LessonDocument::load(name, &result_fields()).unwrap();
-    let documents: Vec<_> = all.iter().map(|own| load(own.name)).collect();
+    let documents: Vec<_> = all.iter().map(|lesson| load(lesson.name)).collect();
     let never = AtomicBool::new(false);
     let task = Task { tick: &|| (), cancel: &never };
     let check = |(): &mut (), number: usize| check_lesson(&documents[number], Some(pool), &task);
@@ -292,10 +292,10 @@ fn jobs() {
     for (name, work) in studies.iter().filter(|_| shared::is_measured()) {
         let mut times: [(Vec<f64>, Vec<f64>); 2] = Default::default();
         for _ in 0..JOBS_ROUNDS {
-            for (pool, own) in pools.iter().zip(&mut times) {
+            for (pool, spent) in pools.iter().zip(&mut times) {
                 let (wall, run) = shared::wall(|| work(pool));
-                own.0.push(wall);
-                own.1.push(run);
+                spent.0.push(wall);
+                spent.1.push(run);
             }
         }
         let [one, two] =

@@ -139,14 +139,14 @@ impl Problem {
                     let sum = if k == 0 {
                         if DRIVEN { force + a[k] } else { force }
                     } else {
-                        let own = stiffness * y[k];
+                        let spring = stiffness * y[k];
                         match k {
                             1 => {}
                             2 => row[1] = bending * y[1],
                             _ => row[k - 1] = bending * y[k - 1] + cubic * inner_square(&y, k - 1),
                         }
                         let rest = inner_convolve(&y, &row, k);
-                        (if DRIVEN { rest + a[k] } else { rest }) + own
+                        (if DRIVEN { rest + a[k] } else { rest }) + spring
                     };
                     y[k + 2] = -(sum + drag) * inverse[k + 2];
                 },

@@ -56,11 +56,11 @@ pub fn wall<R>(work: impl FnOnce() -> R) -> (f64, f64) {
 fn run_and_waited() -> (f64, f64) {
     let of = |entry: std::io::Result<std::fs::DirEntry>| {
         let text = std::fs::read_to_string(entry.ok()?.path().join("schedstat")).ok()?;
-        let mut numbers = text.split(' ').map_while(|own| own.parse::<f64>().ok());
+        let mut numbers = text.split(' ').map_while(|word| word.parse::<f64>().ok());
         numbers.next().zip(numbers.next())
     };
     let threads = std::fs::read_dir("/proc/self/task").into_iter().flatten().filter_map(of);
-    threads.fold((0.0, 0.0), |sum, own| (sum.0 + own.0, sum.1 + own.1))
+    threads.fold((0.0, 0.0), |sum, thread| (sum.0 + thread.0, sum.1 + thread.1))
 }
 
 /// The median of some numbers; sorts them.

@@ -77,8 +77,8 @@ fn progress_is_told_part_by_part() {
     assert_eq!(report.cases.iter().map(|case| case.0).collect::<Vec<_>>(), ["grazing", "shock"]);
     // the program's own method reaches all digits and follows its tolerance, the others as theirs allow
     let best = |method: &str| {
-        let own = report.points.iter().filter(|point| point.method == method);
-        own.map(|point| point.error).fold(f64::INFINITY, f64::min)
+        let points = report.points.iter().filter(|point| point.method == method);
+        points.map(|point| point.error).fold(f64::INFINITY, f64::min)
     };
     assert!(best("Taylor series") < 1e-14 && best("RK4") < 1e-11 && best("Dormand-Prince 5(4)") < 1e-11);
     assert!(best("velocity Verlet") < 1e-6 && best("semi-implicit Euler") < 1e-4);
@@ -176,29 +176,29 @@ fn the_adaptive_method_follows_its_tolerance_and_locates_impacts() {
     let model = smooth();
     let exact = run(&model).summary;
     let error = |tolerance: f64| {
-        let own = dormand_prince(&model, tolerance, &Request::default()).statistics;
-        let x = (own.final_x - exact.final_x).abs();
-        x.max((own.rms_velocity.unwrap() / exact.rms_velocity.unwrap() - 1.0).abs())
+        let found = dormand_prince(&model, tolerance, &Request::default()).statistics;
+        let x = (found.final_x - exact.final_x).abs();
+        x.max((found.rms_velocity.unwrap() / exact.rms_velocity.unwrap() - 1.0).abs())
     };
     for tolerance in [1e-4, 1e-6, 1e-8, 1e-10] {
         assert!(error(tolerance) < 20.0 * tolerance, "{tolerance:e}: {:e}", error(tolerance));
     }
     // P2 to 1e-10: the impacts above 1 cm/s, the crossings and the RMS velocity are those of the program
     let model = preset("nominal-cubic", &["run.tolerance=1e-12"]);
-    let (own, exact) =
+    let (adaptive, exact) =
         (dormand_prince(&model, 1e-12, &Request { events: true, ..Request::default() }), run(&model));
     let hard = |impacts: &[interwell::dynamics::Event]| -> Vec<_> {
         impacts.iter().filter(|e| e.v_in.abs() > 1e-2).map(|e| (e.t, e.side)).collect()
     };
     let exact_impacts = of_kind(&exact, interwell::dynamics::EventKind::Impact);
-    let (a, b) = (hard(&own.impacts), hard(&exact_impacts));
+    let (a, b) = (hard(&adaptive.impacts), hard(&exact_impacts));
     assert!(a.len() == b.len() && a.len() > 200);
     for (a, b) in a.iter().zip(&b) {
         assert_eq!(a.1, b.1);
         near(a.0, b.0, 1e-10);
     }
-    assert_eq!(own.statistics.crossings, exact.summary.total_crossings);
-    near_relative(own.statistics.rms_velocity.unwrap(), exact.summary.rms_velocity.unwrap(), 1e-10);
+    assert_eq!(adaptive.statistics.crossings, exact.summary.total_crossings);
+    near_relative(adaptive.statistics.rms_velocity.unwrap(), exact.summary.rms_velocity.unwrap(), 1e-10);
 }
 
 #[test]
@@ -210,12 +210,12 @@ fn samples_lie_on_the_path_and_end_with_it() {
     let keep = Request { sample_times: &times, events: true, ..Request::default() };
     let all: [MethodRun; 2] =
         [fixed_step(&model, Scheme::RungeKutta4, 1e-4, &keep), dormand_prince(&model, 1e-8, &keep)];
-    for own in &all {
-        assert_eq!(own.samples.iter().map(|s| s.t).collect::<Vec<_>>(), times);
-        assert!(own.samples.iter().all(|s| s.x.abs() <= 1.5e-3 + 1e-15));
-        assert_eq!(own.samples.last().unwrap().x, own.statistics.final_x);
-        assert_eq!(own.statistics.ended_at, None);
-        near(own.samples[7].base_accel, 9.80665 * (TAU * 3.0 * 0.08).sin(), 1e-12);
+    for run in &all {
+        assert_eq!(run.samples.iter().map(|s| s.t).collect::<Vec<_>>(), times);
+        assert!(run.samples.iter().all(|s| s.x.abs() <= 1.5e-3 + 1e-15));
+        assert_eq!(run.samples.last().unwrap().x, run.statistics.final_x);
+        assert_eq!(run.statistics.ended_at, None);
+        near(run.samples[7].base_accel, 9.80665 * (TAU * 3.0 * 0.08).sin(), 1e-12);
     }
     let rests = all[1].samples.iter().filter(|s| s.phase != Phase::Free).count();
     assert!(rests > 100, "{rests}");
@@ -225,18 +225,18 @@ fn samples_lie_on_the_path_and_end_with_it() {
 fn a_run_that_leaves_the_curve_or_is_told_to_stop_says_so() {
     // 20 m/s outward: the flexures' curve ends a millimetre on
     let model = preset("paper", &["stops=None", "start=At(x_mm: 7, v_m_per_s: 20)"]);
-    for own in [
+    for run in [
         fixed_step(&model, Scheme::VelocityVerlet, 1e-5, &Request::default()),
         dormand_prince(&model, 1e-8, &Request::default()),
     ] {
-        let ended = own.statistics.ended_at.unwrap();
+        let ended = run.statistics.ended_at.unwrap();
         assert!(ended < 1e-3, "{ended}");
-        assert_eq!(own.statistics.rms_velocity, None);
+        assert_eq!(run.statistics.rms_velocity, None);
     }
     let cancel = AtomicBool::new(true);
     let keep = Request { cancel: Some(&cancel), ..Request::default() };
-    let own = fixed_step(&smooth(), Scheme::RungeKutta4, 1e-6, &keep);
-    assert!(own.statistics.ended_at.is_some_and(|t| t < 0.1));
-    let own = dormand_prince(&preset("duffing-chaos", &[]), 1e-10, &keep);
-    assert!(own.statistics.ended_at.is_some());
+    let run = fixed_step(&smooth(), Scheme::RungeKutta4, 1e-6, &keep);
+    assert!(run.statistics.ended_at.is_some_and(|t| t < 0.1));
+    let run = dormand_prince(&preset("duffing-chaos", &[]), 1e-10, &keep);
+    assert!(run.statistics.ended_at.is_some());
 }

@@ -68,14 +68,15 @@ fn early_and_late_are_counted_and_more_impacts_are_explained() {
     let model = preset("nominal-cubic", &[]);
     let [coarse, fine] = [1.0 / 240.0, 1.0 / 600.0].map(|step| stepped(&model, Scheme::RungeKutta4, step));
     assert!(fine.stepped.impacts > coarse.stepped.impacts && fine.hops > coarse.hops);
-    for own in [&coarse, &fine] {
+    for report in [&coarse, &fine] {
         assert!(
-            own.hops <= own.stepped.impacts && own.hops + own.exact.impacts > own.stepped.impacts,
-            "{own:?}"
+            report.hops <= report.stepped.impacts
+                && report.hops + report.exact.impacts > report.stepped.impacts,
+            "{report:?}"
         );
-        let words = own.sentences().join(" ");
+        let words = report.sentences().join(" ");
         assert!(
-            words.contains(&format!("{} of them are hops of a mass that truly rests", own.hops)),
+            words.contains(&format!("{} of them are hops of a mass that truly rests", report.hops)),
             "{words}"
         );
     }
@@ -106,13 +107,13 @@ fn an_error_is_estimated_that_is_known_otherwise() {
     // Against double-double arithmetic: the estimate is the error, give or take.
     for name in ["paper", "nominal-cubic", "monostable", "walking", "random-shaking"] {
         let model = preset(name, &[]);
-        let own = trusted(&model);
-        assert_eq!(own.course, Course::Kept, "{name}");
-        assert_eq!((own.tolerances, own.span), ((1e-9, 1e-9 * 1e-2), model.duration()), "{name}");
-        assert!(own.error > 0.0 && own.error < 1e-4 * own.travel, "{name} {own:?}");
-        let words = own.short(0.0).unwrap();
+        let trust = trusted(&model);
+        assert_eq!(trust.course, Course::Kept, "{name}");
+        assert_eq!((trust.tolerances, trust.span), ((1e-9, 1e-9 * 1e-2), model.duration()), "{name}");
+        assert!(trust.error > 0.0 && trust.error < 1e-4 * trust.travel, "{name} {trust:?}");
+        let words = trust.short(0.0).unwrap();
         assert!(words.starts_with("Error about ") && words.ends_with(" mm"), "{words}");
-        let (words, span) = (own.long(0.0), model.duration());
+        let (words, span) = (trust.long(0.0), model.duration());
         assert!(words.ends_with(&format!("mm over {span:.0} s from the start.")), "{words}");
     }
     let model = preset("paper", &[]);
@@ -139,11 +140,11 @@ fn chaos_is_called_chaos_and_nothing_else_is() {
     assert!(matches!(trusted(&preset("first-look", &[])).course, Course::Chaotic { .. }));
     // whatever the tolerance, and a tolerance that is only too large is none
     for tolerance in ["1e-3", "1e-5", "1e-7", "1e-12"] {
-        let own = trusted(&preset(
+        let judged = trusted(&preset(
             "duffing-chaos",
             &["run.duration_s=1000", &format!("run.tolerance={tolerance}")],
         ));
-        assert!(matches!(own.course, Course::Chaotic { .. }), "{tolerance}: {own:?}");
+        assert!(matches!(judged.course, Course::Chaotic { .. }), "{tolerance}: {judged:?}");
     }
     let coarse = trusted(&preset("paper-unconstrained", &["run.tolerance=1e-3"]));
     assert!(!matches!(coarse.course, Course::Chaotic { .. }), "{coarse:?}");
@@ -152,7 +153,7 @@ fn chaos_is_called_chaos_and_nothing_else_is() {
     let trust: Vec<f64> = runs.iter().map(|run| run.trusted.unwrap()).collect();
     assert!(trust.is_sorted() && trust[3] < 6.0 * trust[0], "{trust:?}");
     let rms: Vec<f64> = runs.iter().map(|run| run.statistics.rms_velocity.unwrap()).collect();
-    assert!(rms.iter().all(|own| (own / rms[3] - 1.0).abs() < 0.1), "{rms:?}");
+    assert!(rms.iter().all(|value| (value / rms[3] - 1.0).abs() < 0.1), "{rms:?}");
     // a rhythm is none
     assert_eq!(trusted(&preset("duffing", &[])).course, Course::Kept);
 }
@@ -165,22 +166,22 @@ fn on_the_hill_it_is_sensitive_and_not_chaotic() {
         "start: At(x_mm: 1414.2135623730951, v_m_per_s: 0), run: (duration_s: 100, settle_s: 0, \
          tolerance: 1e-9)",
     );
-    let own = trusted(&top);
-    assert!(matches!(own.course, Course::Sensitive { until } if until > 5.0 && until < 40.0), "{own:?}");
+    let trust = trusted(&top);
+    assert!(matches!(trust.course, Course::Sensitive { until } if until > 5.0 && until < 40.0), "{trust:?}");
     // errors that add up are no chaos either: an undamped swing in a fine well, slowly out of step
     let swing = unit_well(
         "start: At(x_mm: 1300, v_m_per_s: 0), run: (duration_s: 20000, settle_s: 0, tolerance: 1e-3)",
     );
-    let own = trusted(&swing);
-    assert!(matches!(own.course, Course::Coarse { .. } | Course::Kept), "{own:?}");
+    let trust = trusted(&swing);
+    assert!(matches!(trust.course, Course::Coarse { .. } | Course::Kept), "{trust:?}");
 }
 
 #[test]
 fn digits_cost_time() {
     let model = preset("paper", &["run.tolerance=1e-7"]);
     let found = at_tolerances(&model);
-    let own: Vec<f64> = found.runs.iter().map(|run| run.tolerance).collect();
-    assert_eq!(own, [1e-3, 1e-6, 1e-7, 1e-9, 1e-12]);
+    let tolerances: Vec<f64> = found.runs.iter().map(|run| run.tolerance).collect();
+    assert_eq!(tolerances, [1e-3, 1e-6, 1e-7, 1e-9, 1e-12]);
     assert!(found.runs.is_sorted_by(|a, b| a.error > b.error && a.statistics.steps <= b.statistics.steps));
     assert!(found.runs.iter().all(|run| run.trusted.is_none() && run.statistics.cpu_s > 0.0));
     assert!(found.runs[0].error < TRUSTED_SHARE * found.travel);

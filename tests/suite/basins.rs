@@ -66,9 +66,9 @@ fn the_border_without_a_drive_is_the_stable_manifold_of_the_saddle() {
             let v = border(x_mm / 1e3).abs();
             let sign = -f64::signum(x_mm);
             let ends = [sign * v * (1.0 - share), sign * v * (1.0 + share)];
-            let [own, over] = ends.map(|v| map(&document, (x_mm, x_mm, 1), (v, v, 1)).1);
+            let [under, over] = ends.map(|v| map(&document, (x_mm, x_mm, 1), (v, v, 1)).1);
             // too slow to pass the top, and fast enough
-            near(attractor(&own, 0).states[0].0, f64::signum(x_mm), 1e-9);
+            near(attractor(&under, 0).states[0].0, f64::signum(x_mm), 1e-9);
             near(attractor(&over, 0).states[0].0, -f64::signum(x_mm), 1e-9);
         }
     }
@@ -79,10 +79,10 @@ fn below_the_barrier_no_start_leaves_its_well_and_the_saddle_attracts_none() {
     let document = well("damping: Coefficient(c_n_s_per_m: 0.02), run: (duration_s: 10)");
     let (basins, answer) = map(&document, (-1500.0, 1500.0, 21), (-0.8, 0.8, 17));
     assert_eq!((answer.attractors.len(), answer.outside, answer.lost), (2, 0, 0));
-    for own in &answer.attractors {
-        assert_eq!((own.regime.name(), own.period), ("rest", None));
-        near(own.states[0].0.abs(), 1.0, 1e-9);
-        near(own.states[0].1, 0.0, 1e-9);
+    for attractor in &answer.attractors {
+        assert_eq!((attractor.regime.name(), attractor.period), ("rest", None));
+        near(attractor.states[0].0.abs(), 1.0, 1e-9);
+        near(attractor.states[0].1, 0.0, 1e-9);
     }
     let mut below = 0;
     for row in 0..basins.starts().count() {
@@ -135,7 +135,7 @@ fn the_basins_half_a_period_later_are_the_mirror_image() {
         let (here, there) = (attractor(&now.1, row), attractor(&later.1, mirrored));
         assert_eq!((here.period, here.states.len()), (there.period, there.states.len()));
         let same = |a: &(f64, f64), b: &(f64, f64)| (a.0 + b.0).abs().max((a.1 + b.1).abs()) < 1e-7;
-        assert!(here.states.iter().all(|own| there.states.iter().any(|other| same(own, other))));
+        assert!(here.states.iter().all(|state| there.states.iter().any(|other| same(state, other))));
         assert_eq!(now.1.rows[row].unwrap().1, later.1.rows[mirrored].unwrap().1);
     }
 }
@@ -154,9 +154,9 @@ fn each_start_goes_where_a_run_of_its_own_goes() {
             let (x_mm, v) = basins.starts().at(row);
             let model = basins.model().with_start((x_mm / 1e3, v));
             let end = model.with_duration(300.0 * period, 0.0).run(&Request::default()).summary;
-            let own = attractor(&answer, row);
+            let reached = attractor(&answer, row);
             let distance = |state: &(f64, f64)| (state.0 - end.final_x).hypot(state.1 - end.final_v);
-            let least = own.states.iter().map(distance).fold(f64::INFINITY, f64::min);
+            let least = reached.states.iter().map(distance).fold(f64::INFINITY, f64::min);
             assert!(least < 1e-6, "{amplitude} {row}: {least:e}");
         }
     }
@@ -170,14 +170,14 @@ fn with_stops_every_start_gives_the_same_states_to_the_last_bit() {
     let [only] = answer.attractors.as_slice() else { panic!("{:?}", answer.attractors) };
     assert_eq!((only.starts, only.period, only.regime.name()), (143, Some(1), "interwell"));
     let period = basins.model().forcing_period().unwrap();
-    let times: Vec<f64> = (4..24).map(|own| f64::from(own) * period).collect();
+    let times: Vec<f64> = (4..24).map(|cycle| f64::from(cycle) * period).collect();
     let states = |row: usize| {
         let (x_mm, v) = basins.starts().at(row);
         let model = basins.model().with_start((x_mm / 1e3, v)).with_recurrence(false);
         let run = model
             .with_duration(25.0 * period, 0.0)
             .run(&Request { sample_times: &times, ..Request::default() });
-        run.samples.iter().map(|own| (own.x.to_bits(), own.v.to_bits())).collect::<Vec<_>>()
+        run.samples.iter().map(|sample| (sample.x.to_bits(), sample.v.to_bits())).collect::<Vec<_>>()
     };
     let first = states(0);
     assert_eq!(first.len(), times.len());
@@ -195,9 +195,9 @@ fn a_mass_that_nothing_frees_rests_on_the_stop_that_it_falls_to() {
         assert_eq!(answer.attractors.len(), 2, "{drive}");
         for row in 0..8 {
             let x = basins.starts().at(row).0;
-            let own = attractor(&answer, row);
+            let reached = attractor(&answer, row);
             assert_eq!(
-                (own.regime.name(), own.states.as_slice()),
+                (reached.regime.name(), reached.states.as_slice()),
                 ("rest", &[(1.5e-3 * x.signum(), 0.0)][..])
             );
         }
@@ -209,10 +209,10 @@ fn a_mass_that_nothing_frees_rests_on_the_stop_that_it_falls_to() {
 fn a_motion_that_passes_a_kink_is_known_by_an_ellipse() {
     let document = Document::load("paper-unconstrained").unwrap();
     let (_, answer) = map(&document, (-8.0, 8.0, 9), (-0.6, 0.6, 7));
-    let longest = answer.rows.iter().flatten().map(|own| own.1).max();
+    let longest = answer.rows.iter().flatten().map(|start| start.1).max();
     assert!(answer.undecided == 0 && longest < Some(300), "{longest:?} {}", answer.undecided);
-    assert!(answer.attractors.iter().all(|own| own.period == Some(1)), "{:?}", answer.attractors);
-    let sides = answer.attractors.iter().filter(|own| own.regime.name() == "intrawell").count();
+    assert!(answer.attractors.iter().all(|attractor| attractor.period == Some(1)), "{:?}", answer.attractors);
+    let sides = answer.attractors.iter().filter(|attractor| attractor.regime.name() == "intrawell").count();
     assert_eq!(sides, 2);
 }
 
@@ -224,7 +224,7 @@ fn an_irregular_attractor_is_one() {
     let [only] = answer.attractors.as_slice() else { panic!("{:?}", answer.attractors) };
     assert_eq!((only.regime.name(), only.period, only.starts), ("irregular", None, 169));
     // it is entered, and nobody waits for a verdict
-    assert!(answer.rows.iter().flatten().all(|own| own.1 < 60), "{:?}", answer.rows);
+    assert!(answer.rows.iter().flatten().all(|start| start.1 < 60), "{:?}", answer.rows);
 }
 
 #[test]
@@ -233,13 +233,13 @@ fn a_pursuit_has_the_same_bits_in_any_number_of_lanes() {
         let (x, v) = (model.scales().length, model.scales().speed);
         let limit = model.stop_positions().1.unwrap_or(x);
         let pursuits: Vec<Pursuit> = (0..40)
-            .map(|own| Pursuit {
-                start: (limit * (f64::from(own) / 20.0 - 1.0), v * f64::from(own % 7 - 3) / 7.0),
+            .map(|number| Pursuit {
+                start: (limit * (f64::from(number) / 20.0 - 1.0), v * f64::from(number % 7 - 3) / 7.0),
                 known: &[],
                 regions: &[],
                 repeats_from: 0,
                 max_periods: 60,
-                releases: own as u32 % 3,
+                releases: number as u32 % 3,
                 max_work: u64::MAX,
             })
             .collect();
@@ -254,8 +254,8 @@ fn a_pursuit_has_the_same_bits_in_any_number_of_lanes() {
         };
         let alone = texts(model.pursue_in_lanes(&pursuits, 1).unwrap());
         for width in [4, 8, 16] {
-            if let Some(own) = model.pursue_in_lanes(&pursuits, width) {
-                assert_eq!(texts(own), alone, "{width}");
+            if let Some(found) = model.pursue_in_lanes(&pursuits, width) {
+                assert_eq!(texts(found), alone, "{width}");
             }
         }
         let released = alone.iter().any(|text| text.contains("Released"));
@@ -272,9 +272,9 @@ fn a_pursuit_comes_to_the_first_release_of_the_run() {
         let model = preset("paper", &[&amplitude, &restitution]).with_recurrence(false);
         let period = model.forcing_period().unwrap();
         let mut released = 0;
-        for own in 0..60_u32 {
-            let start = (1.5e-3 * (f64::from(own) / 30.0 - 1.0), f64::from(own % 11) / 10.0 - 0.5);
-            let (known, regions, repeats_from, releases) = (&[], &[], u64::MAX, own % 2);
+        for number in 0..60_u32 {
+            let start = (1.5e-3 * (f64::from(number) / 30.0 - 1.0), f64::from(number % 11) / 10.0 - 0.5);
+            let (known, regions, repeats_from, releases) = (&[], &[], u64::MAX, number % 2);
             let max_work = u64::MAX;
             let pursuit =
                 Pursuit { start, known, regions, repeats_from, max_periods: 60, releases, max_work };
@@ -284,8 +284,8 @@ fn a_pursuit_comes_to_the_first_release_of_the_run() {
                 events.iter().filter(|event| event.kind == EventKind::Release).nth(releases as usize);
             let arrival = &model.pursue_in_lanes(&[pursuit], 1).unwrap()[0].arrival;
             if let (Some(release), Arrival::Released { identity, periods }) = (release, arrival) {
-                assert_eq!(identity.side, release.side, "{own}");
-                assert_eq!(*periods, (release.t / period).ceil() as u64, "{own}");
+                assert_eq!(identity.side, release.side, "{number}");
+                assert_eq!(*periods, (release.t / period).ceil() as u64, "{number}");
                 released += 1;
             }
         }
@@ -326,8 +326,8 @@ fn levels_come_coarse_first_and_end_in_the_same_map() {
     let mut known = Vec::new();
     while !basins.is_whole() {
         assert!(basins.run_level(&pool, &task));
-        let own = basins.answer(&task).unwrap();
-        known.push(own.rows.iter().flatten().count());
+        let partial = basins.answer(&task).unwrap();
+        known.push(partial.rows.iter().flatten().count());
     }
     assert_eq!(known, [3 * 2, 5 * 3, 9 * 5, 17 * 9]);
     assert_eq!(basins.answer(&task).unwrap(), Answer { sure: Vec::new(), ..answer });

@@ -56,18 +56,18 @@ fn at_most(name: &str, limit: f64) -> Constraint {
 /// 1/sqrt(1 + Q^2 (r - 1/r)^2).
 #[test]
 fn a_linear_oscillator_is_fastest_at_its_own_frequency() {
-    let own = found_by(&question(&linear(), ("excitation.frequency_hz", 1.0, 4.0), 64), 2).unwrap();
-    assert_eq!(own.optimum.at, [2.0]);
+    let best = found_by(&question(&linear(), ("excitation.frequency_hz", 1.0, 4.0), 64), 2).unwrap();
+    assert_eq!(best.optimum.at, [2.0]);
     let w0 = 4.0 * std::f64::consts::PI;
-    near_relative(own.optimum.value, 1.0 / (2.0 * 0.1 * w0) / 2.0_f64.sqrt(), 1e-8);
+    near_relative(best.optimum.value, 1.0 / (2.0 * 0.1 * w0) / 2.0_f64.sqrt(), 1e-8);
     let half = 0.5 * (1.0 / 0.81 - 1.0_f64).sqrt() / 5.0;
-    let [low, high] = own.margins[0].map(Option::unwrap);
-    let resolution = own.resolution[0];
+    let [low, high] = best.margins[0].map(Option::unwrap);
+    let resolution = best.resolution[0];
     assert_eq!(resolution, 5e-4);
     near(high, 2.0 * (half + (1.0 + half * half).sqrt()) - 2.0, 2.0 * resolution);
     near(low, 2.0 - 2.0 * ((1.0 + half * half).sqrt() - half), 2.0 * resolution);
-    assert!(!own.at_border[0] && !own.flat);
-    assert_eq!((own.spread.worst, own.stepped_back.is_none()), (own.optimum.value, true));
+    assert!(!best.at_border[0] && !best.flat);
+    assert_eq!((best.spread.worst, best.stepped_back.is_none()), (best.optimum.value, true));
 }
 
 /// Less damping is faster, down to the end of the range, or to where the displacement A m/(c w0) has its
@@ -77,17 +77,17 @@ fn a_border_and_a_constraint_end_the_search_where_they_are() {
     let mut document = linear();
     document.set("damping=Coefficient(c_n_s_per_m: 1)").unwrap();
     let mut asked = question(&document, ("damping.c_n_s_per_m", 2.0, 12.0), 50);
-    let own = found_by(&asked, 2).unwrap();
-    assert_eq!((&own.optimum.at[..], own.at_border[0], own.margins[0][0]), (&[2.0][..], true, None));
+    let best = found_by(&asked, 2).unwrap();
+    assert_eq!((&best.optimum.at[..], best.at_border[0], best.margins[0][0]), (&[2.0][..], true, None));
     // a tenth is lost where c is a ninth larger
-    near(own.margins[0][1].unwrap(), 2.0 / 9.0, 2.0 * own.resolution[0]);
+    near(best.margins[0][1].unwrap(), 2.0 / 9.0, 2.0 * best.resolution[0]);
     let limit = 0.02;
     asked.subject_to = vec![at_most("max_abs_x_m", limit)];
-    let own = found_by(&asked, 2).unwrap();
+    let best = found_by(&asked, 2).unwrap();
     let exact = 1.0 / (limit * 4.0 * std::f64::consts::PI);
-    assert!(own.optimum.at[0] >= exact && own.optimum.at[0] - exact <= own.resolution[0], "{own:?}");
-    assert!(!own.at_border[0]);
-    assert!(own.margins[0][0].unwrap() <= 2.0 * own.resolution[0], "{own:?}");
+    assert!(best.optimum.at[0] >= exact && best.optimum.at[0] - exact <= best.resolution[0], "{best:?}");
+    assert!(!best.at_border[0]);
+    assert!(best.margins[0][0].unwrap() <= 2.0 * best.resolution[0], "{best:?}");
     asked.subject_to = vec![at_most("max_abs_x_m", 1e-3)];
     let Err(NoBest::NoneMeets { nearest, results }) = found_by(&asked, 2) else { panic!() };
     assert_eq!(nearest, [12.0]);
@@ -102,10 +102,10 @@ fn the_best_limits_of_the_prototype_are_those_of_its_maps() {
         [(0.8, 1.56, 46.0, 0.112), (1.0, 2.02, 58.0, 0.152), (1.2, 2.55, 72.0, 0.21)]
     {
         let document = changed("paper", &[&format!("excitation.amplitude_g={amplitude}")]);
-        let own = found_by(&question(&document, ("stops.travel_limit_mm", 0.5, 4.0), 128), 2).unwrap();
-        near(own.optimum.at[0], limit, 0.01);
-        near(1e3 * own.optimum.value, speed, 0.6);
-        near(own.margins[0][1].unwrap(), to_cliff, 2e-3);
+        let best = found_by(&question(&document, ("stops.travel_limit_mm", 0.5, 4.0), 128), 2).unwrap();
+        near(best.optimum.at[0], limit, 0.01);
+        near(1e3 * best.optimum.value, speed, 0.6);
+        near(best.margins[0][1].unwrap(), to_cliff, 2e-3);
     }
     let request = Request { until_settled: Some(600.0), ..Request::default() };
     let open = preset("paper-unconstrained", &["excitation.amplitude_g=1.3"]).run(&request).summary;
@@ -116,17 +116,17 @@ fn the_best_limits_of_the_prototype_are_those_of_its_maps() {
 #[test]
 fn the_distance_to_the_cliff_is_that_of_a_fine_sweep() {
     let document = changed("paper", &[]);
-    let own = found_by(&question(&document, ("stops.travel_limit_mm", 0.5, 3.0), 100), 2).unwrap();
-    let unit = own.resolution[0];
+    let best = found_by(&question(&document, ("stops.travel_limit_mm", 0.5, 3.0), 100), 2).unwrap();
+    let unit = best.resolution[0];
     let speed = |limit: f64| {
         let change = format!("stops.travel_limit_mm={limit}");
         preset("paper", &[&change]).run(&Request::default()).summary.rms_velocity.unwrap()
     };
-    let place = |i: i32| ((own.optimum.at[0] / unit).round() + f64::from(i)) / (1.0 / unit).round();
-    assert_eq!(speed(place(0)), own.optimum.value);
-    let falls = (1..500).find(|i| speed(place(*i)) < 0.9 * own.optimum.value).unwrap();
-    near(own.margins[0][1].unwrap(), unit * f64::from(falls), 1e-9);
-    assert!((-20..falls).all(|i| speed(place(i)) <= own.optimum.value));
+    let place = |i: i32| ((best.optimum.at[0] / unit).round() + f64::from(i)) / (1.0 / unit).round();
+    assert_eq!(speed(place(0)), best.optimum.value);
+    let falls = (1..500).find(|i| speed(place(*i)) < 0.9 * best.optimum.value).unwrap();
+    near(best.margins[0][1].unwrap(), unit * f64::from(falls), 1e-9);
+    assert!((-20..falls).all(|i| speed(place(i)) <= best.optimum.value));
 }
 
 #[test]
@@ -141,9 +141,9 @@ fn the_mean_over_environments_is_largest_and_each_ones_value_is_there() {
         ))
     };
     asked.environments = vec![shaken(0.8, 1.0), shaken(1.0, 3.0)];
-    let own = found_by(&asked, 2).unwrap();
-    let [weak, strong] = own.optimum.of_each[..] else { panic!("{own:?}") };
-    near_relative(own.optimum.value, (weak + 3.0 * strong) / 4.0, 1e-15);
+    let best = found_by(&asked, 2).unwrap();
+    let [weak, strong] = best.optimum.of_each[..] else { panic!("{best:?}") };
+    near_relative(best.optimum.value, (weak + 3.0 * strong) / 4.0, 1e-15);
     let speed = |limit: f64, amplitude: f64| {
         let changes = [
             "run.duration_s=6".to_owned(),
@@ -154,12 +154,12 @@ fn the_mean_over_environments_is_largest_and_each_ones_value_is_there() {
         model.run(&Request::default()).summary.rms_velocity.unwrap()
     };
     let mean = |limit: f64| (speed(limit, 0.8) + 3.0 * speed(limit, 1.0)) / 4.0;
-    near_relative(mean(own.optimum.at[0]), own.optimum.value, 1e-15);
+    near_relative(mean(best.optimum.at[0]), best.optimum.value, 1e-15);
     for i in 0..=40 {
-        assert!(mean(0.5 + 0.05 * f64::from(i)) <= own.optimum.value, "{i}: {own:?}");
+        assert!(mean(0.5 + 0.05 * f64::from(i)) <= best.optimum.value, "{i}: {best:?}");
     }
     // where both cross
-    assert!(weak > 0.04 && strong > 0.04, "{own:?}");
+    assert!(weak > 0.04 && strong > 0.04, "{best:?}");
     // the weak one alone has no say beside a hundred times the strong one
     asked.environments = vec![shaken(0.8, 1.0), shaken(1.0, 100.0)];
     near(found_by(&asked, 2).unwrap().optimum.at[0], 2.02, 0.03);
@@ -188,8 +188,8 @@ fn the_best_worst_case_is_that_of_all_samples_at_every_place() {
     for (by, inward) in [(0.02, 1.6), (0.1, 1.5), (0.3, 1.0)] {
         let mut asked = question(&document, ("stops.travel_limit_mm", inward, 2.5), 25);
         asked.vary = vec![Variation { field: "excitation.amplitude_g".into(), by, relative: true }];
-        let own = found_by(&asked, 2).unwrap();
-        let (back, spread) = own.stepped_back.clone().unwrap();
+        let best = found_by(&asked, 2).unwrap();
+        let (back, spread) = best.stepped_back.clone().unwrap();
         // of a range that ends at it the optimum is a place of its own, with the same samples
         let spread_at = |limit: f64| {
             let mut fixed = question(&document, ("stops.restitution", 0.35, 0.36), 1);
@@ -203,7 +203,7 @@ fn the_best_worst_case_is_that_of_all_samples_at_every_place() {
         near_relative(spread_at(back.at[0]).worst, spread.worst, 1e-6);
         near_relative(spread_at(back.at[0]).quantile_5, spread.quantile_5, 1e-6);
         for share in [0.05, 0.2, 0.4, 0.7, 1.0] {
-            let other = own.optimum.at[0] - share * (own.optimum.at[0] - inward);
+            let other = best.optimum.at[0] - share * (best.optimum.at[0] - inward);
             let worst = spread_at(other).worst;
             assert!(!(worst > 1.02 * spread.worst), "{by}: {other} {worst} {spread:?}");
         }
@@ -217,13 +217,13 @@ fn two_fields_are_searched_together() {
     document.set("damping=Coefficient(c_n_s_per_m: 2.5)").unwrap();
     let mut asked = question(&document, ("excitation.frequency_hz", 1.0, 4.0), 24);
     asked.over.push(DesignRange::new("mechanism.n_per_m", (100.0, 200.0), 8));
-    let own = found_by(&asked, 2).unwrap();
-    let natural = own.optimum.at[1].sqrt() / std::f64::consts::TAU;
-    near(own.optimum.at[0], natural, 2e-3);
-    near_relative(own.optimum.value, 1.0 / 2.5 / 2.0_f64.sqrt(), 1e-5);
-    assert_eq!(own.margins.len(), 2);
-    let table = own.table(&asked);
-    let columns: Vec<&str> = table.columns().iter().map(|own| own.name.as_str()).collect();
+    let best = found_by(&asked, 2).unwrap();
+    let natural = best.optimum.at[1].sqrt() / std::f64::consts::TAU;
+    near(best.optimum.at[0], natural, 2e-3);
+    near_relative(best.optimum.value, 1.0 / 2.5 / 2.0_f64.sqrt(), 1e-5);
+    assert_eq!(best.margins.len(), 2);
+    let table = best.table(&asked);
+    let columns: Vec<&str> = table.columns().iter().map(|column| column.name.as_str()).collect();
     let all = "frequency_hz n_per_m maximised value margin_low margin_high worst quantile_5 \
                margin_low.n_per_m margin_high.n_per_m back_to back_value back_worst back_quantile_5";
     assert_eq!(columns, all.split(' ').collect::<Vec<_>>());
@@ -289,7 +289,7 @@ fn fields_of_whole_numbers_are_searched_among_whole_numbers() {
         let names: Vec<&str> = row.lines().next().unwrap().split(',').collect();
         let at: f64 = cells[0].parse().unwrap();
         assert!(at.fract() == 0.0 && (1.0..=most).contains(&at), "{row}");
-        for (name, cell) in names.iter().zip(&cells).filter(|own| own.0.starts_with("margin")) {
+        for (name, cell) in names.iter().zip(&cells).filter(|pair| pair.0.starts_with("margin")) {
             assert!(cell.is_empty() || cell.parse::<f64>().unwrap().fract() == 0.0, "{name}: {row}");
         }
     }

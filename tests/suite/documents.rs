@@ -154,7 +154,7 @@ fn every_column_and_word_of_the_output_is_documented() {
     for command in tables {
         let csv = stdout(&command);
         let header = csv.lines().next().unwrap();
-        for column in header.split(',').filter(|own| !["amplitude_g", "travel_limit_mm"].contains(own)) {
+        for column in header.split(',').filter(|name| !["amplitude_g", "travel_limit_mm"].contains(name)) {
             assert!(says(OUTPUT, column), "docs/output.md does not say `{column}` of {command}");
         }
     }
@@ -293,7 +293,7 @@ fn links_and_pictures_lead_somewhere() {
     let mut pages = vec![root.join("README.md"), root.join("CONTRIBUTING.md"), root.join("CHANGELOG.md")];
     pages.extend(fs::read_dir(root.join("docs")).unwrap().map(|entry| entry.unwrap().path()));
     let mut links = 0;
-    for page in pages.iter().filter(|page| page.extension().is_some_and(|own| own == "md")) {
+    for page in pages.iter().filter(|page| page.extension().is_some_and(|ending| ending == "md")) {
         let text = fs::read_to_string(page).unwrap();
         for target in text.split("](").skip(1).map(|rest| rest.split(')').next().unwrap()) {
             if !target.starts_with("http") {

@@ -97,15 +97,15 @@ fn both_exponents_of_a_motion_with_an_impact_in_every_period() {
     // and after it, after a period of free oscillation.
     let (ratio, restitution, amplitude) = (0.05_f64, 0.6, 0.05);
     for (frequency, d_mm) in [(0.2, 1.0), (0.25, 100.0)] {
-        let own = model(&format!(
+        let model = model(&format!(
             "mass_g: 1000, mechanism: Polynomial(coefficients_si: [0, 1]), damping: Ratio({ratio:?}), \
              excitation: Sine(frequency_hz: {frequency:?}, amplitude_g: {amplitude:?}), \
              stops: Uneven(left_mm: {d_mm:?}, restitution_left: {restitution:?}), \
              start: At(x_mm: 300, v_m_per_s: 0), run: (duration_s: 2000, settle_s: 1800, tolerance: 1e-13)"
         ));
-        let found = of(&own);
+        let found = of(&model);
         assert_eq!(found.period, Some(1));
-        let run = run(&own);
+        let run = run(&model);
         let impact = *of_kind(&run, EventKind::Impact).last().unwrap();
         assert_eq!((run.summary.impacts, run.summary.rests), (run.summary.periods, 0), "one in every period");
 
@@ -125,7 +125,7 @@ fn both_exponents_of_a_motion_with_an_impact_in_every_period() {
         let saltation = Jacobian { rows: [[-restitution, 0.0], [turned, -restitution]] };
         let determinant = (-2.0 * ratio * period).exp() * restitution * restitution;
         let multipliers = saltation.after(&free).multipliers(determinant);
-        let [first, second] = multipliers.map(|own| own.magnitude().ln() / period);
+        let [first, second] = multipliers.map(|multiplier| multiplier.magnitude().ln() / period);
         both(&found, first, second, 1e-9);
         near_relative(found.exact_sum.unwrap(), -2.0 * ratio + 2.0 * restitution.ln() * frequency, 1e-14);
         near_relative(found.sum, found.exact_sum.unwrap(), 1e-10);
@@ -134,14 +134,14 @@ fn both_exponents_of_a_motion_with_an_impact_in_every_period() {
 
 #[test]
 fn a_rest_leaves_nothing() {
-    for own in [
+    for model in [
         preset("paper", &["excitation.amplitude_g=1"]),
         // at rest throughout: pressed by the mechanism, and by gravity
         preset("paper", &["excitation.amplitude_g=0.1"]),
         preset("paper", &["excitation=None"]),
         preset("bouncing-ball", &[]),
     ] {
-        let found = of(&own);
+        let found = of(&model);
         assert!(found.rests() && found.period.is_some(), "{found:?}");
         let nothing = f64::NEG_INFINITY;
         assert_eq!((found.first.per_s, found.second.per_s), (nothing, nothing));
@@ -150,26 +150,26 @@ fn a_rest_leaves_nothing() {
         assert!(!found.is_irregular());
     }
     // averages say the same
-    let own = preset("paper", &["excitation.amplitude_g=1"]);
-    assert!(average_exponents(&own, (1e-3, 0.1), 0.2, 50, &NEVER).unwrap().rests());
+    let model = preset("paper", &["excitation.amplitude_g=1"]);
+    assert!(average_exponents(&model, (1e-3, 0.1), 0.2, 50, &NEVER).unwrap().rests());
 }
 
 #[test]
 fn the_sum_is_that_of_damping_and_impacts_on_chaos_too() {
-    for (own, bound) in [
+    for (model, bound) in [
         (preset("duffing-chaos", &["run.tolerance=1e-13"]), 1e-12),
         (preset("paper-unconstrained", &["excitation.amplitude_g=1.5", "run.tolerance=1e-13"]), 1e-9),
         (preset("first-look", &["run.tolerance=1e-13"]), 1e-10),
         (preset("nominal-cubic", IMPACTS), 1e-9),
     ] {
-        let found = over(&own, 1000);
+        let found = over(&model, 1000);
         println!("{:?} {:e}", found, found.sum / found.exact_sum.unwrap() - 1.0);
         near_relative(found.sum, found.exact_sum.unwrap(), bound);
         near_relative(found.first.per_s + found.second.per_s, found.exact_sum.unwrap(), 1e-14);
         assert!(found.is_irregular() && found.first.per_s > 8.0 * found.first.error, "{found:?}");
         assert!(found.dimension() > 1.0 && found.dimension() < 2.0);
-        let damped = -own.damping() / own.mass();
-        match own.stops() {
+        let damped = -model.damping() / model.mass();
+        match model.stops() {
             None => near_relative(found.exact_sum.unwrap(), damped, 1e-12),
             Some(_) => assert!(found.exact_sum.unwrap() < 1.1 * damped, "impacts take their part"),
         }
@@ -182,9 +182,9 @@ fn the_sum_is_that_of_damping_and_impacts_on_chaos_too() {
 fn the_sum_keeps_its_digits_where_the_mass_lingers_on_a_barrier() {
     for k in 0..8 {
         let tolerance = format!("run.tolerance={:e}", 1e-13 * (1.0 + 1e-3 * f64::from(k)));
-        let own = preset("paper-unconstrained", &["excitation.amplitude_g=1.5", &tolerance]);
+        let model = preset("paper-unconstrained", &["excitation.amplitude_g=1.5", &tolerance]);
         let start = (7e-3, 0.01 * f64::from(k));
-        let found = average_exponents(&own, start, 0.0, 1000, &NEVER).unwrap();
+        let found = average_exponents(&model, start, 0.0, 1000, &NEVER).unwrap();
         near_relative(found.sum, found.exact_sum.unwrap(), 1e-11);
     }
 }
@@ -225,10 +225,10 @@ fn by_runge_kutta(f: [f64; 2], (c, a): (f64, f64), periods: usize) -> (f64, f64)
             growth.push(size.ln() / TAU);
         }
     }
-    let mean = |own: &[f64]| own.iter().sum::<f64>() / own.len() as f64;
+    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
     let means: Vec<f64> = growth.chunks(periods / 50).map(mean).collect();
     let whole = mean(&growth);
-    let squares: f64 = means.iter().map(|own| (own - whole) * (own - whole)).sum();
+    let squares: f64 = means.iter().map(|value| (value - whole) * (value - whole)).sum();
     let count = means.len() as f64;
     (whole, (squares / count / (count - 1.0)).sqrt())
 }
@@ -237,7 +237,7 @@ fn by_runge_kutta(f: [f64; 2], (c, a): (f64, f64), periods: usize) -> (f64, f64)
 fn exponents_of_forced_oscillators_are_those_of_another_integrator() {
     // the strange attractors of Ueda (1979) and of the double well (Holmes 1979)
     for (f, c, force) in [([0.0, 1.0], 0.05, 7.5), ([-1.0, 1.0], 0.25, 0.4)] {
-        let own = model(&format!(
+        let model = model(&format!(
             "mass_g: 1000, mechanism: Polynomial(coefficients_si: [0, {}, 0, {}]), \
              damping: Coefficient(c_n_s_per_m: {c:?}), \
              excitation: Sine(frequency_hz: {:?}, amplitude_g: {:?}), start: At(x_mm: 500, v_m_per_s: 0), \
@@ -247,7 +247,7 @@ fn exponents_of_forced_oscillators_are_those_of_another_integrator() {
             1.0 / TAU,
             force / STANDARD_GRAVITY
         ));
-        let found = over(&own, 20_000);
+        let found = over(&model, 20_000);
         let (other, error) = by_runge_kutta(f, (c, force), 20_000);
         println!("{other} +- {error}, {found:?}");
         assert!(found.first.error < 2e-3 && error < 2e-3 && other > 0.05);
@@ -260,14 +260,14 @@ fn exponents_of_forced_oscillators_are_those_of_another_integrator() {
 #[test]
 fn an_average_along_a_periodic_motion_tends_to_its_multipliers() {
     // Period 5; the sum of what is left after the first vector has turned is bounded.
-    let own = preset("duffing", &["run.tolerance=1e-12"]);
-    let exact = of(&own);
+    let model = preset("duffing", &["run.tolerance=1e-12"]);
+    let exact = of(&model);
     assert_eq!(exact.period, Some(5));
     assert!(exact.first.per_s > exact.second.per_s);
-    let settled = run(&own).summary;
-    let phase = own.drive_phase(settled.window.1).unwrap();
+    let settled = run(&model).summary;
+    let phase = model.drive_phase(settled.window.1).unwrap();
     let start = (settled.final_x, settled.final_v);
-    let found = average_exponents(&own, start, phase, 1000, &NEVER).unwrap();
+    let found = average_exponents(&model, start, phase, 1000, &NEVER).unwrap();
     near(found.first.per_s, exact.first.per_s, 1e-8);
     near(found.second.per_s, exact.second.per_s, 1e-8);
     assert!(found.period.is_none() && !found.is_irregular() && found.dimension() == 0.0);
@@ -304,15 +304,15 @@ fn what_has_no_exponents_says_why() {
         "Chirp(from_hz: 1, to_hz: 9, over_s: 3, amplitude_g: 1)",
         "AmplitudeRamp(frequency_hz: 3, from_g: 0, to_g: 1, over_s: 5)",
     ] {
-        let own = preset("paper", &[&format!("excitation={drive}")]);
-        let problem = exponents(&own, &ExponentOptions::default(), &NEVER);
+        let model = preset("paper", &[&format!("excitation={drive}")]);
+        let problem = exponents(&model, &ExponentOptions::default(), &NEVER);
         assert_eq!(problem, Err(NoExponents::NoPeriod), "{drive}");
     }
     let told = AtomicBool::new(true);
     for name in ["duffing-chaos", "elastic-box"] {
-        let own = preset(name, &[]);
-        assert_eq!(exponents(&own, &ExponentOptions::default(), &told), Err(NoExponents::Cancelled));
-        assert_eq!(average_exponents(&own, own.start(), 0.0, 10, &told), Err(NoExponents::Cancelled));
+        let model = preset(name, &[]);
+        assert_eq!(exponents(&model, &ExponentOptions::default(), &told), Err(NoExponents::Cancelled));
+        assert_eq!(average_exponents(&model, model.start(), 0.0, 10, &told), Err(NoExponents::Cancelled));
     }
     let far = preset("paper", &["stops=None", "excitation.amplitude_g=40"]);
     let problem = exponents(&far, &ExponentOptions::default(), &NEVER).unwrap_err();

@@ -12,9 +12,9 @@ use super::support::*;
 fn bare(runs: &[Run]) -> Vec<String> {
     runs.iter()
         .map(|run| {
-            let mut own: Summary = run.summary;
-            own.cpu_s = 0.0;
-            format!("{own:?}")
+            let mut summary: Summary = run.summary;
+            summary.cpu_s = 0.0;
+            format!("{summary:?}")
         })
         .collect()
 }
@@ -31,7 +31,7 @@ fn compare(models: &[Model]) {
 }
 
 fn models(scene: &str, all: &[&str], each: impl IntoIterator<Item = String>) -> Vec<Model> {
-    each.into_iter().map(|own| preset(scene, &[all, &[own.as_str()]].concat())).collect()
+    each.into_iter().map(|change| preset(scene, &[all, &[change.as_str()]].concat())).collect()
 }
 
 fn amplitudes(count: usize) -> impl Iterator<Item = String> {

@@ -29,11 +29,11 @@ fn read(text: &str) -> Result<LessonDocument, LessonError> {
 
 /// Whether the goal of the first step is met by its own start.
 fn met(text: &str) -> bool {
-    let own = read(text).unwrap_or_else(|error| panic!("{error}"));
+    let document = read(text).unwrap_or_else(|error| panic!("{error}"));
     let task = Task { tick: &|| (), cancel: &AtomicBool::new(false) };
-    let scene = own.begin(0);
-    let subject = Subject::new(&scene.scene, &scene.files, &own.lesson, &task);
-    goal_lack(&own.lesson.steps[0], &subject, &subject).unwrap().is_none()
+    let scene = document.begin(0);
+    let subject = Subject::new(&scene.scene, &scene.files, &document.lesson, &task);
+    goal_lack(&document.lesson.steps[0], &subject, &subject).unwrap().is_none()
 }
 
 fn holds(condition: &str, more: &str) -> bool {
@@ -41,8 +41,8 @@ fn holds(condition: &str, more: &str) -> bool {
 }
 
 fn checked(text: &str) -> LessonReport {
-    let own = read(text).unwrap_or_else(|error| panic!("{error}"));
-    check_lesson(&own, None, &Task { tick: &|| (), cancel: &AtomicBool::new(false) }).unwrap()
+    let document = read(text).unwrap_or_else(|error| panic!("{error}"));
+    check_lesson(&document, None, &Task { tick: &|| (), cancel: &AtomicBool::new(false) }).unwrap()
 }
 
 #[test]
@@ -82,7 +82,7 @@ fn a_fault_is_named_with_its_line_and_remedy() {
             "starts within starts",
         ),
     ] {
-        let error = read(&text).map(|own| own.lesson).unwrap_err().to_string();
+        let error = read(&text).map(|document| document.lesson).unwrap_err().to_string();
         assert!(error.contains(fault), "`{fault}` is not in: {error}");
         assert!(error.lines().all(|line| line.starts_with("box.ron:")), "{error}");
     }
@@ -96,7 +96,7 @@ fn all_faults_are_said_at_once_in_the_order_of_the_file() {
          (text: \"b\", holds: Is(\"result.side\", \"up\")),\n        ]),",
         "minutes_: 3, set: [(\"mass_g\", \"heavy\")],",
     );
-    let error = read(&wrong).map(|own| own.lesson).unwrap_err().to_string();
+    let error = read(&wrong).map(|document| document.lesson).unwrap_err().to_string();
     let lines: Vec<usize> = error
         .lines()
         .map(|line| line.trim_start_matches("box.ron:").split(':').next().unwrap().parse().unwrap())
@@ -106,7 +106,7 @@ fn all_faults_are_said_at_once_in_the_order_of_the_file() {
 
 #[test]
 fn a_step_begins_with_the_changes_before_it_and_without_the_solutions() {
-    let own = read(&text(
+    let lesson = read(&text(
         "Say(\"Look.\"),
         Predict(ask: \"So?\", set: [(\"mass_g\", \"2\")], options: [
             (text: \"a\", holds: Present(\"result.impacts\")),
@@ -120,9 +120,9 @@ fn a_step_begins_with_the_changes_before_it_and_without_the_solutions() {
     .unwrap();
     let scenes = |of: &dyn Fn(usize) -> (f64, f64)| (0..4).map(of).collect::<Vec<_>>();
     let numbers = |document: &Document| (document.scene.mass_g, document.scene.run.duration_s);
-    assert_eq!(scenes(&|i| numbers(own.begin(i))), [(1.0, 10.0), (1.0, 10.0), (2.0, 4.0), (2.0, 4.0)]);
-    assert_eq!(scenes(&|i| numbers(own.end(i))), [(1.0, 10.0), (2.0, 10.0), (3.0, 4.0), (2.0, 4.0)]);
-    assert_eq!(own.begin(9).scene, own.begin(3).scene);
+    assert_eq!(scenes(&|i| numbers(lesson.begin(i))), [(1.0, 10.0), (1.0, 10.0), (2.0, 4.0), (2.0, 4.0)]);
+    assert_eq!(scenes(&|i| numbers(lesson.end(i))), [(1.0, 10.0), (2.0, 10.0), (3.0, 4.0), (2.0, 4.0)]);
+    assert_eq!(lesson.begin(9).scene, lesson.begin(3).scene);
 }
 
 #[test]
@@ -193,7 +193,7 @@ fn means_over_seeds_and_their_errors_are_those_of_the_runs() {
     };
     let values: Vec<f64> = (1..=4).map(of_seed).collect();
     let mean = values.iter().sum::<f64>() / 4.0;
-    let error = (values.iter().map(|own| (own - mean).powi(2)).sum::<f64>() / 3.0 / 4.0).sqrt();
+    let error = (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / 3.0 / 4.0).sqrt();
     assert!(error > 0.0);
     let more = "seeds: 4, set: [(\"run.duration_s\", \"5\"), (\"excitation.rms_g\", \"0.6\")],";
     for (of, value) in [("mean", mean), ("error", error)] {
@@ -255,8 +255,11 @@ fn the_turns_of_a_walk_are_where_it_begins_and_ends_to_cross() {
 fn the_check_finds_what_a_lesson_must_not_have() {
     let find = |steps: &str, more: &str| {
         let report = checked(&text(steps, more));
-        let said = |own: &[interwell::study::LessonFinding]| {
-            own.iter().map(|own| format!("{}: {}", own.field, own.problem)).collect::<Vec<_>>()
+        let said = |findings: &[interwell::study::LessonFinding]| {
+            findings
+                .iter()
+                .map(|finding| format!("{}: {}", finding.field, finding.problem))
+                .collect::<Vec<_>>()
         };
         (said(&report.wrong), said(&report.warnings))
     };
@@ -299,9 +302,10 @@ fn the_check_finds_what_a_lesson_must_not_have() {
 
 #[test]
 fn a_check_can_be_cancelled() {
-    let own = read(&text("Do(ask: \"Do.\", goal: Present(\"result.impacts\"), solution: []),", "")).unwrap();
+    let document =
+        read(&text("Do(ask: \"Do.\", goal: Present(\"result.impacts\"), solution: []),", "")).unwrap();
     let cancel = AtomicBool::new(true);
-    let error = check_lesson(&own, None, &Task { tick: &|| (), cancel: &cancel }).unwrap_err();
+    let error = check_lesson(&document, None, &Task { tick: &|| (), cancel: &cancel }).unwrap_err();
     assert_eq!(error.to_string(), "cancelled");
 }
 
@@ -313,8 +317,8 @@ fn the_command_lists_prints_checks_and_begins_lessons() {
         assert!(stdout(&format!("lesson {name}")).starts_with("A stop that helps (5 min)\nGoal: "));
     }
     let folder = tempfile::tempdir().unwrap();
-    let own = folder.path().join("own.ron");
-    let path = own.display();
+    let file = folder.path().join("own.ron");
+    let path = file.display();
     headless(&format!("lesson --new {path}")).assert().success().stdout("");
     let held = format!("{path}: holds (");
     headless(&format!("lesson {path} --check")).assert().success().stdout(contains(held)).stderr("");
@@ -323,11 +327,11 @@ fn the_command_lists_prints_checks_and_begins_lessons() {
     refused(headless("lesson 3 --jobs 2"), &["--jobs"]);
     refused(headless("lesson nothing"), &["nothing: no such file", "03-a-stop-that-helps"]);
     let spoiled = text("Do(ask: \"Do.\", goal: Above(\"result.impacts\", 20), solution: []),", "");
-    let own = folder.path().join("spoiled.ron");
-    std::fs::write(&own, spoiled).unwrap();
-    let fault = format!("{}:10:24: steps.0.goal: is met before anything is done", own.display());
-    let verdict = format!("{}: is wrong (0 predictions, 1 task)\n", own.display());
-    headless(&format!("lesson {} --check", own.display()))
+    let file = folder.path().join("spoiled.ron");
+    std::fs::write(&file, spoiled).unwrap();
+    let fault = format!("{}:10:24: steps.0.goal: is met before anything is done", file.display());
+    let verdict = format!("{}: is wrong (0 predictions, 1 task)\n", file.display());
+    headless(&format!("lesson {} --check", file.display()))
         .assert()
         .code(1)
         .stdout(verdict)

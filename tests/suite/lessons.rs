@@ -17,8 +17,8 @@ fn built_in(number: usize) -> &'static str {
 }
 
 fn checked(text: &str) -> LessonReport {
-    let own = read(text).unwrap_or_else(|error| panic!("{error}"));
-    check_lesson(&own, None, &Task { tick: &|| (), cancel: &AtomicBool::new(false) }).unwrap()
+    let document = read(text).unwrap_or_else(|error| panic!("{error}"));
+    check_lesson(&document, None, &Task { tick: &|| (), cancel: &AtomicBool::new(false) }).unwrap()
 }
 
 /// Asserts that a lesson has predictions and tasks, and neither a fault nor a warning.
@@ -32,31 +32,31 @@ fn passes(name: &str, text: &str) {
 #[test]
 fn lessons_1_to_6_and_the_template_pass_their_check_without_a_warning() {
     passes("template", TEMPLATE);
-    LESSONS.iter().take(6).for_each(|own| passes(own.name, own.text));
+    LESSONS.iter().take(6).for_each(|lesson| passes(lesson.name, lesson.text));
 }
 
 #[test]
 fn lessons_7_to_10_pass_their_check_without_a_warning() {
     assert_eq!(LESSONS.len(), 10);
-    LESSONS.iter().skip(6).for_each(|own| passes(own.name, own.text));
+    LESSONS.iter().skip(6).for_each(|lesson| passes(lesson.name, lesson.text));
 }
 
 #[test]
 fn lessons_are_numbered_in_their_order_and_each_has_all_that_a_class_needs() {
-    for (number, own) in (1..).zip(LESSONS) {
-        assert!(own.name.starts_with(&format!("{number:02}-")), "{}", own.name);
-        let lesson = read(own.text).unwrap().lesson;
-        assert!((1..=3).contains(&lesson.controls.len()), "{}", own.name);
-        assert!((2..=4).contains(&lesson.views.len()), "{}", own.name);
-        assert!(matches!(lesson.steps[0], Step::Say(_)), "{}", own.name);
-        assert!(matches!(lesson.steps.last(), Some(Step::Explain(_))), "{}", own.name);
+    for (number, entry) in (1..).zip(LESSONS) {
+        assert!(entry.name.starts_with(&format!("{number:02}-")), "{}", entry.name);
+        let lesson = read(entry.text).unwrap().lesson;
+        assert!((1..=3).contains(&lesson.controls.len()), "{}", entry.name);
+        assert!((2..=4).contains(&lesson.views.len()), "{}", entry.name);
+        assert!(matches!(lesson.steps[0], Step::Say(_)), "{}", entry.name);
+        assert!(matches!(lesson.steps.last(), Some(Step::Explain(_))), "{}", entry.name);
         let hints = lesson.steps.iter().all(|step| !matches!(step, Step::Do { hint: None, .. }));
-        assert!(hints && lesson.lecturer.starts_with("0:00 "), "{}", own.name);
+        assert!(hints && lesson.lecturer.starts_with("0:00 "), "{}", entry.name);
         let before_each_prediction = lesson.steps.windows(2).all(|pair| match pair {
             [Step::Predict { .. }, next] => matches!(next, Step::Explain(_)),
             _ => true,
         });
-        assert!(before_each_prediction, "{}", own.name);
+        assert!(before_each_prediction, "{}", entry.name);
     }
 }
 
@@ -69,7 +69,7 @@ fn spoiled(text: &str, from: &str, to: &str) -> String {
 
 /// The places of what is wrong with a lesson that can be read.
 fn wrong(text: &str) -> Vec<String> {
-    checked(text).wrong.into_iter().map(|own| format!("{}: {}", own.field, own.problem)).collect()
+    checked(text).wrong.into_iter().map(|finding| format!("{}: {}", finding.field, finding.problem)).collect()
 }
 
 #[test]
@@ -105,7 +105,7 @@ fn a_spoiled_lesson_is_caught_with_its_place() {
     assert_eq!(wrong(&solution), ["steps.4.solution: does not meet the goal"]);
     // a field misspelt
     let misspelt = spoiled(built_in(6), "result.impact_share", "result.impacts_share");
-    let error = read(&misspelt).map(|own| own.lesson).unwrap_err().to_string();
+    let error = read(&misspelt).map(|document| document.lesson).unwrap_err().to_string();
     let line = 1 + misspelt.lines().position(|line| line.contains("goal: All")).unwrap();
     assert!(error.starts_with(&format!("own.ron:{line}:")), "{error}");
     assert!(error.contains("steps.5.goal = result.impacts_share: no such field"), "{error}");
@@ -118,6 +118,6 @@ fn a_spoiled_lesson_is_caught_with_its_place() {
     );
     let report = checked(&near);
     assert!(report.wrong.is_empty());
-    let warned: Vec<_> = report.warnings.iter().map(|own| own.field.as_str()).collect();
+    let warned: Vec<_> = report.warnings.iter().map(|finding| finding.field.as_str()).collect();
     assert_eq!(warned, ["steps.4.goal"]);
 }

@@ -46,8 +46,8 @@ fn in_any_pieces_it_is_one_run() {
         for piece in [0.001_3, 0.016_7, 0.25, 5.0] {
             let (_, passage) = in_pieces(&model, last, piece, &times);
             assert_eq!(passage.samples.len(), times.len(), "{name} {piece}");
-            for (own, one) in passage.samples.iter().zip(&run.samples) {
-                assert_eq!(own, one, "{name} {piece}");
+            for (sample, one) in passage.samples.iter().zip(&run.samples) {
+                assert_eq!(sample, one, "{name} {piece}");
             }
             let events: Vec<_> = run.events.iter().filter(|event| event.t <= last).collect();
             assert_eq!(passage.events.iter().collect::<Vec<_>>(), events, "{name} {piece}");

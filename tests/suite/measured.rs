@@ -48,7 +48,7 @@ impl Noise {
 
 /// The number called `name`.
 pub fn number(found: &Identified, name: &str) -> Identity {
-    *found.summary.iter().find(|own| own.name == name).unwrap_or_else(|| panic!("no {name}"))
+    *found.summary.iter().find(|identity| identity.name == name).unwrap_or_else(|| panic!("no {name}"))
 }
 
 /// Asserts that of the intervals of records that were drawn at random 95 in 100 hold the exact number: of 600
@@ -73,6 +73,6 @@ pub fn covered(hits: u64, what: &str) {
 }
 
 /// Whether the interval holds a number.
-pub fn holds(own: Identity, exact: f64) -> bool {
-    (own.interval.0..=own.interval.1).contains(&exact)
+pub fn holds(identity: Identity, exact: f64) -> bool {
+    (identity.interval.0..=identity.interval.1).contains(&exact)
 }

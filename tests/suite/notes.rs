@@ -45,10 +45,10 @@ impl Text {
     /// The numbers that were not measured and are no number of the scene's own fields.
     fn unheld(&self) -> Vec<&str> {
         let fields = self.preset.text.split_once("mass_g").unwrap().1;
-        let own: Vec<f64> = numbers(fields).map(|(_, number)| number.parse().unwrap()).collect();
+        let given: Vec<f64> = numbers(fields).map(|(_, number)| number.parse().unwrap()).collect();
         let held = |at: usize| self.held.iter().any(|range| range.contains(&at));
         let free = numbers(&self.words).filter(|(at, _)| !held(*at));
-        free.map(|(_, number)| number).filter(|number| !own.contains(&number.parse().unwrap())).collect()
+        free.map(|(_, number)| number).filter(|number| !given.contains(&number.parse().unwrap())).collect()
     }
 }
 
@@ -107,17 +107,17 @@ fn numbers_are_found() {
 /// The motion that a scene with fields changed settles to: it goes on until it repeats, or up to 600 s.
 fn settled(name: &str, changes: &[&str]) -> Summary {
     let request = Request { until_settled: Some(600.0), ledger: true, ..Request::default() };
-    let own = preset(name, changes).run(&request).summary;
-    assert_eq!(own.outcome, Outcome::Done, "{name} {changes:?}");
-    assert!(own.ledger.unwrap().energy_residual < 1e-5, "{name} {changes:?}");
-    own
+    let summary = preset(name, changes).run(&request).summary;
+    assert_eq!(summary.outcome, Outcome::Done, "{name} {changes:?}");
+    assert!(summary.ledger.unwrap().energy_residual < 1e-5, "{name} {changes:?}");
+    summary
 }
 
 /// Asserts that a motion crosses over and back once in every period.
 #[track_caller]
-fn crosses(own: &Summary) {
-    assert_eq!((own.regime, own.period, own.settled), (Regime::Interwell, Some(1), Some(true)));
-    assert_eq!(own.crossings, 2 * own.periods);
+fn crosses(summary: &Summary) {
+    assert_eq!((summary.regime, summary.period, summary.settled), (Regime::Interwell, Some(1), Some(true)));
+    assert_eq!(summary.crossings, 2 * summary.periods);
 }
 
 /// The least amplitude of the base's acceleration in g, from rest, of a scene with fields changed; `range` is
@@ -140,11 +140,11 @@ fn within(value: f64, range: Range<f64>) {
 }
 
 /// The RMS velocity in mm/s.
-fn rms(own: &Summary) -> f64 {
-    1e3 * own.rms_velocity.unwrap()
+fn rms(summary: &Summary) -> f64 {
+    1e3 * summary.rms_velocity.unwrap()
 }
 
 /// The largest displacement from the middle in mm.
-fn reach(own: &Summary) -> f64 {
-    1e3 * own.max_abs_x.unwrap()
+fn reach(summary: &Summary) -> f64 {
+    1e3 * summary.max_abs_x.unwrap()
 }

@@ -33,7 +33,7 @@ fn over_amplitude(document: &Document, range: (f64, f64), period: Option<u32>) -
 
 fn at(branch: &Branch, event: BranchEvent) -> Vec<f64> {
     let all = branch.events.iter().zip(&branch.values);
-    all.filter(|(own, _)| **own == Some(event)).map(|(_, value)| *value).collect()
+    all.filter(|(seen, _)| **seen == Some(event)).map(|(_, value)| *value).collect()
 }
 
 fn document(text: &str) -> Document {
@@ -50,7 +50,7 @@ fn response(w: f64, c: f64) -> (f64, f64) {
 #[test]
 fn the_steady_motion_of_a_linear_oscillator() {
     let (frequency, ratio, g) = (0.2, 0.05, 0.02);
-    let own = model(&format!(
+    let model = model(&format!(
         "mass_g: 1000, mechanism: Polynomial(coefficients_si: [0, 1]), damping: Ratio({ratio}), \
          excitation: Sine(frequency_hz: {frequency}, amplitude_g: {g}), \
          run: (duration_s: 400, settle_s: 300)"
@@ -58,7 +58,7 @@ fn the_steady_motion_of_a_linear_oscillator() {
     let (size, lag) = response(TAU * frequency, 2.0 * ratio);
     let size = size * g * STANDARD_GRAVITY;
     for phase in [0.0, 0.4] {
-        let found = find(&own, phase, None).unwrap();
+        let found = find(&model, phase, None).unwrap();
         let angle = TAU * phase + lag;
         near(found.state.0, size * angle.sin(), 1e-12);
         near(found.state.1, size * TAU * frequency * angle.cos(), 1e-12);
@@ -126,11 +126,11 @@ fn a_bouncing_ball_doubles_its_period_where_the_formula_says() {
         let flips = at(&found, BranchEvent::Flip);
         assert_eq!(flips.len(), 1);
         near_relative(flips[0], ball.flip(), 1e-8);
-        for (value, own) in found.values.iter().zip(&found.orbits) {
-            let [first, second] = own.multipliers();
+        for (value, orbit) in found.values.iter().zip(&found.orbits) {
+            let [first, second] = orbit.multipliers();
             near(first.re + second.re, ball.sum(*value), 1e-7);
-            near(own.determinant(), ball.e * ball.e, 1e-15);
-            assert_eq!(own.passage.impacts, 1);
+            near(orbit.determinant(), ball.e * ball.e, 1e-15);
+            assert_eq!(orbit.passage.impacts, 1);
         }
         // and back, to where the motion ends: the speed of the table is no longer enough
         let found = over_amplitude(&ball.document(a), (a, 0.5 * ball.pace()), Some(1));
@@ -142,8 +142,8 @@ fn a_bouncing_ball_doubles_its_period_where_the_formula_says() {
 
 #[test]
 fn a_linear_oscillator_grazes_its_stop_where_its_amplitude_is_the_distance() {
-    let own = Document::load("impact-oscillator").unwrap();
-    let found = over_amplitude(&own, (0.05, 0.06), Some(1));
+    let document = Document::load("impact-oscillator").unwrap();
+    let found = over_amplitude(&document, (0.05, 0.06), Some(1));
     let (size, _) = response(0.7, 0.2);
     let grazing = at(&found, BranchEvent::Grazing);
     assert_eq!(grazing.len(), 1);
@@ -154,7 +154,7 @@ fn a_linear_oscillator_grazes_its_stop_where_its_amplitude_is_the_distance() {
     assert_eq!(found.orbits.first().unwrap().passage.impacts, 0);
     assert_eq!(found.orbits.last().unwrap().passage.impacts, 1);
     // the other way round the same
-    let back = over_amplitude(&own, (0.056, 0.05), Some(1));
+    let back = over_amplitude(&document, (0.056, 0.05), Some(1));
     near_relative(at(&back, BranchEvent::Grazing)[0], grazing[0], 1e-8);
     near_relative(at(&back, BranchEvent::Flip)[0], flips[0], 1e-10);
     // near the grazing the multiplier goes like the inverse of the root of the distance (Nordmark 1991), so
@@ -173,10 +173,11 @@ fn a_linear_oscillator_grazes_its_stop_where_its_amplitude_is_the_distance() {
 
 #[test]
 fn doublings_follow_each_other_by_feigenbaums_ratio() {
-    let own = Document::load("duffing-cascade").unwrap();
+    let document = Document::load("duffing-cascade").unwrap();
     let steps = [(1, 0.0346), (2, 0.0355), (4, 0.0363), (8, 0.03652)];
-    let flips = steps
-        .map(|(period, from)| at(&over_amplitude(&own, (from, 0.037), Some(period)), BranchEvent::Flip)[0]);
+    let flips = steps.map(|(period, from)| {
+        at(&over_amplitude(&document, (from, 0.037), Some(period)), BranchEvent::Flip)[0]
+    });
     let ratio = |i: usize| (flips[i + 1] - flips[i]) / (flips[i + 2] - flips[i + 1]);
     // 4.669201609 from period to period, approached
     assert!((ratio(0) - 4.669_201_609).abs() < 0.6 && (ratio(1) - 4.669_201_609).abs() < 0.1, "{flips:?}");
@@ -185,22 +186,22 @@ fn doublings_follow_each_other_by_feigenbaums_ratio() {
 #[test]
 fn a_symmetric_motion_breaks_its_symmetry_and_a_fold_is_where_two_motions_meet() {
     // beside the faster one of the motions at 1.2 g that cross in every period
-    let own = changed("paper-unconstrained", &["start=At(x_mm: 5.15, v_m_per_s: -0.3)"]);
-    let down = over_amplitude(&own, (1.2, 1.0), Some(1));
+    let document = changed("paper-unconstrained", &["start=At(x_mm: 5.15, v_m_per_s: -0.3)"]);
+    let down = over_amplitude(&document, (1.2, 1.0), Some(1));
     let fold = at(&down, BranchEvent::Fold);
     assert_eq!((fold.len(), down.end), (1, BranchEnd::Range));
     // it comes back up as an unstable motion
     assert!(down.values.last().is_some_and(|last| *last == 1.2));
     assert!(down.orbits.first().unwrap().is_stable() && !down.orbits.last().unwrap().is_stable());
-    let up = over_amplitude(&own, (1.2, 1.5), Some(1));
+    let up = over_amplitude(&document, (1.2, 1.5), Some(1));
     assert_eq!(at(&up, BranchEvent::Symmetry).len(), 1);
     // motions above the fold near it: the multiplier nears 1 like the root of the distance
     let beside: Vec<f64> = down
         .values
         .iter()
         .zip(&down.orbits)
-        .filter(|(value, own)| **value - fold[0] < 2e-4 && **value > fold[0] && own.is_stable())
-        .map(|(value, own)| (1.0 - own.multipliers()[0].re) / (value - fold[0]).sqrt())
+        .filter(|(value, orbit)| **value - fold[0] < 2e-4 && **value > fold[0] && orbit.is_stable())
+        .map(|(value, orbit)| (1.0 - orbit.multipliers()[0].re) / (value - fold[0]).sqrt())
         .collect();
     beside.windows(2).for_each(|pair| near_relative(pair[0], pair[1], 0.2));
 }
@@ -209,7 +210,7 @@ fn a_symmetric_motion_breaks_its_symmetry_and_a_fold_is_where_two_motions_meet()
 fn a_motion_that_rests_has_multipliers_of_zero_and_a_table_says_so() {
     let found = find(&preset("paper", &["excitation.amplitude_g=1"]), 0.25, None).unwrap();
     assert_eq!((found.period, found.determinant(), found.is_stable()), (1, 0.0, true));
-    assert!(found.multipliers().iter().all(|own| own.magnitude() == 0.0));
+    assert!(found.multipliers().iter().all(|multiplier| multiplier.magnitude() == 0.0));
     let still = find(&preset("paper", &["excitation.amplitude_g=0.5"]), 0.0, None).unwrap();
     assert_eq!((still.period, still.state, still.passage.impacts), (1, (1.5e-3, 0.0), 0));
     let table = orbit_table(&[found]);

@@ -61,7 +61,7 @@ pub fn texts(path: &Path) -> Vec<String> {
         assert_eq!(tag.matches('"').count() % 2, 0, "{tag}");
         assert!(!text.contains(|c: char| c.is_control() && c != '\n'), "{text}");
         for rest in text.split('&').skip(1) {
-            assert!(["lt;", "gt;", "amp;", "quot;", "apos;"].iter().any(|own| rest.starts_with(own)));
+            assert!(["lt;", "gt;", "amp;", "quot;", "apos;"].iter().any(|entity| rest.starts_with(entity)));
         }
         texts.extend(Some(text.trim()).filter(|text| !text.is_empty()).map(str::to_owned));
     }
@@ -94,9 +94,9 @@ fn every_command_draws_light_and_dark() {
         let light = pixels(&plot(line, folder.path(), &format!("{i}.png")));
         let dark = pixels(&plot(&format!("{line} --dark"), folder.path(), &format!("{i}-dark.PNG")));
         assert_eq!((light.0, light.1, dark.0, dark.1), (1600, 1000, 1600, 1000));
-        assert!(light.2[..3].iter().all(|own| *own == 255) && dark.2[..3].iter().all(|own| *own < 64));
+        assert!(light.2[..3].iter().all(|byte| *byte == 255) && dark.2[..3].iter().all(|byte| *byte < 64));
         // Something is on it.
-        let inked = light.2.chunks(3).filter(|own| **own != light.2[..3]).count();
+        let inked = light.2.chunks(3).filter(|pixel| **pixel != light.2[..3]).count();
         assert!(inked > 50_000, "{line}: {inked}");
     }
     refused(headless("curve --dark"), &["--plot"]);
@@ -327,8 +327,9 @@ fn no_font_of_the_machine_is_needed() {
     let tree = String::from_utf8_lossy(&tree.stdout).into_owned();
     for line in tree.lines() {
         let name = line.split(' ').next().unwrap_or_default();
-        let system =
-            ["font-kit", "fontconfig", "freetype", "yeslogic"].iter().any(|own| name.starts_with(own));
+        let system = ["font-kit", "fontconfig", "freetype", "yeslogic"]
+            .iter()
+            .any(|library| name.starts_with(library));
         assert!(!system, "`{line}` looks for fonts of the machine");
     }
     assert!(tree.contains("tiny-skia") && !tree.contains("ab_glyph"));

@@ -79,11 +79,11 @@ fn every_scene_does_what_is_recorded_of_it() {
         let known = KNOWN.iter().find(|known| known.name == name).unwrap_or_else(|| panic!("{name}"));
         for (tolerance, change) in [(1e-9, "run.tolerance=1e-9"), (1e-12, "run.tolerance=1e-12")] {
             let run = run(&preset(name, &[change]));
-            let own = whole(&run, tolerance);
-            assert_eq!((own.regime, own.period), (known.regime, known.period), "{name}");
-            assert_eq!((own.crossings, impacts(&run)), (known.crossings, known.impacts), "{name}");
-            near_relative(own.rms_velocity.unwrap(), known.rms_velocity, 1e-9);
-            near_relative(own.max_abs_x.unwrap(), known.max_abs_x, 1e-9);
+            let summary = whole(&run, tolerance);
+            assert_eq!((summary.regime, summary.period), (known.regime, known.period), "{name}");
+            assert_eq!((summary.crossings, impacts(&run)), (known.crossings, known.impacts), "{name}");
+            near_relative(summary.rms_velocity.unwrap(), known.rms_velocity, 1e-9);
+            near_relative(summary.max_abs_x.unwrap(), known.max_abs_x, 1e-9);
         }
     }
 }
@@ -108,17 +108,18 @@ fn flexures_in_31_digits() {
         let request = Request { events: true, ..Default::default() };
         let reference = reference.run_reference(&request, 1e-26);
         for tolerance in [1e-6_f64, 1e-9, 1e-12] {
-            let own = run(&preset(name, &[&short[..], &[&format!("run.tolerance={tolerance:e}")]].concat()));
+            let found =
+                run(&preset(name, &[&short[..], &[&format!("run.tolerance={tolerance:e}")]].concat()));
             assert_eq!(
-                (own.summary.crossings, impacts(&own)),
+                (found.summary.crossings, impacts(&found)),
                 (reference.summary.crossings, impacts(&reference))
             );
             let rms = |run: &Run| run.summary.rms_velocity.unwrap();
-            near_relative(rms(&own), rms(&reference), tolerance.max(1e-13));
+            near_relative(rms(&found), rms(&reference), tolerance.max(1e-13));
             let crossings = |run: &Run| of_kind(run, EventKind::Crossing);
-            assert!(crossings(&own).len() == crossings(&reference).len() && !crossings(&own).is_empty());
-            for (own, reference) in crossings(&own).iter().zip(crossings(&reference)) {
-                near(own.t, reference.t, tolerance.max(1e-12));
+            assert!(crossings(&found).len() == crossings(&reference).len() && !crossings(&found).is_empty());
+            for (crossing, reference) in crossings(&found).iter().zip(crossings(&reference)) {
+                near(crossing.t, reference.t, tolerance.max(1e-12));
             }
         }
     }
@@ -131,19 +132,20 @@ fn two_models_of_one_prototype() {
     // middle, so that a comparison of forces near the wells says nothing.
     let [beams, solid] = ["paper", "paper-table"].map(|name| preset(name, &[]).mechanism().clone());
     let force = |mechanism: &Mechanism, x: f64| mechanism.curve.force(x);
-    let most = |reach: i32, own: &Mechanism| {
-        let apart = (0..=reach).map(|i| f64::from(i) * 1e-5).map(|x| force(own, x) - force(&solid, x));
+    let most = |reach: i32, mechanism: &Mechanism| {
+        let apart = (0..=reach).map(|i| f64::from(i) * 1e-5).map(|x| force(mechanism, x) - force(&solid, x));
         apart.fold(0.0_f64, |most, apart| most.max(apart.abs()))
     };
     near(most(550, &beams), 12.9e-3, 2e-4);
     // Strips that cannot curl at all: within 5 mN as far as 2 mm.
     let wide = preset("paper", &["mechanism.plane_strain=true"]).mechanism().clone();
     near(most(200, &wide), 4.8e-3, 2e-4);
-    let barrier = |own: &Mechanism| own.landscape.barrier.unwrap().from_right_j;
+    let barrier = |mechanism: &Mechanism| mechanism.landscape.barrier.unwrap().from_right_j;
     near_relative(barrier(&beams), barrier(&solid), 0.015);
-    let hardest = |own: &Mechanism| own.landscape.extrema.iter().fold(0.0_f64, |most, e| most.max(e.force));
+    let hardest =
+        |mechanism: &Mechanism| mechanism.landscape.extrema.iter().fold(0.0_f64, |most, e| most.max(e.force));
     near_relative(hardest(&beams), hardest(&solid), 0.04);
-    let kink = |own: &Mechanism| own.landscape.kinks.last().unwrap().x;
+    let kink = |mechanism: &Mechanism| mechanism.landscape.kinks.last().unwrap().x;
     near(kink(&beams), kink(&solid), 1e-6);
     // The least shaking, in steps of 0.01 g, that frees the mass and that carries it across.
     for (limit, beams, solid) in [

@@ -27,8 +27,11 @@ const MAY_DIFFER: [&str; 2] = ["steps", "evaluations"];
 
 /// Every other field of two summaries of one model.
 fn same_summary(model: &Model, a: &Summary, b: &Summary) {
-    let moved = a.ledger.map_or(0.0, |own: Ledger| {
-        [own.work_j, own.damping_j, own.impact_j, own.stored_j].iter().map(|term| term.abs()).sum()
+    let moved = a.ledger.map_or(0.0, |ledger: Ledger| {
+        [ledger.work_j, ledger.damping_j, ledger.impact_j, ledger.stored_j]
+            .iter()
+            .map(|term| term.abs())
+            .sum()
     });
     for field in SUMMARY_FIELDS.iter().filter(|field| !MAY_DIFFER.contains(&field.name)) {
         let size = match field.name {

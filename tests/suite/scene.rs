@@ -19,7 +19,7 @@ fn text(changes: &[(&str, &str)]) -> String {
         ("run", "(duration_s: 10)"),
     ];
     for (name, value) in changes {
-        fields.retain(|(own, _)| own != name);
+        fields.retain(|(field, _)| field != name);
         fields.push((name, value));
     }
     let lines: Vec<String> = fields.iter().map(|(name, value)| format!("    {name}: {value},\n")).collect();

@@ -60,7 +60,7 @@ fn the_section_of_a_linear_oscillator_is_its_steady_response_at_that_phase() {
     for (start, degrees) in
         [(0.0, 0.0), (0.0, 37.5), (25.0, 25.0), (25.0, 300.0), (200.0, 180.0), (90.0, 0.0)]
     {
-        let own = model(
+        let model = model(
             &spring(
                 0.0,
                 &format!(
@@ -70,7 +70,7 @@ fn the_section_of_a_linear_oscillator_is_its_steady_response_at_that_phase() {
             )
             .replace("title: \"t\", ", ""),
         );
-        let points = states(&own, degrees / 360.0);
+        let points = states(&model, degrees / 360.0);
         assert_eq!(points.len(), 24, "19.9 s hold 24 periods of 0.8 s");
         let theta: f64 = degrees / 360.0 * TAU;
         for (i, point) in points.iter().enumerate() {
@@ -95,13 +95,13 @@ fn a_section_is_the_runs_own_samples() {
         ("paper", &["stops=Hertz(travel_limit_mm:1.5,stiffness_n_per_m1_5:3.7e9,loss_s_per_m:10)"]),
         ("paper-unconstrained", &[]),
     ] {
-        let own = preset(name, changes);
-        let points = states(&own, 0.3);
-        let periods = (own.duration() - own.settle()) * 3.0;
+        let model = preset(name, changes);
+        let points = states(&model, 0.3);
+        let periods = (model.duration() - model.settle()) * 3.0;
         assert_eq!(points.len(), (periods + 1e-9) as usize, "{name} {changes:?}");
         let times: Vec<f64> = points.iter().map(|point| point.t).collect();
-        let run = own.run(&Request { sample_times: &times, ..Request::default() });
-        let scales = own.scales();
+        let run = model.run(&Request { sample_times: &times, ..Request::default() });
+        let scales = model.scales();
         for (point, sample) in points.iter().zip(&run.samples) {
             near(point.x, sample.x, 1e-12 * scales.length);
             near(point.v, sample.v, 1e-11 * scales.speed);
@@ -124,7 +124,7 @@ fn a_motion_that_rests_has_the_same_state_once_a_period_to_the_last_bit() {
 fn sections_half_a_period_apart_mirror_each_other() {
     for (stops, frequency, x) in [("None", 6.0, 2.0), ("Rigid(travel_limit_mm:2,restitution:0.6)", 3.0, 1.0)]
     {
-        let own = |phase: f64, x: f64| {
+        let at = |phase: f64, x: f64| {
             let set = [
                 format!("stops={stops}"),
                 format!("excitation=Sine(frequency_hz:{frequency},amplitude_g:1.9,phase_deg:{phase})"),
@@ -134,9 +134,9 @@ fn sections_half_a_period_apart_mirror_each_other() {
             ];
             preset("nominal-cubic", &set.each_ref().map(String::as_str))
         };
-        let (plain, mirrored) = (states(&own(0.0, x), 0.0), states(&own(180.0, -x), 0.5));
+        let (plain, mirrored) = (states(&at(0.0, x), 0.0), states(&at(180.0, -x), 0.5));
         assert_eq!(plain.len() as f64, 20.0 * frequency);
-        assert!(own(0.0, x).run(&Request::default()).summary.total_crossings > 4, "{stops}");
+        assert!(at(0.0, x).run(&Request::default()).summary.total_crossings > 4, "{stops}");
         for (a, b) in plain.iter().zip(&mirrored) {
             assert_eq!((a.t, a.x, a.v), (b.t, -b.x, -b.v), "{stops}");
         }
@@ -155,24 +155,24 @@ fn a_batch_has_the_sections_and_carried_states_of_its_runs() {
     let request = Request { section: Some(0.4), carry: true, ..Request::default() };
     for until_settled in [None, Some(40.0)] {
         let request = Request { until_settled, ..request };
-        for (own, together) in models.iter().zip(Model::run_together(&models, &request)) {
-            let alone = own.run(&request);
+        for (model, together) in models.iter().zip(Model::run_together(&models, &request)) {
+            let alone = model.run(&request);
             same_bits(&together, &alone);
             assert_eq!(alone.section.len(), 20, "6.8 s hold 20 periods");
             let (from, to) = alone.summary.window;
             assert!(alone.section.iter().all(|point| point.t >= from && point.t < to));
             // What is listed changes nothing.
-            let plain = own.run(&Request { until_settled, ..Request::default() });
+            let plain = model.run(&Request { until_settled, ..Request::default() });
             assert_eq!(
                 (plain.summary.steps, plain.summary.final_x),
                 (alone.summary.steps, alone.summary.final_x)
             );
-            let t = (alone.summary.window.1.max(own.duration()) * 3.0 + 1e-9).floor() / 3.0;
+            let t = (alone.summary.window.1.max(model.duration()) * 3.0 + 1e-9).floor() / 3.0;
             let until = Request { sample_times: &[t], until_settled, ..Request::default() };
-            if let Some(sample) = own.run(&until).samples.first() {
+            if let Some(sample) = model.run(&until).samples.first() {
                 let (x, v) = alone.carried.unwrap();
-                near(x, sample.x, 1e-11 * own.scales().length);
-                near(v, sample.v, 1e-10 * own.scales().speed);
+                near(x, sample.x, 1e-11 * model.scales().length);
+                near(v, sample.v, 1e-10 * model.scales().speed);
             }
         }
     }
@@ -183,12 +183,12 @@ fn a_walk_is_one_motion() {
     // 9.9 s hold 29 periods; the next cell goes on from there.
     let set = ["run.duration_s=9.9", "run.settle_s=3"];
     for (limit, amplitude) in [("1.5", "1"), ("1.5", "0.6"), ("4", "0.9")] {
-        let own = [&format!("stops.travel_limit_mm={limit}")[..], set[0], set[1]];
+        let changes = [&format!("stops.travel_limit_mm={limit}")[..], set[0], set[1]];
         let over = format!("excitation.amplitude_g={amplitude},{amplitude}");
         let options = SweepOptions { carry: Some(Carry::Up), ..both() };
-        let walked = rows(&crate::support::changed("paper", &own), &[&over], options);
+        let walked = rows(&crate::support::changed("paper", &changes), &[&over], options);
         let amplitude = format!("excitation.amplitude_g={amplitude}");
-        let long = preset("paper", &[own[0], &amplitude, "run.duration_s=60"]);
+        let long = preset("paper", &[changes[0], &amplitude, "run.duration_s=60"]);
         let run = long.run(&Request { sample_times: &[9.9, 29.0 / 3.0 + 9.9], ..Request::default() });
         for (i, sample) in run.samples.iter().enumerate() {
             let scales = long.scales();
@@ -277,10 +277,10 @@ fn a_stop_that_is_moved_over_the_mass_takes_it_along() {
 
 #[test]
 fn impacts_come_with_the_phase_of_the_drive() {
-    let own = crate::support::changed("paper", &["excitation.phase_deg=40", "run.duration_s=12"]);
-    let built = crate::shared::build(&own);
+    let document = crate::support::changed("paper", &["excitation.phase_deg=40", "run.duration_s=12"]);
+    let built = crate::shared::build(&document);
     let options = SectionOptions { at: SectionAt::Impacts, periods: None, until_settled: None, carry: None };
-    let (table, summary) = section(&built, &own.scene, &options, &AtomicBool::new(false)).unwrap();
+    let (table, summary) = section(&built, &document.scene, &options, &AtomicBool::new(false)).unwrap();
     assert_eq!(table.rows() as u64, summary.impacts);
     assert!(summary.impacts > 100);
     let (t, phase) = (table.numbers("t_s").unwrap(), table.numbers("phase_deg").unwrap());

@@ -27,10 +27,10 @@ fn multipliers_of_a_linear_oscillator() {
     // exp((-z w +- i w sqrt(1 - z^2)) T)
     for (ratio, frequency, periods) in [(0.0_f64, 0.2, 1_u32), (0.1, 0.2, 1), (0.3, 0.7, 3), (0.02, 1.1, 12)]
     {
-        let own = oscillator(&format!(
+        let model = oscillator(&format!(
             "damping: Ratio({ratio}), excitation: Sine(frequency_hz: {frequency}, amplitude_g: 0.02)"
         ));
-        let map = own.stroboscopic_map(0.3).unwrap();
+        let map = model.stroboscopic_map(0.3).unwrap();
         let time = map.period() * f64::from(periods);
         let (passage, jacobian) = map.pass_with_jacobian((0.3, -0.2), periods);
         let angle = time * (1.0 - ratio * ratio).sqrt();
@@ -65,15 +65,15 @@ fn the_map_is_the_run() {
         ("paper-unconstrained", &["excitation.amplitude_g=1.4"]),
         ("paper", &["stops=Hertz(travel_limit_mm: 1.5, stiffness_n_per_m1_5: 1e9, loss_s_per_m: 2)"]),
     ] {
-        let own = preset(name, changes);
+        let model = preset(name, changes);
         for phase in [0.0, 0.35] {
-            let map = own.stroboscopic_map(phase).unwrap();
+            let map = model.stroboscopic_map(phase).unwrap();
             let times: Vec<f64> = (3..6).map(|n| (f64::from(n) + phase) * map.period()).collect();
-            let run = run_at(&own, &times);
+            let run = run_at(&model, &times);
             let state = |n: usize| (run.samples[n].x, run.samples[n].v);
             let (passage, _) = map.pass_with_jacobian(state(0), 2);
             let plain = map.pass(state(0), 2);
-            let scales = own.scales();
+            let scales = model.scales();
             for passage in [passage, plain] {
                 assert_eq!(passage.outcome, Outcome::Done);
                 near(passage.state.0, state(2).0, 1e-6 * scales.length);
@@ -85,8 +85,8 @@ fn the_map_is_the_run() {
 
 #[test]
 fn a_pressed_rest_makes_both_multipliers_zero() {
-    let own = preset("paper", &["excitation.amplitude_g=1"]);
-    let map = own.stroboscopic_map(0.0).unwrap();
+    let model = preset("paper", &["excitation.amplitude_g=1"]);
+    let map = model.stroboscopic_map(0.0).unwrap();
     let (passage, jacobian) = map.pass_with_jacobian((1e-3, 0.05), 1);
     assert!(passage.rests() > 0 && passage.events.iter().any(|event| event.kind == EventKind::Release));
     assert_eq!(passage.determinant, Some(0.0));
@@ -98,8 +98,8 @@ fn a_pressed_rest_makes_both_multipliers_zero() {
 
 #[test]
 fn a_mass_that_rests_throughout_has_no_derivatives_left() {
-    let own = preset("paper", &["excitation.amplitude_g=0.1"]);
-    let map = own.stroboscopic_map(0.0).unwrap();
+    let model = preset("paper", &["excitation.amplitude_g=0.1"]);
+    let map = model.stroboscopic_map(0.0).unwrap();
     let (passage, jacobian) = map.pass_with_jacobian((1.5e-3, 0.0), 2);
     assert_eq!((passage.state, passage.events.len()), ((1.5e-3, 0.0), 0));
     assert_eq!((passage.determinant, jacobian.rows), (Some(0.0), [[0.0; 2]; 2]));
@@ -114,8 +114,8 @@ fn a_drive_without_a_period_has_no_map() {
         over_s: 3, amplitude_g: 1)",
         "AmplitudeRamp(frequency_hz: 3, from_g: 0, to_g: 1, over_s: 5)",
     ] {
-        let own = preset("paper", &[&format!("excitation={drive}")]);
-        assert!(own.stroboscopic_map(0.0).is_none(), "{drive}");
+        let model = preset("paper", &[&format!("excitation={drive}")]);
+        assert!(model.stroboscopic_map(0.0).is_none(), "{drive}");
     }
     let tones =
         "excitation=Sum([Sine(frequency_hz: 2, amplitude_g: 1), Sine(frequency_hz: 3, amplitude_g: 1)])";
@@ -126,8 +126,8 @@ fn a_drive_without_a_period_has_no_map() {
 fn the_nearest_miss_is_that_of_the_amplitude() {
     // free swing of an undamped linear oscillator: it turns back at +-0.5
     let swing = |stops: &str| {
-        let own = oscillator(&format!("stops: {stops}, start: At(x_mm: 500, v_m_per_s: 0)"));
-        StroboscopicMap::over(&own, TAU * 1.25).pass((0.5, 0.0), 1)
+        let model = oscillator(&format!("stops: {stops}, start: At(x_mm: 500, v_m_per_s: 0)"));
+        StroboscopicMap::over(&model, TAU * 1.25).pass((0.5, 0.0), 1)
     };
     let passage = swing("Uneven(left_mm: 500.5, right_mm: 510, restitution_right: 0.5)");
     near(passage.nearest_miss().unwrap(), 0.5e-3, 1e-12);
@@ -144,17 +144,17 @@ fn a_motion_that_begins_at_rest_has_missed_no_stop() {
     let stops = |left: f64, right: f64| {
         format!("stops: Uneven(left_mm: {left}, right_mm: {right}, restitution_right: 0.5)")
     };
-    let own = |x: f64, stops: &str, time: f64| {
-        let own = oscillator(&format!("{stops}, start: At(x_mm: {}, v_m_per_s: 0)", 1e3 * x));
-        let passage = StroboscopicMap::over(&own, time).pass((x, 0.0), 1);
+    let nearest = |x: f64, stops: &str, time: f64| {
+        let model = oscillator(&format!("{stops}, start: At(x_mm: {}, v_m_per_s: 0)", 1e3 * x));
+        let passage = StroboscopicMap::over(&model, time).pass((x, 0.0), 1);
         assert_eq!((passage.outcome, passage.impacts), (Outcome::Done, 0));
         passage.nearest_miss()
     };
     for near in [10.0, 0.5, 1e-6, 0.0] {
-        assert_eq!(own(0.5, &stops(520.0, 500.0 + near), 3.0), None);
-        assert_eq!(own(-0.5, &stops(500.0 + near, 520.0), 3.0), None);
-        near_relative(own(0.5, &stops(520.0, 500.0 + near), 3.3).unwrap(), 0.02, 1e-10);
-        near_relative(own(-0.5, &stops(500.0 + near, 520.0), 3.3).unwrap(), 0.02, 1e-10);
+        assert_eq!(nearest(0.5, &stops(520.0, 500.0 + near), 3.0), None);
+        assert_eq!(nearest(-0.5, &stops(500.0 + near, 520.0), 3.0), None);
+        near_relative(nearest(0.5, &stops(520.0, 500.0 + near), 3.3).unwrap(), 0.02, 1e-10);
+        near_relative(nearest(-0.5, &stops(500.0 + near, 520.0), 3.3).unwrap(), 0.02, 1e-10);
     }
     // at rest where the forces balance to rounding
     let well = model(
@@ -167,8 +167,8 @@ fn a_motion_that_begins_at_rest_has_missed_no_stop() {
     }
     // at rest on a stop up to its release
     for amplitude in 2..15 {
-        let own = preset("paper", &[&format!("excitation.amplitude_g={}", f64::from(amplitude) * 0.1)]);
-        let passage = own.stroboscopic_map(0.0).unwrap().pass((1.5e-3, 0.0), 2);
+        let model = preset("paper", &[&format!("excitation.amplitude_g={}", f64::from(amplitude) * 0.1)]);
+        let passage = model.stroboscopic_map(0.0).unwrap().pass((1.5e-3, 0.0), 2);
         assert!(
             passage.nearest_miss().is_none_or(|miss| miss > 1e-6),
             "{amplitude}: {:?}",

@@ -172,9 +172,9 @@ fn a_damping_ratio_is_told_in_all_its_meanings() {
     document.set("damping=Ratio(0.023)").unwrap();
     let lines = inspect(&document.scene, &Arc::new(Mechanism::new(curve))).unwrap();
     let of = |beginning: &str| {
-        let own: Vec<&String> = lines.iter().filter(|line| line.starts_with(beginning)).collect();
-        assert_eq!(own.len(), 1, "{lines:?}");
-        own[0].clone()
+        let found: Vec<&String> = lines.iter().filter(|line| line.starts_with(beginning)).collect();
+        assert_eq!(found.len(), 1, "{lines:?}");
+        found[0].clone()
     };
     let first = of("damping ratio 0.023: ");
     for word in

@@ -24,7 +24,7 @@ fn visits((name, changes): (&str, &[&str]), field: &str, values: &[f64], jobs: u
 }
 
 fn of(visits: &[Visit], direction: Direction) -> Vec<Visit> {
-    visits.iter().filter(|own| own.direction == direction).cloned().collect()
+    visits.iter().filter(|visit| visit.direction == direction).cloned().collect()
 }
 
 #[test]
@@ -38,16 +38,16 @@ fn they_are_the_rows_of_the_sweep_and_of_the_section() {
     let section = stdout(&format!("section duffing {over}"));
     let fields = ["direction", "amplitude_g"].map(|name| column(&section, name));
     for direction in [Direction::Up, Direction::Down] {
-        let own = of(&visits, direction);
+        let chosen = of(&visits, direction);
         let ways = column(&sweep, "direction");
         let rows: Vec<usize> = (0..ways.len()).filter(|row| ways[*row] == direction.name()).collect();
         let read = |name: &str, row: usize| column(&sweep, name)[row].parse::<f64>().unwrap();
         let expected: Vec<(f64, f64)> =
             rows.iter().map(|row| (read("amplitude_g", *row), read("rms_velocity_m_per_s", *row))).collect();
         let got: Vec<(f64, f64)> =
-            own.iter().map(|visit| (visit.value, visit.summary.rms_velocity.unwrap())).collect();
+            chosen.iter().map(|visit| (visit.value, visit.summary.rms_velocity.unwrap())).collect();
         assert_eq!(got, expected);
-        for visit in &own {
+        for visit in &chosen {
             let amplitude = visit.value.to_string();
             let of_it = |row: &usize| fields[0][*row] == direction.name() && fields[1][*row] == amplitude;
             let x = column(&section, "x_m");
@@ -67,14 +67,14 @@ fn a_value_without_a_scene_is_passed_over_and_threads_change_nothing() {
     let walked = |jobs: usize| visits(("paper", &[]), "mechanism.preload_mm", &[2.6, 50.0, 2.7], jobs);
     let bare = |visits: Vec<Visit>| {
         let mut all: Vec<Visit> = visits;
-        all.iter_mut().for_each(|own| own.summary.cpu_s = 0.0);
+        all.iter_mut().for_each(|visit| visit.summary.cpu_s = 0.0);
         all.sort_by(|a, b| {
             (a.direction.name(), a.value).partial_cmp(&(b.direction.name(), b.value)).unwrap()
         });
         all
     };
     let one = bare(walked(1));
-    assert_eq!(one.iter().map(|own| own.value).collect::<Vec<_>>(), [2.6, 2.7, 2.6, 2.7]);
+    assert_eq!(one.iter().map(|visit| visit.value).collect::<Vec<_>>(), [2.6, 2.7, 2.6, 2.7]);
     assert_eq!(one, bare(walked(3)));
 }
 

@@ -21,10 +21,10 @@ fn a_transient_is_no_verdict() {
     let short = ["run.duration_s=10", "run.settle_s=5"];
     let (mut early, mut crossing) = (0, 0);
     for hundredths in 116..=135 {
-        let own = settled(&unconstrained(f64::from(hundredths) / 100.0, &[]));
+        let summary = settled(&unconstrained(f64::from(hundredths) / 100.0, &[]));
         // at 1.24 g it may cross in every period and yet never repeat
-        assert!(own.settled == Some(true) || hundredths == 124, "{hundredths}");
-        crossing += usize::from((own.regime, own.side) == (Regime::Interwell, Some(Place::Both)));
+        assert!(summary.settled == Some(true) || hundredths == 124, "{hundredths}");
+        crossing += usize::from((summary.regime, summary.side) == (Regime::Interwell, Some(Place::Both)));
         let first = unconstrained(f64::from(hundredths) / 100.0, &short).run(&Request::default()).summary;
         early += usize::from(first.regime == Regime::Irregular);
         // what has no period yet is not called settled
@@ -37,9 +37,9 @@ fn a_transient_is_no_verdict() {
 fn it_is_known_since_when_a_motion_repeats() {
     // a start from which the beginning is too short for rounding to matter
     let start = ["start=At(x_mm: 0, v_m_per_s: -0.3)"];
-    let own = settled(&unconstrained(1.2, &start));
-    let since = own.settles_at.unwrap();
-    assert!(own.period == Some(1) && since > 5.0 && since < own.window.0, "{own:?}");
+    let summary = settled(&unconstrained(1.2, &start));
+    let since = summary.settles_at.unwrap();
+    assert!(summary.period == Some(1) && since > 5.0 && since < summary.window.0, "{summary:?}");
     // the strobes before that are others, those after it the same
     let times: Vec<f64> = (-2..6).map(|i| since + f64::from(i) / 3.0).collect();
     let run = run_at(&unconstrained(1.2, &start), &times);
@@ -72,15 +72,15 @@ fn no_age_makes_an_irregular_motion_a_settled_one() {
 #[test]
 fn a_long_transient_in_one_well_is_not_settled() {
     // for minutes the mass moves in one well, without a period, and looks steady; then it crosses
-    let own = |amplitude: f64, until: f64| {
+    let seen = |amplitude: f64, until: f64| {
         let request = Request { until_settled: Some(until), ..Request::default() };
         unconstrained(amplitude, &[]).run(&request).summary
     };
     for (amplitude, at) in [(1.152, 402.0), (1.1525, 567.0)] {
-        let early = own(amplitude, 113.0);
+        let early = seen(amplitude, 113.0);
         assert_eq!((early.regime, early.settled, early.steady), (Regime::Intrawell, Some(false), Some(true)));
         near(early.window.1, 110.0, 1e-9);
-        let late = own(amplitude, 1000.0);
+        let late = seen(amplitude, 1000.0);
         assert_eq!((late.regime, late.settled), (Regime::Interwell, Some(true)));
         near(late.settles_at.unwrap(), at, 1.0);
     }
@@ -128,11 +128,17 @@ fn no_length_of_a_run_changes_its_regime() {
     // 65536 crossings in the window, and one period more
     for duration in ["run.duration_s=10927", "run.duration_s=10928"] {
         for recurrence in ["run.recurrence=true", "run.recurrence=false"] {
-            let own = preset("paper", &[duration, "run.settle_s=5", recurrence]).run(&Request::default());
-            let own = own.summary;
-            assert_eq!((own.regime, own.period, own.settled), (Regime::Interwell, Some(1), Some(true)));
-            assert_eq!((own.crossing_periods, own.release_periods), (own.periods, own.periods));
-            assert_eq!(own.crossings, 2 * own.periods);
+            let run = preset("paper", &[duration, "run.settle_s=5", recurrence]).run(&Request::default());
+            let summary = run.summary;
+            assert_eq!(
+                (summary.regime, summary.period, summary.settled),
+                (Regime::Interwell, Some(1), Some(true))
+            );
+            assert_eq!(
+                (summary.crossing_periods, summary.release_periods),
+                (summary.periods, summary.periods)
+            );
+            assert_eq!(summary.crossings, 2 * summary.periods);
         }
     }
 }
@@ -141,9 +147,9 @@ fn no_length_of_a_run_changes_its_regime() {
 fn the_range_is_not_mirrored() {
     for duration in ["10", "10.17", "10.3"] {
         let duration = format!("run.duration_s={duration}");
-        let own = run(&preset("uneven-stops", &[&duration])).summary;
-        assert_eq!(own.range, Some((-1.5e-3, 1.7e-3)));
-        assert_eq!(own.max_abs_x, Some(1.7e-3));
+        let summary = run(&preset("uneven-stops", &[&duration])).summary;
+        assert_eq!(summary.range, Some((-1.5e-3, 1.7e-3)));
+        assert_eq!(summary.max_abs_x, Some(1.7e-3));
     }
 }
 
@@ -153,9 +159,9 @@ fn mean_displacement_side_and_fastest_impact() {
     let linear =
         "mass_g: 1000, mechanism: Polynomial(coefficients_si: [0, 4]), damping: Coefficient(c_n_s_per_m: 1)";
     let push = "excitation: Sum([Constant(accel_g: 0.01), Sine(frequency_hz: 1, amplitude_g: 0.1)])";
-    let own = run(&model(&format!("{linear}, {push}, run: (duration_s: 100, settle_s: 50)"))).summary;
-    near_relative(own.mean_x.unwrap(), -0.01 * 9.80665 / 4.0, 1e-9);
-    assert_eq!((own.side, own.impact_speed_max), (None, None)); // one well, no stop
+    let summary = run(&model(&format!("{linear}, {push}, run: (duration_s: 100, settle_s: 50)"))).summary;
+    near_relative(summary.mean_x.unwrap(), -0.01 * 9.80665 / 4.0, 1e-9);
+    assert_eq!((summary.side, summary.impact_speed_max), (None, None)); // one well, no stop
     // a ball that is dropped from 1 m hits with sqrt(2 g h)
     let ball = run(&preset("bouncing-ball", &["run.settle_s=0"])).summary;
     near_relative(ball.impact_speed_max.unwrap(), (2.0 * 9.81_f64).sqrt(), 1e-9);
@@ -181,9 +187,13 @@ fn a_drive_that_changes_gets_no_word_of_periodicity() {
     let noise = "excitation=Noise(rms_g: 1, low_hz: 1, high_hz: 5, seed: 1)";
     let ramp = "excitation=AmplitudeRamp(frequency_hz: 3, from_g: 0, to_g: 2, over_s: 2)";
     for drive in [sums, chirp, noise, ramp] {
-        let own = run(&preset("paper", &[drive])).summary;
-        assert_eq!((own.regime.name(), own.period, own.settled), ("crossing", None, None), "{drive}");
-        let first = own.firsts.unwrap();
+        let summary = run(&preset("paper", &[drive])).summary;
+        assert_eq!(
+            (summary.regime.name(), summary.period, summary.settled),
+            ("crossing", None, None),
+            "{drive}"
+        );
+        let first = summary.firsts.unwrap();
         assert!(first.release.unwrap().t < first.crossing.unwrap().t, "{drive} {first:?}");
     }
     // nothing drives it: it crosses, and does not settle
@@ -210,7 +220,7 @@ fn a_ramp_tells_when_it_frees_crosses_and_always_crosses() {
     assert_eq!(firsts.crossing_in_every_period, firsts.crossing);
     // a ramp that falls again: it does not cross to the end
     let down = "excitation=Sum([AmplitudeRamp(frequency_hz: 3, from_g: 2, to_g: 0, over_s: 20)])";
-    let own = super::support::run(&preset("paper", &[down, "run.duration_s=30"])).summary;
-    let firsts = own.firsts.unwrap();
+    let summary = super::support::run(&preset("paper", &[down, "run.duration_s=30"])).summary;
+    let firsts = summary.firsts.unwrap();
     assert!(firsts.crossing.is_some() && firsts.crossing_in_every_period.is_none());
 }

@@ -61,15 +61,15 @@ fn stops_may_differ_and_one_stays() {
 
 #[test]
 fn a_sweep_over_what_is_switched_off_waits() {
-    let mut own = session("paper", &[]);
-    let axes = own.scene().sweep.clone();
-    own.switch_stops(false);
-    assert!(own.fault().is_none(), "{:?}", own.fault());
+    let mut session = session("paper", &[]);
+    let axes = session.scene().sweep.clone();
+    session.switch_stops(false);
+    assert!(session.fault().is_none(), "{:?}", session.fault());
     // what is written can be opened
-    let text = own.editor.text().unwrap();
+    let text = session.editor.text().unwrap();
     assert!(interwell::app::session::editor::Editor::from_text(&text).unwrap().document().check().is_ok());
-    own.switch_stops(true);
-    assert!(own.fault().is_none() && own.scene().sweep == axes);
+    session.switch_stops(true);
+    assert!(session.fault().is_none() && session.scene().sweep == axes);
 }
 
 #[test]

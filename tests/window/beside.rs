@@ -32,8 +32,8 @@ fn set(harness: &mut Harness<'static, Window>, path: &str, value: f64) {
 
 /// The poles from above to below, with their heights.
 fn poles(harness: &Harness<'static, Window>) -> Vec<(String, f32)> {
-    let all = painted(harness).into_iter().filter(|own| ["N", "S"].contains(&own.0.as_str()));
-    let mut poles: Vec<(String, f32)> = all.map(|own| (own.0, own.1.center().y)).collect();
+    let all = painted(harness).into_iter().filter(|text| ["N", "S"].contains(&text.0.as_str()));
+    let mut poles: Vec<(String, f32)> = all.map(|text| (text.0, text.1.center().y)).collect();
     poles.sort_by(|a, b| a.1.total_cmp(&b.1));
     poles
 }
@@ -41,7 +41,7 @@ fn poles(harness: &Harness<'static, Window>) -> Vec<(String, f32)> {
 #[test]
 fn a_scene_is_drawn_with_what_it_has_and_with_nothing_else() {
     for preset in PRESETS {
-        let own: &[&str] = match preset.name {
+        let shown: &[&str] = match preset.name {
             "balanced" => &["spring 50"],
             "magnet" => &["magnets attract"],
             "harvester" => &["load 60 ohm"],
@@ -50,7 +50,7 @@ fn a_scene_is_drawn_with_what_it_has_and_with_nothing_else() {
         for size in [WIDE, PROJECTED] {
             let harness = alone(preset.name, size);
             for name in NAMES {
-                assert_eq!(is_painted(&harness, name), own.contains(&name), "{}: {name}", preset.name);
+                assert_eq!(is_painted(&harness, name), shown.contains(&name), "{}: {name}", preset.name);
             }
             let count = match preset.name {
                 "magnet" => 4,
@@ -67,7 +67,7 @@ fn a_scene_is_drawn_with_what_it_has_and_with_nothing_else() {
 fn facing_poles_attract_or_repel_as_the_force_does() {
     let mut harness = alone("magnet", WIDE);
     let letters = |harness: &Harness<'static, Window>| -> String {
-        poles(harness).into_iter().map(|own| own.0).collect()
+        poles(harness).into_iter().map(|pole| pole.0).collect()
     };
     assert_eq!(letters(&harness), "NSNS");
     let apart = |harness: &Harness<'static, Window>| {
@@ -107,7 +107,9 @@ fn springs_and_magnets_need_no_flexures_beside_them() {
     set(&mut harness, "mechanism.0.n_per_m", 0.0);
     assert!(
         is_painted(&harness, "a free mass")
-            && painted(&harness).iter().all(|own| !own.0.ends_with("N/m") || !own.0.starts_with("spring"))
+            && painted(&harness)
+                .iter()
+                .all(|label| !label.0.ends_with("N/m") || !label.0.starts_with("spring"))
     );
 }
 
@@ -134,8 +136,8 @@ fn a_load_has_its_name_where_the_mechanism_shares_a_projected_window() {
     let mut harness = window("harvester", PROJECTED);
     harness.run_steps(3);
     let all = painted(&harness);
-    let own = all.iter().find(|own| own.0.contains("load 60 ohm"));
-    assert!(own.is_some_and(|own| own.2.contains_rect(own.1)), "{own:?} {all:?}");
+    let load = all.iter().find(|text| text.0.contains("load 60 ohm"));
+    assert!(load.is_some_and(|text| text.2.contains_rect(text.1)), "{load:?} {all:?}");
 }
 
 #[test]

@@ -12,7 +12,7 @@ use interwell::app::window::{Command, Window};
 use interwell::scene::Layout;
 use interwell::scene::lesson::Step;
 
-use crate::lessons::{go_to, own};
+use crate::lessons::{go_to, opened_own};
 use crate::support::{
     LONG, PROJECTED, WIDE, click_on, command, is_painted, painted, press, sliced, window, window_with,
 };
@@ -27,7 +27,7 @@ fn shapes(harness: &Harness<'static, Window>) -> Vec<(Shape, Rect)> {
         }
     }
     let mut all = Vec::new();
-    harness.output().shapes.iter().for_each(|own| flat(&own.shape, own.clip_rect, &mut all));
+    harness.output().shapes.iter().for_each(|clipped| flat(&clipped.shape, clipped.clip_rect, &mut all));
     all
 }
 
@@ -42,7 +42,7 @@ fn is_drawn(harness: &Harness<'static, Window>, place: Rect) -> bool {
 
 fn text(harness: &Harness<'static, Window>, words: &str) -> Rect {
     let all = painted(harness);
-    all.iter().find(|own| own.0 == words).unwrap_or_else(|| panic!("{words}: {all:?}")).1
+    all.iter().find(|text| text.0 == words).unwrap_or_else(|| panic!("{words}: {all:?}")).1
 }
 
 #[test]
@@ -53,14 +53,14 @@ fn a_title_stands_in_one_row_with_its_legend_where_there_is_room() {
     assert!((title.center().y - legend.center().y).abs() <= 3.0, "{title:?} {legend:?}");
     assert!(card.contains_rect(title) && legend.left() > title.right() + 4.0);
     let all = painted(&harness);
-    let (title, push) = (text(&harness, "Mechanism"), all.iter().find(|own| own.0.starts_with("push ")));
+    let (title, push) = (text(&harness, "Mechanism"), all.iter().find(|text| text.0.starts_with("push ")));
     // the tail of a letter reaches below the row
     assert!((title.center().y - push.unwrap().1.center().y).abs() <= 3.0, "{title:?} {push:?}");
     // without room it has a row of its own
     let mut harness = window("paper", WIDE);
     command(&mut harness, Command::Arrange(Layout::Study));
     let (title, all) = (text(&harness, "Well"), painted(&harness));
-    let legend = all.iter().find(|own| own.0.contains("with the push")).unwrap();
+    let legend = all.iter().find(|text| text.0.contains("with the push")).unwrap();
     assert!(legend.1.top() >= title.bottom() - 2.0, "{title:?} {legend:?}");
     assert_eq!(sliced(&harness), [] as [String; 0]);
 }
@@ -174,11 +174,11 @@ fn a_covered_view_is_hatched_and_asks() {
     press(&mut harness, Key::C);
     let card = harness.state().tiling.place_of(View::Displacement).unwrap();
     let all = painted(&harness);
-    let asked = all.iter().filter(|own| own.0 == "What do you expect?" && card.contains_rect(own.1));
+    let asked = all.iter().filter(|text| text.0 == "What do you expect?" && card.contains_rect(text.1));
     let asked: Vec<_> = asked.collect();
     assert_eq!(asked.len(), 1);
     assert!((asked[0].1.center().x - card.center().x).abs() < 2.0);
-    let mark = all.iter().find(|own| own.0 == "?" && card.contains_rect(own.1)).unwrap();
+    let mark = all.iter().find(|text| text.0 == "?" && card.contains_rect(text.1)).unwrap();
     assert!((mark.1.center().x - card.center().x).abs() < 2.0 && mark.1.bottom() <= asked[0].1.top());
     let is_hatch = |shape: &(Shape, Rect)| match &shape.0 {
         Shape::LineSegment { points, stroke } => {
@@ -188,10 +188,10 @@ fn a_covered_view_is_hatched_and_asks() {
     };
     assert!(shapes(&harness).iter().filter(|shape| is_hatch(shape)).count() > 10);
     // in a lesson it is the question of the step
-    let mut harness = own(WIDE);
+    let mut harness = opened_own(WIDE);
     assert!(go_to(&mut harness, |step| matches!(step, Step::Predict { .. })));
-    let question = painted(&harness).into_iter().filter(|own| own.0.ends_with('?') && own.0.len() > 8);
-    let places: Vec<Rect> = question.map(|own| own.1).collect();
+    let question = painted(&harness).into_iter().filter(|text| text.0.ends_with('?') && text.0.len() > 8);
+    let places: Vec<Rect> = question.map(|text| text.1).collect();
     let card = harness.state().tiling.place_of(View::Displacement).unwrap();
     assert!(places.iter().any(|place| card.contains_rect(*place)), "{places:?} {card:?}");
 }
@@ -207,7 +207,7 @@ fn a_view_without_data_says_in_its_middle_what_would_give_it_some() {
         View::ALL.into_iter().for_each(|other| command(&mut harness, Command::Show(other, other == view)));
         let card = harness.state().tiling.place_of(view).unwrap();
         let all = painted(&harness);
-        let (_, place, _) = all.iter().find(|own| own.0.starts_with(words)).unwrap();
+        let (_, place, _) = all.iter().find(|text| text.0.starts_with(words)).unwrap();
         assert!((place.center().x - card.center().x).abs() < 8.0, "{view:?}: {place:?} in {card:?}");
         assert!((place.center().y - card.center().y).abs() < 0.25 * card.height(), "{view:?}: {place:?}");
     }
@@ -225,7 +225,7 @@ fn the_bar_of_time_shows_the_run_and_the_events_that_there_are() {
         _ => None,
     });
     assert!(handle.unwrap().x < bar.center().x, "{handle:?} {bar:?}");
-    let clock = painted(&harness).into_iter().find(|own| own.0.ends_with(" s") && own.1.top() > 660.0);
+    let clock = painted(&harness).into_iter().find(|text| text.0.ends_with(" s") && text.1.top() > 660.0);
     assert!(clock.unwrap().1.right() <= bar.left());
     let length = text(&harness, "20 s");
     assert!(length.left() > bar.right() - 12.0 && (length.center().y - bar.center().y).abs() < 8.0);
@@ -317,11 +317,13 @@ fn the_tools_of_a_map_are_whole_and_its_quantities_are_in_groups() {
         harness.state_mut().session.wait_for_map(LONG);
         harness.run_steps(4);
         let card = harness.state().tiling.place_of(View::Map).unwrap();
-        let cut = painted(&harness).into_iter().filter(|own| {
-            let text = own.1.shrink(1.0);
-            card.contains(text.center()) && own.2.intersects(text) && !own.2.expand(0.5).contains_rect(text)
+        let cut = painted(&harness).into_iter().filter(|label| {
+            let text = label.1.shrink(1.0);
+            card.contains(text.center())
+                && label.2.intersects(text)
+                && !label.2.expand(0.5).contains_rect(text)
         });
-        assert_eq!(cut.map(|own| own.0).collect::<Vec<_>>(), [""; 0], "{size:?}");
+        assert_eq!(cut.map(|label| label.0).collect::<Vec<_>>(), [""; 0], "{size:?}");
         let has_rows = harness.query_by_label("Options").is_none();
         assert_eq!(has_rows, size == WIDE);
         let names = match has_rows {
@@ -330,7 +332,7 @@ fn the_tools_of_a_map_are_whole_and_its_quantities_are_in_groups() {
         };
         let role = |name: &str| if name.starts_with("map") { Role::ComboBox } else { Role::Button };
         let names: Vec<(&str, Role)> = names.iter().map(|name| (*name, role(name))).collect();
-        let places = names.iter().map(|own| harness.get_by_role_and_label(own.1, own.0).rect());
+        let places = names.iter().map(|tool| harness.get_by_role_and_label(tool.1, tool.0).rect());
         let places: Vec<Rect> = places.collect();
         for (i, (name, place)) in names.iter().zip(&places).enumerate() {
             assert!(card.contains_rect(*place), "{size:?}: {name:?} {place:?} in {card:?}");
@@ -387,7 +389,7 @@ fn a_coil_lies_around_its_magnet() {
     harness.state_mut().session.player.set_playing(false);
     harness.run_steps(3);
     let all = shapes(&harness);
-    let rows: Vec<Rect> = all.iter().filter_map(|own| is_coil(&own.0, LIGHT.frame_colour())).collect();
+    let rows: Vec<Rect> = all.iter().filter_map(|shape| is_coil(&shape.0, LIGHT.frame_colour())).collect();
     assert_eq!(rows.len(), 2, "{rows:?}");
     let (north, south) = (text(&harness, "N"), text(&harness, "S"));
     let [upper, lower] = [rows[0], rows[1]];

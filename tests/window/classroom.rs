@@ -9,7 +9,7 @@ use interwell::app::window::Command;
 use interwell::app::words::meanings::{GLOSSARY, UNDERLINED, meaning};
 use interwell::scene::lesson::{LESSONS, Step};
 
-use crate::lessons::{OWN, Shown, go_on, go_to, is_anywhere, number, opened, own, until, written};
+use crate::lessons::{OWN, Shown, go_on, go_to, is_anywhere, number, opened, opened_own, until, written};
 use crate::support::{
     LONG, PROJECTED, WIDE, click_on, command, is_painted, painted, press, press_with_ctrl, window_with,
 };
@@ -23,11 +23,11 @@ fn edge(harness: &Shown) -> f32 {
 #[test]
 fn the_strip_of_a_lesson_has_one_height_from_its_first_step_to_its_last() {
     for size in [WIDE, PROJECTED] {
-        for own in LESSONS {
-            let mut harness = opened(own.name, size);
+        for entry in LESSONS {
+            let mut harness = opened(entry.name, size);
             let first = edge(&harness);
             while let Some(lesson) = harness.state().lesson() {
-                let at = (own.name, size, lesson.number());
+                let at = (entry.name, size, lesson.number());
                 if !lesson.is_covering() && lesson.offered_hint().is_some() {
                     press(&mut harness, Key::H);
                     assert!(is_painted(&harness, "Hint: "), "{at:?}");
@@ -41,7 +41,7 @@ fn the_strip_of_a_lesson_has_one_height_from_its_first_step_to_its_last() {
 
 #[test]
 fn a_hint_comes_when_asked_is_offered_after_three_tries_and_leaves_when_the_task_is_done() {
-    let mut harness = own(WIDE);
+    let mut harness = opened_own(WIDE);
     assert!(go_to(&mut harness, |step| matches!(step, Step::Do { .. })));
     let limit = |harness: &mut Shown, mm: f64| {
         harness.state_mut().session.set_number("stops.travel_limit_mm", mm).unwrap();
@@ -53,14 +53,14 @@ fn a_hint_comes_when_asked_is_offered_after_three_tries_and_leaves_when_the_task
     assert!(!is_painted(&harness, "Hint: ") && is_painted(&harness, "Hint (H)"));
     for (mm, is_offered) in [(3.9, false), (3.8, false), (3.7, true)] {
         limit(&mut harness, mm);
-        until(&mut harness, "a verdict", |own| is_painted(own, "Not yet: it still rests on its stop."));
+        until(&mut harness, "a verdict", |shown| is_painted(shown, "Not yet: it still rests on its stop."));
         harness.run_steps(2);
         assert_eq!(is_painted(&harness, "Would a hint help? (H)"), is_offered, "{mm}");
     }
     press(&mut harness, Key::H);
     assert!(is_painted(&harness, "Hint: "));
     limit(&mut harness, 1.5);
-    until(&mut harness, "the goal is met", |own| own.state().lesson().unwrap().answer().met);
+    until(&mut harness, "the goal is met", |shown| shown.state().lesson().unwrap().answer().met);
     harness.run_steps(2);
     assert!(is_painted(&harness, "Done.") && !is_painted(&harness, "Hint"));
 }
@@ -131,7 +131,7 @@ fn a_lesson_that_was_begun_before_asks_where_to_begin() {
 fn heights(harness: &Shown) -> (f32, f32) {
     let pixels = 1280.0 / PROJECTED[0];
     let places: Vec<_> =
-        View::ALL.into_iter().filter_map(|own| harness.state().tiling.place_of(own)).collect();
+        View::ALL.into_iter().filter_map(|view| harness.state().tiling.place_of(view)).collect();
     let bottom = places.iter().map(|place| place.bottom()).fold(0.0, f32::max);
     let whole = harness.ctx.content_rect().height();
     (pixels * (edge(harness) + whole - bottom), pixels * (bottom - edge(harness)))
@@ -148,9 +148,9 @@ fn a_projector_leaves_the_height_to_the_views() {
     let height = map.height() * 1280.0 / PROJECTED[0];
     assert!(height >= 350.0 && heights(&harness).0 <= 200.0, "{height} {:?}", heights(&harness));
     // below the text of a lesson half is left, or nearly
-    for own in LESSONS {
-        let harness = opened(own.name, PROJECTED);
-        assert!(heights(&harness).1 >= 350.0, "{}: {:?}", own.name, heights(&harness));
+    for entry in LESSONS {
+        let harness = opened(entry.name, PROJECTED);
+        assert!(heights(&harness).1 >= 350.0, "{}: {:?}", entry.name, heights(&harness));
         let line = harness.get_by_label("Next").rect();
         assert!(line.bottom() < edge(&harness) && line.right() <= PROJECTED[0], "{line:?}");
     }
@@ -161,7 +161,7 @@ fn the_starts_of_a_question_are_seen_in_the_phase_portrait() {
     let mut harness = opened("07-a-coin-toss", WIDE);
     let dots = |harness: &Shown| {
         let place = harness.state().tiling.place_of(View::PhasePortrait).unwrap();
-        let is_dot = |own: &&eframe::egui::epaint::ClippedShape| match &own.shape {
+        let is_dot = |clipped: &&eframe::egui::epaint::ClippedShape| match &clipped.shape {
             Shape::Circle(circle) => circle.radius == 2.0 && place.contains(circle.center),
             _ => false,
         };
@@ -196,7 +196,7 @@ fn a_view_over_the_window_has_the_whole_window() {
     press(&mut harness, Key::Z);
     harness.get_by_label("File");
     // in a lesson a step on brings the text back
-    let mut harness = own(PROJECTED);
+    let mut harness = opened_own(PROJECTED);
     press(&mut harness, Key::Z);
     assert!(!is_painted(&harness, "Shaken at 1 g"));
     press(&mut harness, Key::PageDown);
@@ -209,14 +209,14 @@ fn the_notes_mark_the_line_of_now() {
     press_with_ctrl(&mut harness, Key::L);
     let height = |harness: &Shown, text: &str| {
         let all = painted(harness);
-        all.iter().find(|own| own.0 == text).map(|own| own.1.center().y).unwrap()
+        all.iter().find(|label| label.0 == text).map(|label| label.1.center().y).unwrap()
     };
     for time in ["0:00", "0:30", "1:30", "4:30"] {
         assert!(is_painted(&harness, time), "{time}");
     }
     // a long line goes on below, beside its time
     let all = painted(&harness);
-    let long = all.iter().find(|own| own.0.starts_with("Ask why it was stuck")).unwrap();
+    let long = all.iter().find(|text| text.0.starts_with("Ask why it was stuck")).unwrap();
     assert!(long.1.right() <= long.2.right() && long.1.height() > 20.0, "{long:?}");
     let above = |harness: &Shown, time: &str| height(harness, "now") - height(harness, time);
     assert!((1.0..30.0).contains(&above(&harness, "0:00")));
@@ -227,7 +227,7 @@ fn the_notes_mark_the_line_of_now() {
 
 #[test]
 fn votes_are_counted_beside_a_prediction() {
-    let mut harness = own(WIDE);
+    let mut harness = opened_own(WIDE);
     assert!(go_to(&mut harness, |step| matches!(step, Step::Predict { .. })));
     let shift = |harness: &mut Shown, key: Key| {
         harness.key_press_modifiers(Modifiers::SHIFT, key);
@@ -269,7 +269,7 @@ fn the_glossary_has_every_underlined_word_and_those_of_the_window() {
         assert!(GLOSSARY.contains(&word) && meaning(word).is_some(), "{word}");
     }
     assert!(GLOSSARY.iter().map(|word| word.to_lowercase()).is_sorted());
-    let mut harness = own(WIDE);
+    let mut harness = opened_own(WIDE);
     press(&mut harness, Key::F2);
     assert!(is_anywhere(&harness, "separatrix") && is_anywhere(&harness, "preload"));
 }

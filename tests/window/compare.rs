@@ -58,17 +58,17 @@ fn a_pin_of_the_scene_lies_on_the_motion_to_the_bit() {
     command(&mut harness, Command::PlayPause);
     frames_until(&mut harness, "the pin", |session| !session.pins.are_behind(session.player.time()));
     let session = &harness.state().session;
-    let (own, pin) = (session.player.watch(), pinned(session, 'A').watch());
-    assert_eq!(own.now(), pin.now());
+    let (watch, pin) = (session.player.watch(), pinned(session, 'A').watch());
+    assert_eq!(watch.now(), pin.now());
     // sums that were taken in other pieces
-    let (own_j, pin_j) = (own.ledger().work_j, pin.ledger().work_j);
+    let (own_j, pin_j) = (watch.ledger().work_j, pin.ledger().work_j);
     assert!(own_j > 0.01 && (own_j / pin_j - 1.0).abs() < 1e-13, "{own_j} {pin_j}");
-    assert_eq!(own.events(), pin.events());
-    assert!(own.events().iter().any(|event| event.kind == EventKind::Impact && event.t > since));
-    let apart = distances(own, pin, (0.0, own.time()), 500);
-    assert!(apart.len() > 250 && apart.iter().all(|own| own.1 == 0.0));
+    assert_eq!(watch.events(), pin.events());
+    assert!(watch.events().iter().any(|event| event.kind == EventKind::Impact && event.t > since));
+    let apart = distances(watch, pin, (0.0, watch.time()), 500);
+    assert!(apart.len() > 250 && apart.iter().all(|point| point.1 == 0.0));
     // in the past it is at the same instant
-    let then = 0.5 * (since + own.time());
+    let then = 0.5 * (since + watch.time());
     harness.state_mut().session.player.seek(then);
     harness.run_steps(2);
     let session = &harness.state().session;
@@ -114,16 +114,16 @@ fn without_stops_it_is_another_motion_from_here_on() {
     let now = pinned(&session, 'A').watch().now();
     assert_eq!((now.t, now.x, now.v), (fork.t, fork.x, fork.v));
     play(&mut session, 3.0);
-    let (own, pin) = (session.player.watch(), pinned(&session, 'A'));
+    let (watch, pin) = (session.player.watch(), pinned(&session, 'A'));
     assert_eq!((pin.scene().stops, pin.since()), (Stops::None, fork.t));
     assert_ne!(session.scene().stops, Stops::None);
     let reach = |samples: &std::collections::VecDeque<interwell::dynamics::Sample>| {
-        samples.iter().map(|own| own.x.abs()).fold(0.0, f64::max)
+        samples.iter().map(|sample| sample.x.abs()).fold(0.0, f64::max)
     };
-    assert!(reach(own.samples()) <= 1.5e-3 && reach(pin.watch().samples()) > 3e-3);
+    assert!(reach(watch.samples()) <= 1.5e-3 && reach(pin.watch().samples()) > 3e-3);
     // the same drive at the same time, and the same way before
-    assert_eq!((own.time(), own.now().base_accel), (pin.watch().time(), pin.watch().now().base_accel));
-    assert!(distances(own, pin.watch(), (0.0, fork.t), 100).iter().all(|own| own.1 == 0.0));
+    assert_eq!((watch.time(), watch.now().base_accel), (pin.watch().time(), pin.watch().now().base_accel));
+    assert!(distances(watch, pin.watch(), (0.0, fork.t), 100).iter().all(|point| point.1 == 0.0));
     // and back: with the stops that were there
     session.take_back('A');
     session.poll();
@@ -256,7 +256,7 @@ fn the_table_of_three_pins_needs_no_scrolling_sideways() {
             harness.run_steps(1);
             let session = &harness.state().session;
             session.now_card().settled.is_some()
-                && session.pins.all().iter().all(|own| own.settled().is_some())
+                && session.pins.all().iter().all(|pin| pin.settled().is_some())
         });
         command(&mut harness, Command::Show(View::Compare, true));
         harness.get_by_label("Compare").click();
@@ -292,14 +292,14 @@ fn two_motions_stand_side_by_side_and_a_hand_moves_the_present_one_alone() {
     harness.state_mut().session.player.speed = 1.0;
     harness.run_steps(60);
     let session = &harness.state().session;
-    let (own, pin) = (session.player.state(), pinned(session, 'A').state_at(session.player.time()));
-    assert!(own.t == pin.t && own.base_accel == pin.base_accel && (own.x - pin.x).abs() > 1e-3);
+    let (state, pin) = (session.player.state(), pinned(session, 'A').state_at(session.player.time()));
+    assert!(state.t == pin.t && state.base_accel == pin.base_accel && (state.x - pin.x).abs() > 1e-3);
     // two drawings and two wells, and one motion that can be taken hold of in each of them
     assert_eq!(harness.query_all_by_label("proof mass").count(), 2);
     press(&mut harness, Key::Space);
     let place = harness.state().tiling.place_of(View::SideBySide).unwrap();
     let masses: Vec<f32> =
-        harness.query_all_by_label("proof mass").map(|own| own.rect().center().x).collect();
+        harness.query_all_by_label("proof mass").map(|node| node.rect().center().x).collect();
     assert!(masses.iter().all(|x| *x < place.center().x), "{masses:?}");
     // the stops of the pinned one are no sliders
     assert_eq!(harness.query_all_by_label("right stop").count(), 0);
@@ -340,8 +340,8 @@ fn a_pin_has_its_letter_at_its_end_and_lies_under_the_motion() {
     harness.state_mut().session.switch_stops(true);
     harness.run_steps(60);
     let place = harness.state().tiling.place_of(View::Displacement).unwrap();
-    let at_end = |own: &&(String, eframe::egui::Rect, eframe::egui::Rect)| {
-        own.0 == "A" && place.contains(own.1.center()) && own.1.top() > place.top() + 50.0
+    let at_end = |text: &&(String, eframe::egui::Rect, eframe::egui::Rect)| {
+        text.0 == "A" && place.contains(text.1.center()) && text.1.top() > place.top() + 50.0
     };
     let all = painted(&harness);
     let ends: Vec<_> = all.iter().filter(at_end).collect();
@@ -357,7 +357,7 @@ fn a_pin_has_its_letter_at_its_end_and_lies_under_the_motion() {
         Shape::Rect(rect) => place.contains_rect(rect.rect) && rect.stroke.width == 1.5,
         _ => false,
     };
-    let letter = shapes.iter().position(|own| is_letter(&own.shape)).unwrap();
-    let mass = shapes.iter().rposition(|own| is_box(&own.shape)).unwrap();
+    let letter = shapes.iter().position(|clipped| is_letter(&clipped.shape)).unwrap();
+    let mass = shapes.iter().rposition(|clipped| is_box(&clipped.shape)).unwrap();
     assert!(letter < mass, "{letter} {mass}");
 }

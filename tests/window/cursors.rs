@@ -125,7 +125,7 @@ fn a_period_is_read_off_between_them() {
     assert!((moved - 0.02).abs() < 1e-9, "{moved}");
     // from event to event
     let [a, _] = harness.state().memory.cursors.at;
-    let next = watch.events().iter().find(|own| own.t > a).unwrap().t;
+    let next = watch.events().iter().find(|event| event.t > a).unwrap().t;
     press(&mut harness, Key::ArrowUp);
     assert_eq!(harness.state().memory.cursors.at[0], next);
     // the same event a period later: interwell motion of period 1
@@ -141,8 +141,8 @@ fn a_period_is_read_off_between_them() {
     harness.run_steps(2);
     for _ in 0..500 {
         match harness.state().memory.cursors.at[1] {
-            own if own == later => break,
-            own => harness.key_press(if own < later { Key::ArrowUp } else { Key::ArrowDown }),
+            now if now == later => break,
+            now => harness.key_press(if now < later { Key::ArrowUp } else { Key::ArrowDown }),
         }
         harness.run_steps(2);
     }
@@ -174,7 +174,7 @@ fn a_click_moves_the_nearer_one_and_ctrl_goes_to_an_event() {
     assert!(dragged[0] == after[0] && dragged[1] > after[1] + 0.03, "{after:?} {dragged:?}");
     click(&mut harness, at, Modifiers::COMMAND);
     let snapped = harness.state().memory.cursors.at[0];
-    assert!(harness.state().session.player.watch().events().iter().any(|own| own.t == snapped));
+    assert!(harness.state().session.player.watch().events().iter().any(|event| event.t == snapped));
     assert_ne!(snapped, after[0]);
     // and nothing of it moves the scene or the motion
     assert!(!harness.state().session.editor.can_undo() && !harness.state().session.player.is_past());
@@ -251,7 +251,7 @@ fn wheel_keys_box_and_drag_choose_both_axes() {
     let ends = |harness: &Harness<'static, Window>| harness.state().memory.chosen_axes(View::ForceCurve);
     let rect = place(&harness, View::ForceCurve);
     let at = pos2(rect.left() + 0.3 * rect.width(), rect.center().y);
-    let length = |own: Option<(f64, f64)>| own.map(|own| own.1 - own.0).unwrap();
+    let length = |limits: Option<(f64, f64)>| limits.map(|range| range.1 - range.0).unwrap();
     wheel(&mut harness, at, Modifiers::NONE, 60.0);
     let [across, up] = ends(&harness);
     assert!(across.is_some() && up.is_none());

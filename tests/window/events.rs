@@ -28,20 +28,20 @@ fn listed(preset: &str, size: [f32; 2], seconds: usize) -> Harness<'static, Wind
 /// The rows that are drawn.
 fn rows(harness: &Harness<'static, Window>) -> Vec<String> {
     let all = harness.query_all_by_label_contains(", at ");
-    all.filter_map(|node| node.accesskit_node().label()).filter(|own| own.contains("phase")).collect()
+    all.filter_map(|node| node.accesskit_node().label()).filter(|label| label.contains("phase")).collect()
 }
 
 #[test]
 fn events_have_the_columns_of_the_command_line_and_two_more() {
-    let mut own = session("paper", &[]);
-    own.player.speed = 100.0;
-    own.player.tick(0.1);
-    let watch = own.player.watch();
+    let mut session = session("paper", &[]);
+    session.player.speed = 100.0;
+    session.player.tick(0.1);
+    let watch = session.player.watch();
     let table = watched_events(watch, 0..usize::MAX);
     let events: Vec<_> = watch.events().iter().copied().collect();
     let plain = events_table(&events);
     assert_eq!(table.columns()[..5], *plain.columns());
-    let names: Vec<&str> = table.columns()[5..].iter().map(|own| own.name.as_str()).collect();
+    let names: Vec<&str> = table.columns()[5..].iter().map(|column| column.name.as_str()).collect();
     assert_eq!(names, ["phase_deg", "lost_j"]);
     // the impacts take what the ledger says, but for the end of each chatter
     let lost: f64 = table.numbers("lost_j").unwrap().iter().sum();
@@ -62,15 +62,15 @@ fn events_have_the_columns_of_the_command_line_and_two_more() {
 
 #[test]
 fn a_compliant_contact_has_no_loss_of_one_instant() {
-    let mut own =
+    let mut session =
         settled("paper", &["stops=Hertz(travel_limit_mm:1.5,radius_mm:5,young_gpa:69,loss_s_per_m:4.854)"]);
-    own.player.speed = 10.0;
-    (0..20).for_each(|_| own.player.tick(0.1));
-    let watch = own.player.watch();
+    session.player.speed = 10.0;
+    (0..20).for_each(|_| session.player.tick(0.1));
+    let watch = session.player.watch();
     let table = watched_events(watch, 0..usize::MAX);
     let touches = watch.events().iter().zip(table.numbers("lost_j").unwrap());
-    let touches: Vec<_> = touches.filter(|own| own.0.kind == EventKind::Contact).collect();
-    assert!(!touches.is_empty() && touches.iter().all(|own| own.1.is_nan()));
+    let touches: Vec<_> = touches.filter(|touch| touch.0.kind == EventKind::Contact).collect();
+    assert!(!touches.is_empty() && touches.iter().all(|touch| touch.1.is_nan()));
 }
 
 #[test]
@@ -82,17 +82,17 @@ fn a_row_takes_the_time_there_and_the_present_is_marked() {
     // a window of them, with the present in it
     assert!(drawn.len() < 45 && drawn.len() > 10, "{}", drawn.len());
     let last = events.last().unwrap();
-    assert!(drawn.iter().any(|own| own.contains(&format!("at {:.5} s", last.t))), "{drawn:?}");
+    assert!(drawn.iter().any(|row| row.contains(&format!("at {:.5} s", last.t))), "{drawn:?}");
     let early = drawn[2].clone();
     harness.get_by_label(&early).click();
     harness.run_steps(3);
     let player = &harness.state().session.player;
     assert!(player.is_past() && !player.is_playing());
     let at = player.time();
-    assert!(early.contains(&format!("at {at:.5} s")) && events.iter().any(|own| own.t == at));
+    assert!(early.contains(&format!("at {at:.5} s")) && events.iter().any(|event| event.t == at));
     let marked = |harness: &Harness<'static, Window>| {
         let node = harness.get_by(|node| {
-            node.toggled() == Some(Toggled::True) && node.label().is_some_and(|own| own.contains("phase"))
+            node.toggled() == Some(Toggled::True) && node.label().is_some_and(|label| label.contains("phase"))
         });
         node.accesskit_node().label().unwrap()
     };
@@ -136,7 +136,7 @@ fn the_table_has_room_on_a_projector() {
     let harness = listed("paper", PROJECTED, 2);
     assert!(rows(&harness).len() > 5);
     // a row at the edge of the list is cut by it, and no text by its neighbour
-    let apart = |own: &&String| own.contains('(');
+    let apart = |label: &&String| label.contains('(');
     let heads: Vec<String> = sliced(&harness).iter().filter(apart).cloned().collect();
     assert_eq!(heads, Vec::<String>::new());
     for head in ["time (s)", "phase (°)", "v in (mm/s)", "v out (mm/s)", "lost (µJ)"] {

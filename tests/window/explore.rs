@@ -31,8 +31,8 @@ fn fill(harness: &mut Harness<'static, Window>) {
 fn fine(window: &Window, direction: Direction) -> Vec<f64> {
     let (parts, current) = window.session.explore.walks.found.parts();
     assert!(current);
-    let own = parts.iter().filter(|own| own.0 == 1 && own.1.direction == direction);
-    own.map(|own| own.1.value).collect()
+    let chosen = parts.iter().filter(|part| part.0 == 1 && part.1.direction == direction);
+    chosen.map(|part| part.1.value).collect()
 }
 
 #[test]
@@ -51,7 +51,11 @@ fn both_directions_come_and_a_drag_takes_the_scene_there() {
     harness.drop_at(place.center());
     harness.run_steps(2);
     let session = &mut harness.state_mut().session;
-    assert!(session.amplitude_g().is_some_and(|own| own == 1.0 || own == 1.1), "{:?}", session.amplitude_g());
+    assert!(
+        session.amplitude_g().is_some_and(|amplitude| amplitude == 1.0 || amplitude == 1.1),
+        "{:?}",
+        session.amplitude_g()
+    );
     // the field that is walked has no part in the question: what is known stays
     assert!(session.explore.walks.found.is_whole());
     assert!(session.undo() && *session.scene() == before && !session.undo());
@@ -69,7 +73,7 @@ fn another_scene_is_walked_anew_and_a_closed_view_asks_for_nothing() {
     wait_until("the question of the heavier mass", || {
         harness.run_steps(1);
         let question = harness.state().session.explore.walks.found.question();
-        question.is_some_and(|own| own.scene.mass_g == mass)
+        question.is_some_and(|asked| asked.scene.mass_g == mass)
     });
     command(&mut harness, Command::Arrange(Layout::Look));
     assert!(!harness.state().session.explore.walks.found.is_running());
@@ -135,7 +139,7 @@ fn a_spectrum_has_lines_where_the_motion_repeats() {
     wait_until("the spectrum of the base", || {
         harness.run_steps(1);
         let (parts, current) = harness.state().session.explore.spectra.found.parts();
-        current && parts.iter().flatten().any(|own| own.signal == Signal::BaseAcceleration)
+        current && parts.iter().flatten().any(|other| other.signal == Signal::BaseAcceleration)
     });
 }
 

@@ -72,9 +72,9 @@ fn same_bytes(harness: &mut Harness<'static, Window>, view: View, kind: &str) ->
         String::from_utf8_lossy(&ran.stderr)
     );
     for ending in [kind, "csv"] {
-        let [own, window] = ["own", "window"].map(|name| fs::read(place(name, ending)).unwrap());
-        assert!(own.len() > 100, "{line}");
-        assert!(own == window, "{line}: {} and {} bytes of {ending} differ", own.len(), window.len());
+        let [drawn, window] = ["own", "window"].map(|name| fs::read(place(name, ending)).unwrap());
+        assert!(drawn.len() > 100, "{line}");
+        assert!(drawn == window, "{line}: {} and {} bytes of {ending} differ", drawn.len(), window.len());
     }
     line
 }
@@ -310,8 +310,8 @@ fn the_numbers_of_a_figure_do_not_replace_a_table_of_the_scene() {
     let ctx = harness.ctx.clone();
     harness.state_mut().save_to(&ctx, &folder.path().join("own.ron"));
     harness.run_steps(2);
-    let files = || fs::read_dir(folder.path()).unwrap().map(|own| own.unwrap().path());
-    let table = files().find(|own| own.extension().is_some_and(|own| own == "csv")).unwrap();
+    let files = || fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().path());
+    let table = files().find(|path| path.extension().is_some_and(|ending| ending == "csv")).unwrap();
     open(&mut harness, View::ForceCurve, &table.with_extension("svg"));
     assert!(harness.query_by_label_contains("is read by this scene").is_none());
     harness.state_mut().figures.data = true;

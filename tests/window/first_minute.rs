@@ -47,10 +47,13 @@ fn shaking_harder_and_stops_both_make_it_cross() {
         // mass
         let (after, changed) = (seen(&harness), harness.state().session.changed_at());
         assert!(before.len() > 5 && after.starts_with(&before) && changed >= before[before.len() - 1].t);
-        let then = after.iter().position(|own| own.t == changed).unwrap();
-        let (own, next) = (after[then], after[then + 1]);
-        let straight = own.x + own.v * (next.t - own.t);
-        assert!(if harder { (next.x - straight).abs() < 1e-4 } else { next.x == 1.5e-3 }, "{own:?} {next:?}");
+        let then = after.iter().position(|sample| sample.t == changed).unwrap();
+        let (sample, next) = (after[then], after[then + 1]);
+        let straight = sample.x + sample.v * (next.t - sample.t);
+        assert!(
+            if harder { (next.x - straight).abs() < 1e-4 } else { next.x == 1.5e-3 },
+            "{sample:?} {next:?}"
+        );
         assert!(harness.state().session.editor.can_undo());
         harness.state_mut().session.wait_settled(LONG);
         harness.key_press(Key::Num5);

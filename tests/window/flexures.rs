@@ -22,55 +22,55 @@ fn set(mechanism: &mut Mechanism, mm: f64) {
 
 #[test]
 fn preload_reshapes_the_well_under_the_moving_mass() {
-    let mut own = session("first-look", &[]);
-    own.player.tick(0.1);
-    let (before, barrier) = (own.player.state(), own.model().mechanism().landscape.barrier.unwrap());
+    let mut session = session("first-look", &[]);
+    session.player.tick(0.1);
+    let (before, barrier) = (session.player.state(), session.model().mechanism().landscape.barrier.unwrap());
     for mm in [2.75, 2.9, 3.1] {
-        assert!(own.edit_mechanism(|mechanism| set(mechanism, mm)));
-        own.poll();
+        assert!(session.edit_mechanism(|mechanism| set(mechanism, mm)));
+        session.poll();
     }
-    assert!(own.model().mechanism().landscape.barrier.unwrap().right_well > barrier.right_well);
-    own.end_gesture();
-    let after = own.player.state();
+    assert!(session.model().mechanism().landscape.barrier.unwrap().right_well > barrier.right_well);
+    session.end_gesture();
+    let after = session.player.state();
     assert_eq!((before.t, before.x), (after.t, after.x));
-    assert!(own.player.watch().ledger().by_hand_j.abs() > 1e-6);
+    assert!(session.player.watch().ledger().by_hand_j.abs() > 1e-6);
     // solved in earnest at the end of the gesture, bit for bit as a study does
     let earnest = interwell::mechanics::Mechanism::build_with(
-        &own.scene().mechanism,
-        &own.editor.document().files,
+        &session.scene().mechanism,
+        &session.editor.document().files,
         FLEXURE_TOLERANCE,
     );
-    assert_eq!(own.model().mechanism().curve, earnest.unwrap().curve);
-    assert!(own.undo() && preload(&own.scene().mechanism) == 2.7 && !own.undo());
-    assert_eq!(own.model().mechanism().landscape.barrier.unwrap(), barrier);
+    assert_eq!(session.model().mechanism().curve, earnest.unwrap().curve);
+    assert!(session.undo() && preload(&session.scene().mechanism) == 2.7 && !session.undo());
+    assert_eq!(session.model().mechanism().landscape.barrier.unwrap(), barrier);
 }
 
 #[test]
 fn a_mass_beyond_the_new_curve_is_carried_along() {
-    let mut own = session("first-look", &["start=At(x_mm: 7.5, v_m_per_s: 0)", "excitation=None"]);
-    own.edit_once(|scene| scene.start = interwell::scene::Start::Rest);
-    assert!(own.edit_mechanism(|mechanism| set(mechanism, 0.4)));
-    own.end_gesture();
-    let end = own.model().mechanism().curve.domain().1;
-    assert!(end < 7.5e-3 && own.player.state().x <= end);
-    assert!(own.player.watch().ledger().by_hand_j.abs() > 1e-6);
+    let mut session = session("first-look", &["start=At(x_mm: 7.5, v_m_per_s: 0)", "excitation=None"]);
+    session.edit_once(|scene| scene.start = interwell::scene::Start::Rest);
+    assert!(session.edit_mechanism(|mechanism| set(mechanism, 0.4)));
+    session.end_gesture();
+    let end = session.model().mechanism().curve.domain().1;
+    assert!(end < 7.5e-3 && session.player.state().x <= end);
+    assert!(session.player.watch().ledger().by_hand_j.abs() > 1e-6);
 }
 
 #[test]
 fn what_cannot_be_solved_is_refused_in_words() {
-    let mut own = session("first-look", &[]);
-    let curve = own.model().mechanism().curve.clone();
+    let mut session = session("first-look", &[]);
+    let curve = session.model().mechanism().curve.clone();
     for mm in [-1.0, 14.0, f64::NAN, f64::INFINITY, 1e300] {
-        assert!(!own.edit_mechanism(|mechanism| set(mechanism, mm)));
-        assert!(own.refused().is_some_and(|why| why.len() > 20), "{mm}");
-        own.end_gesture();
-        assert!(own.fault().is_none() && preload(&own.scene().mechanism) == 2.7);
-        assert_eq!(own.model().mechanism().curve, curve);
+        assert!(!session.edit_mechanism(|mechanism| set(mechanism, mm)));
+        assert!(session.refused().is_some_and(|why| why.len() > 20), "{mm}");
+        session.end_gesture();
+        assert!(session.fault().is_none() && preload(&session.scene().mechanism) == 2.7);
+        assert_eq!(session.model().mechanism().curve, curve);
     }
-    assert!(!own.editor.can_undo());
-    assert!(own.edit_mechanism(|mechanism| set(mechanism, 0.0)) && own.refused().is_none());
-    own.end_gesture();
-    assert!(own.model().mechanism().landscape.barrier.is_none());
+    assert!(!session.editor.can_undo());
+    assert!(session.edit_mechanism(|mechanism| set(mechanism, 0.0)) && session.refused().is_none());
+    session.end_gesture();
+    assert!(session.model().mechanism().landscape.barrier.is_none());
 }
 
 #[test]

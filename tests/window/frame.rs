@@ -67,8 +67,8 @@ fn the_next_release_and_crossing_are_found() {
         let event = *player.event().unwrap();
         assert_eq!(event.kind, kind);
         // it is the first one
-        let between = |own: &&interwell::dynamics::Event| own.t > before && own.t < event.t;
-        assert!(player.watch().events().iter().filter(between).all(|own| own.kind != kind));
+        let between = |other: &&interwell::dynamics::Event| other.t > before && other.t < event.t;
+        assert!(player.watch().events().iter().filter(between).all(|other| other.kind != kind));
         harness.get_by_label_contains(words);
     }
     // where none can come that is said
@@ -154,7 +154,7 @@ fn where_room_is_short_well_and_mechanism_are_seen() {
     // all of the row of controls is there
     let more = harness.get_by_label("More").rect();
     assert!(more.right() <= PROJECTED[0], "{more:?}");
-    let sliders = harness.query_all_by_role(Role::Slider).map(|own| own.rect());
+    let sliders = harness.query_all_by_role(Role::Slider).map(|node| node.rect());
     let row: Vec<Rect> = sliders.filter(|rect| rect.bottom() < 120.0).collect();
     assert!(row.len() >= 2 && row.iter().all(|rect| rect.right() < more.left()), "{row:?}");
 }
@@ -336,8 +336,9 @@ fn asked_of_the_screen(
     // no graphics want them
     output.textures_delta.clear();
     let commands = output.viewport_output[&egui::ViewportId::ROOT].commands.iter();
-    let sizes =
-        |own: &&ViewportCommand| matches!(own, ViewportCommand::InnerSize(_) | ViewportCommand::Maximized(_));
+    let sizes = |command: &&ViewportCommand| {
+        matches!(command, ViewportCommand::InnerSize(_) | ViewportCommand::Maximized(_))
+    };
     commands.filter(sizes).cloned().collect()
 }
 
@@ -402,7 +403,7 @@ fn the_lecturers_notes_open_beside_the_window_and_where_they_were_left() {
     });
     let frames = |window: &mut Window| -> Option<(Option<egui::Pos2>, [f32; 2])> {
         (0..3).for_each(|_| _ = asked_of_the_screen(window, &ctx, [800.0, 600.0], [800.0, 600.0]));
-        asked.borrow().as_ref().map(|own| (own.position, own.inner_size.unwrap().into()))
+        asked.borrow().as_ref().map(|viewport| (viewport.position, viewport.inner_size.unwrap().into()))
     };
     let open = || {
         let lesson = interwell::scene::lesson::LESSONS[0].name;

@@ -10,7 +10,9 @@ use interwell::scene::lesson::{LESSONS, LessonDocument, Step};
 use interwell::scene::{Document, Stops};
 use interwell::study::result_fields;
 
-use crate::lessons::{OWN, Shown, go_on, go_to, is_anywhere, number, opened, own, step, until, written};
+use crate::lessons::{
+    OWN, Shown, go_on, go_to, is_anywhere, number, opened, opened_own, step, until, written,
+};
 use crate::support::{PROJECTED, WIDE, command, press, press_with_ctrl, sliced, window};
 
 #[test]
@@ -73,7 +75,7 @@ fn the_longest_texts_fit() {
         format!("{}.", words.take(count - 1).collect::<String>())
     };
     let (text, option) = (long("Every ", 240), |begin: &str| long(begin, 80));
-    let own = OWN
+    let longest = OWN
         .replace("Shaken at 1 g it rattles in one well.", &text)
         .replace("We put stops at ±4 mm and shake as before. The mass ...", &text)
         .replace("crosses every period\"", &format!("{}\"", option("a ")))
@@ -81,15 +83,15 @@ fn the_longest_texts_fit() {
         .replace("does not move at all", &option("c "))
         .replace("Where does the force curve lie below 0.149 N, the push of 1 g?", &text)
         .replace("A stop inside the home holds the mass up on the hillside.", &text);
-    assert!(LessonDocument::from_text("own", &own, None, &result_fields()).is_ok());
+    assert!(LessonDocument::from_text("own", &longest, None, &result_fields()).is_ok());
     let folder = tempfile::tempdir().unwrap();
-    let path = written(folder.path(), &own);
+    let path = written(folder.path(), &longest);
     for size in [PROJECTED, WIDE] {
         let mut harness = opened(&path, size);
         let whole = |harness: &Shown, number: usize| {
             assert_eq!(sliced(harness), [""; 0], "{size:?} {number}");
             for name in ["Well", "Displacement", "pause", "play", "Next", "Finish"] {
-                let inside = harness.query_by_label(name).is_none_or(|own| own.rect().bottom() <= size[1]);
+                let inside = harness.query_by_label(name).is_none_or(|node| node.rect().bottom() <= size[1]);
                 assert!(inside, "{name}");
             }
             // a view has room to show something
@@ -107,8 +109,8 @@ fn the_longest_texts_fit() {
                         harness.get_by_label_contains(&format!("{letter}   "));
                     }
                     press(&mut harness, Key::C);
-                    until(&mut harness, "what it did", |own| {
-                        own.state().lesson().unwrap().answer().outcome.is_some()
+                    until(&mut harness, "what it did", |shown| {
+                        shown.state().lesson().unwrap().answer().outcome.is_some()
                     });
                     harness.run_steps(2);
                     whole(&harness, number);
@@ -127,10 +129,11 @@ fn the_longest_texts_fit() {
 
 #[test]
 fn a_word_of_the_glossary_says_what_it_means() {
-    let mut harness = own(WIDE);
+    let mut harness = opened_own(WIDE);
     assert!(go_to(&mut harness, |step| matches!(step, Step::Do { .. })));
     let labels = harness.query_all_by_label_contains("Your task: ");
-    let text = labels.filter(|own| own.accesskit_node().role() == Role::Label).map(|own| own.rect()).next();
+    let text =
+        labels.filter(|node| node.accesskit_node().role() == Role::Label).map(|node| node.rect()).next();
     let text = text.unwrap();
     let meaning = "The time that the shaking takes to repeat";
     for (right, is_said) in [(200.0, false), (25.0, true)] {
@@ -142,7 +145,7 @@ fn a_word_of_the_glossary_says_what_it_means() {
 
 #[test]
 fn a_map_waits_for_the_first_prediction() {
-    let mut harness = own(WIDE);
+    let mut harness = opened_own(WIDE);
     for view in [View::Map, View::UpAndDown] {
         command(&mut harness, Command::Show(view, true));
     }
@@ -157,7 +160,7 @@ fn a_map_waits_for_the_first_prediction() {
 fn bold_words_point_at_what_is_on_the_screen() {
     let color = Style { dark: false, projector: false }.pointing_stroke().color;
     let outlines = |harness: &Shown| -> Vec<egui::Rect> {
-        let outline = |own: &egui::epaint::ClippedShape| match &own.shape {
+        let outline = |clipped: &egui::epaint::ClippedShape| match &clipped.shape {
             egui::Shape::Rect(rect) if rect.stroke.color == color => Some(rect.rect),
             _ => None,
         };
@@ -170,19 +173,19 @@ fn bold_words_point_at_what_is_on_the_screen() {
     let switch = harness.get_by_role_and_label(Role::CheckBox, "Stops").rect().center();
     let well = harness.get_by_label("Well").rect().left_bottom() + egui::vec2(40.0, 40.0);
     assert_eq!(found.len(), 2, "{found:?}");
-    assert!(found.iter().any(|own| own.contains(switch)) && found.iter().any(|own| own.contains(well)));
+    assert!(found.iter().any(|rect| rect.contains(switch)) && found.iter().any(|rect| rect.contains(well)));
     press(&mut harness, Key::PageDown);
     assert_eq!(outlines(&harness), []);
 }
 
 #[test]
 fn only_what_the_lesson_names_can_be_set() {
-    let mut harness = own(WIDE);
+    let mut harness = opened_own(WIDE);
     assert!(harness.query_by_label("More").is_none());
     let sliders = harness.query_all_by_role(Role::Slider);
-    let names: Vec<String> = sliders.filter_map(|own| own.accesskit_node().label()).collect();
-    assert!(!names.iter().any(|own| own == "amplitude"), "{names:?}");
-    assert!(names.iter().any(|own| own == "travel limit ±"), "{names:?}");
+    let names: Vec<String> = sliders.filter_map(|node| node.accesskit_node().label()).collect();
+    assert!(!names.iter().any(|name| name == "amplitude"), "{names:?}");
+    assert!(names.iter().any(|name| name == "travel limit ±"), "{names:?}");
     for (view, shown) in [(View::Well, true), (View::Displacement, true), (View::BeforeNow, false)] {
         assert_eq!(harness.state().tiling.shows(view), shown);
     }
@@ -200,13 +203,13 @@ fn the_first_line_leads_to_the_first_lesson() {
     harness.get_by_label(&format!("Lesson {name}")).click();
     harness.run_steps(3);
     let lesson = harness.state().lesson().unwrap().lesson().title.clone();
-    let own = LessonDocument::load(LESSONS[0].name, &result_fields()).unwrap().lesson.title;
-    assert_eq!(lesson, own);
+    let title = LessonDocument::load(LESSONS[0].name, &result_fields()).unwrap().lesson.title;
+    assert_eq!(lesson, title);
 }
 
 #[test]
 fn the_lecturer_s_notes_come_only_when_asked_for() {
-    let mut harness = own(WIDE);
+    let mut harness = opened_own(WIDE);
     let notes = harness.state().lesson().unwrap().lesson().lecturer.clone();
     let begin: String = notes.chars().take(20).collect();
     assert!(!is_anywhere(&harness, &begin));
@@ -222,13 +225,13 @@ fn the_lecturer_s_notes_come_only_when_asked_for() {
 
 #[test]
 fn the_command_line_of_a_lesson_says_all_that_was_changed() {
-    let mut harness = own(WIDE);
+    let mut harness = opened_own(WIDE);
     let line = interwell::app::export::command_line(&harness.state().session).unwrap().0;
-    let mut own = Document::load("first-look").unwrap();
+    let mut document = Document::load("first-look").unwrap();
     for set in line.split(" --set ").skip(1) {
-        own.set(set.trim_matches('\'')).unwrap();
+        document.set(set.trim_matches('\'')).unwrap();
     }
-    assert_eq!(own.scene, *harness.state().session.scene(), "{line}");
-    assert_ne!(own.scene, Document::load("first-look").unwrap().scene);
+    assert_eq!(document.scene, *harness.state().session.scene(), "{line}");
+    assert_ne!(document.scene, Document::load("first-look").unwrap().scene);
     harness.run_steps(1);
 }

@@ -67,7 +67,7 @@ pub const OWN: &str = r#"(
 )"#;
 
 /// A window in that lesson, which has no file any more.
-pub fn own(size: [f32; 2]) -> Shown {
+pub fn opened_own(size: [f32; 2]) -> Shown {
     let folder = tempfile::tempdir().unwrap();
     opened(&written(folder.path(), OWN), size)
 }
@@ -118,15 +118,16 @@ fn solve(harness: &mut Shown) {
     let controls = harness.state().lesson().unwrap().lesson().controls.clone();
     for (field, value) in solution {
         let part = field.split('.').next().unwrap().to_owned();
-        let is_reached = controls.iter().any(|own| *own == field || part == "stops" && *own == part);
+        let is_reached =
+            controls.iter().any(|control| *control == field || part == "stops" && *control == part);
         assert!(is_reached, "no control of {controls:?} changes {field}");
         let session = &mut harness.state_mut().session;
         match value.parse() {
             Ok(number) => drop(session.set_number(&field, number).unwrap()),
             Err(_) => {
-                let mut own = session.editor.runnable();
-                own.assign(&field, &value, &field).unwrap();
-                session.edit(|scene| *scene = own.scene);
+                let mut document = session.editor.runnable();
+                document.assign(&field, &value, &field).unwrap();
+                session.edit(|scene| *scene = document.scene);
             }
         }
         session.end_gesture();
@@ -147,12 +148,12 @@ pub fn written(folder: &Path, text: &str) -> String {
 
 #[test]
 fn every_lesson_is_gone_through_from_its_first_step_to_its_last() {
-    for own in LESSONS {
+    for entry in LESSONS {
         let mut harness = window("first-look", WIDE);
         harness.state_mut().session.edit_once(|scene| scene.mass_g = 16.0);
         harness.run_steps(2);
         let before = (harness.state().session.scene().clone(), harness.state().tiling.clone());
-        harness.state_mut().open_lesson(own.name);
+        harness.state_mut().open_lesson(entry.name);
         harness.run_steps(3);
         let count = harness.state().lesson().unwrap().lesson().steps.len();
         for number in 0..count {
@@ -170,13 +171,13 @@ fn every_lesson_is_gone_through_from_its_first_step_to_its_last() {
                     let answer = harness.state().lesson().unwrap().answer().clone();
                     assert_eq!(answer.choice.as_deref(), Some(options[0].text.as_str()));
                     let words = if answer.choice == answer.outcome { "So it did." } else { "It did: “" };
-                    assert!(is_anywhere(&harness, words), "{}", own.name);
+                    assert!(is_anywhere(&harness, words), "{}", entry.name);
                     assert!(harness.state().session.player.is_playing());
                 }
                 Step::Do { .. } => {
                     assert!(!harness.state().lesson().unwrap().answer().met);
                     solve(&mut harness);
-                    until(&mut harness, own.name, |harness| harness.state().lesson().unwrap().answer().met);
+                    until(&mut harness, entry.name, |harness| harness.state().lesson().unwrap().answer().met);
                     harness.get_by_label("Done.");
                 }
             }
@@ -185,7 +186,7 @@ fn every_lesson_is_gone_through_from_its_first_step_to_its_last() {
             harness.run_steps(3);
         }
         let window = harness.state();
-        assert!(window.lesson().is_none() && window.records()[own.name].done);
+        assert!(window.lesson().is_none() && window.records()[entry.name].done);
         // what was there is there again, with the way back
         assert_eq!((window.session.scene().clone(), window.tiling.clone()), before);
         assert!(harness.state_mut().session.undo());
@@ -201,7 +202,7 @@ fn the_last_step_leads_to_the_next_lesson_too() {
     }
     harness.get_by_label("Lesson 2").click();
     harness.run_steps(3);
-    let key = |harness: &Shown| harness.state().lesson().map(|own| own.key());
+    let key = |harness: &Shown| harness.state().lesson().map(|lesson| lesson.key());
     assert_eq!(key(&harness).as_deref(), Some(LESSONS[1].name));
     // the last one leads to none
     let last = LESSONS.len() - 1;
@@ -218,15 +219,15 @@ fn the_last_step_leads_to_the_next_lesson_too() {
 
 #[test]
 fn no_text_of_a_lesson_is_cut_and_a_lecturer_goes_through_by_two_keys() {
-    for own in LESSONS {
-        let mut harness = opened(own.name, PROJECTED);
+    for entry in LESSONS {
+        let mut harness = opened(entry.name, PROJECTED);
         let mut last = 0;
         while harness.state().lesson().is_some() {
             last = number(&harness);
-            assert_eq!(sliced(&harness), [""; 0], "{} {last}", own.name);
+            assert_eq!(sliced(&harness), [""; 0], "{} {last}", entry.name);
             go_on(&mut harness);
         }
-        harness.state_mut().open_lesson(own.name);
+        harness.state_mut().open_lesson(entry.name);
         harness.run_steps(3);
         while number(&harness) < last {
             go_on(&mut harness);
@@ -240,8 +241,8 @@ fn no_text_of_a_lesson_is_cut_and_a_lecturer_goes_through_by_two_keys() {
 
 #[test]
 fn a_prediction_covers_every_result() {
-    for own in LESSONS {
-        let mut harness = opened(own.name, WIDE);
+    for entry in LESSONS {
+        let mut harness = opened(entry.name, WIDE);
         if !go_to(&mut harness, |step| matches!(step, Step::Predict { .. })) {
             continue;
         }
@@ -264,13 +265,13 @@ fn a_prediction_covers_every_result() {
         // what the question itself says is no result
         let said = format!("{:?}", harness.state().lesson().unwrap().step());
         for text in results.into_iter().filter(|text| !said.contains(text)) {
-            let seen: Vec<_> = painted(&harness).into_iter().filter(|own| own.0.contains(text)).collect();
-            assert!(!is_anywhere(&harness, text), "{}: {text} {seen:?}", own.name);
+            let seen: Vec<_> = painted(&harness).into_iter().filter(|label| label.0.contains(text)).collect();
+            assert!(!is_anywhere(&harness, text), "{}: {text} {seen:?}", entry.name);
         }
         for asked in [Command::CopyCommand, Command::SaveAs(Wanted::Run), Command::SaveAs(Wanted::Events)] {
             command(&mut harness, asked);
             assert_eq!(harness.state().notice(), Some("First choose what you expect"));
-            let copied = |own: &OutputCommand| matches!(own, OutputCommand::CopyText(_));
+            let copied = |command: &OutputCommand| matches!(command, OutputCommand::CopyText(_));
             assert!(!harness.output().platform_output.commands.iter().any(copied));
         }
         assert_eq!(*harness.state().session.scene(), scene);
@@ -285,7 +286,7 @@ fn a_prediction_covers_every_result() {
 
 #[test]
 fn sweeping_past_the_goal_does_not_meet_it() {
-    let mut harness = own(WIDE);
+    let mut harness = opened_own(WIDE);
     assert!(go_to(&mut harness, |step| matches!(step, Step::Do { .. })));
     let met = |harness: &Shown| harness.state().lesson().unwrap().answer().met;
     let limit = |harness: &mut Shown, mm: f64| {
@@ -331,7 +332,7 @@ fn progress_is_kept_and_answers_are_text() {
     let mut harness = opened(&path, WIDE);
     assert!(go_to(&mut harness, |step| matches!(step, Step::Predict { .. })));
     press(&mut harness, Key::Num2);
-    until(&mut harness, "what it did", |own| own.state().lesson().unwrap().answer().outcome.is_some());
+    until(&mut harness, "what it did", |shown| shown.state().lesson().unwrap().answer().outcome.is_some());
     *harness.state_mut().lesson_mut().unwrap().why_mut() = "pressed".to_owned();
     let (step, answer) = (number(&harness), harness.state().lesson().unwrap().answer().clone());
     let kept = ron::to_string(&harness.state().records()).unwrap();

@@ -159,8 +159,8 @@ fn it_is_the_sweep_of_the_command_line() {
         let output =
             assert_cmd::Command::cargo_bin("interwell").unwrap().args(arguments(&command)).output().unwrap();
         assert!(output.status.success(), "{command}: {}", String::from_utf8_lossy(&output.stderr));
-        let own = session.map.csv().unwrap();
-        assert_eq!(own, String::from_utf8(output.stdout).unwrap(), "{command}");
+        let csv = session.map.csv().unwrap();
+        assert_eq!(csv, String::from_utf8(output.stdout).unwrap(), "{command}");
     }
 }
 

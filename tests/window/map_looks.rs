@@ -68,9 +68,9 @@ fn a_click_on_the_surface_takes_the_scene_there() {
     let most = map(harness.state()).known_cells().map(rms).fold(0.0, f64::max);
     // 2.5 mm and 1.25 g, whose height is its share of the largest velocity: no face hides it
     let (column, row) = (6, 3);
-    let own = rms(map(harness.state()).cell(column, row).unwrap().0);
-    assert!(own > 0.5 * most);
-    let (x, y) = projection.place((0.75, 0.75, own / most));
+    let speed = rms(map(harness.state()).cell(column, row).unwrap().0);
+    assert!(speed > 0.5 * most);
+    let (x, y) = projection.place((0.75, 0.75, speed / most));
     click(&mut harness, pos2(x as f32, y as f32 + 1.0));
     assert_eq!((stops_mm(&harness), amplitude_g(&harness)), (2.5, 1.25));
     // words have no height
@@ -85,17 +85,17 @@ fn cuts_are_rows_of_the_table_and_lead_to_their_cells() {
     let mut harness = open(WIDE, (0.25, 0.25));
     click_on(&mut harness, "Cuts");
     assert!(is_painted(&harness, "at travel limit 1.5 mm") && is_painted(&harness, "at amplitude 1 g"));
-    let own = map(harness.state());
-    let cut = |i: usize, value: f64| Cut { column: own.grid().columns()[i].clone(), value };
+    let map = map(harness.state());
+    let cut = |i: usize, value: f64| Cut { column: map.grid().columns()[i].clone(), value };
     let view = View::Cuts(vec![cut(1, 1.0), cut(0, 1.5)]);
-    let chart = own.chart(&RMS_VELOCITY, &view).unwrap();
+    let chart = map.chart(&RMS_VELOCITY, &view).unwrap();
     let panels: Vec<&Panel> = chart.panels().collect();
     let path = |panel: usize, role: Drawn| {
         panels[panel].layers.iter().find(|layer| layer.role == role).map(|layer| layer.marks.clone()).unwrap()
     };
     // across at 1 g, upward at 1.5 mm
-    let row = |column: usize| (own.edges[0].values[column], 1e3 * rms(own.cell(column, 2).unwrap().0));
-    let column = |row: usize| (1e3 * rms(own.cell(2, row).unwrap().0), own.edges[1].values[row]);
+    let row = |column: usize| (map.edges[0].values[column], 1e3 * rms(map.cell(column, 2).unwrap().0));
+    let column = |row: usize| (1e3 * rms(map.cell(2, row).unwrap().0), map.edges[1].values[row]);
     assert_eq!(path(1, Drawn::Joined), Marks::Path((0..9).map(row).collect()));
     assert_eq!(path(2, Drawn::Joined), Marks::Path((0..5).map(column).collect()));
     // both thresholds of 1.5 mm: release in closed form, and the step from 0.5 to 0.75 g
@@ -161,18 +161,20 @@ fn every_column_is_a_quantity_with_its_unit() {
     click_on(&mut harness, "Reach");
     assert_eq!(harness.state().session.map.quantity().name, "max_abs_x_m");
     assert!(is_painted(&harness, "reach (mm)"));
-    for own in COLUMNS.iter().flat_map(|group| group.1).map(|name| SummaryField::find(name).unwrap()) {
-        harness.state_mut().session.map.show(own);
+    for field in COLUMNS.iter().flat_map(|group| group.1).map(|name| SummaryField::find(name).unwrap()) {
+        harness.state_mut().session.map.show(field);
         harness.run_steps(2);
-        assert!(harness.state_mut().session.wait_for_map(LONG), "{}", own.name);
+        assert!(harness.state_mut().session.wait_for_map(LONG), "{}", field.name);
         harness.run_steps(3);
-        let label = format!("map of {}", own.title());
+        let label = format!("map of {}", field.title());
         harness.get_by_role_and_label(Role::ComboBox, &label);
         assert!(
-            own.shown_words().is_some()
-                || painted(&harness).iter().any(|text| text.0.contains(own.label) || own.name == "period"),
+            field.shown_words().is_some()
+                || painted(&harness)
+                    .iter()
+                    .any(|text| text.0.contains(field.label) || field.name == "period"),
             "{}",
-            own.name
+            field.name
         );
     }
     // what no run has is said
@@ -203,7 +205,7 @@ fn more_columns_are_those_of_the_command_line() {
         session.want_map(0.0);
         assert!(session.wait_for_map(LONG));
         let command = map_command_line(&session).unwrap();
-        let asked = command.split_once(" --columns ").map(|own| own.1.to_owned());
+        let asked = command.split_once(" --columns ").map(|parts| parts.1.to_owned());
         let standard = STANDARD_COLUMNS.join(",");
         assert_eq!(asked, more.map(|more| format!("{standard},{more}")), "{command}");
         let words = command.split(' ').skip(1);
@@ -222,10 +224,10 @@ fn the_trail_is_where_the_motion_has_been() {
         let mut count = 0;
         each_shape(harness, &mut |shape| {
             if let Shape::Path(path) = shape
-                && let ColorMode::Solid(own) = path.stroke.color
+                && let ColorMode::Solid(color) = path.stroke.color
             {
-                let ratio = f32::from(own.g()) / f32::from(own.r().max(1));
-                count += usize::from(own.b() == 0 && own.r() > 20 && (0.66..0.72).contains(&ratio));
+                let ratio = f32::from(color.g()) / f32::from(color.r().max(1));
+                count += usize::from(color.b() == 0 && color.r() > 20 && (0.66..0.72).contains(&ratio));
             }
         });
         count
@@ -268,10 +270,10 @@ fn each_shape(harness: &Harness<'static, Window>, each: &mut dyn FnMut(&Shape)) 
     fn inner(shape: &Shape, each: &mut dyn FnMut(&Shape)) {
         match shape {
             Shape::Vec(all) => all.iter().for_each(|shape| inner(shape, each)),
-            own => each(own),
+            single => each(single),
         }
     }
-    harness.output().shapes.iter().for_each(|own| inner(&own.shape, each));
+    harness.output().shapes.iter().for_each(|clipped| inner(&clipped.shape, each));
 }
 
 /// A finer map has no more shapes in a frame: its picture, its hatching and its surface are each one.
@@ -357,7 +359,7 @@ fn a_range_that_cannot_be_is_refused_where_it_was_typed() {
         harness.run_steps(2);
         press(&mut harness, Key::Enter);
         assert_eq!(harness.state().session.map_axes(), before, "{name}");
-        assert!(painted(&harness).iter().any(|own| own.0.contains(words)), "{name}: {words}");
+        assert!(painted(&harness).iter().any(|text| text.0.contains(words)), "{name}: {words}");
     }
     // each is well alone, and together they are too many
     let mut many = axes((0.002, 0.002));
@@ -371,6 +373,6 @@ fn fields_that_are_offered_have_names_of_their_own() {
     let harness = window("first-look", WIDE);
     let fields = harness.state().session.map_fields();
     for path in ["mechanism.parallel.length_mm", "mechanism.buckling.length_mm", "mechanism.young_gpa"] {
-        assert!(fields.iter().any(|own| own == path), "{path}");
+        assert!(fields.iter().any(|field| field == path), "{path}");
     }
 }

@@ -53,7 +53,7 @@ pub fn dropped(path: impl Fn(&Session) -> PathBuf, size: [f32; 2]) -> Harness<'s
 fn read(harness: &mut Harness<'static, Window>) {
     wait_until("the file is read", || {
         harness.run_steps(1);
-        harness.state_mut().columns.as_mut().is_none_or(|own| own.known().is_some())
+        harness.state_mut().columns.as_mut().is_none_or(|columns| columns.known().is_some())
     });
     harness.run_steps(3);
 }
@@ -69,7 +69,7 @@ fn differences(harness: &mut Harness<'static, Window>) -> Differences {
 
 fn comparison(harness: &mut Harness<'static, Window>) -> Comparison {
     match differences(harness) {
-        Differences::Motion(own) => *own,
+        Differences::Motion(motion) => *motion,
         Differences::Force(_) => panic!("no motion"),
     }
 }
@@ -184,10 +184,10 @@ fn a_measured_acceleration_can_shake_the_base() {
     harness.get_by_label("Shake the base with it").click();
     harness.run_steps(4);
     let session = &harness.state().session;
-    let Excitation::Recorded { path: own, record: Some(record) } = &session.scene().excitation else {
+    let Excitation::Recorded { path: file, record: Some(record) } = &session.scene().excitation else {
         panic!("{:?}", session.scene().excitation)
     };
-    assert!(Path::new(own).is_absolute() && session.fault().is_none());
+    assert!(Path::new(file).is_absolute() && session.fault().is_none());
     assert_eq!(record.times[1], 0.02);
     let found = session.model().base_acceleration(0.08);
     assert!((found - 0.980665).abs() < 1e-12, "{found}");
@@ -263,11 +263,11 @@ fn it_is_opened_by_key_argument_and_path() {
     assert!(harness.state().session.measured.over.is_some());
     // a scene is opened as before
     let ctx = harness.ctx.clone();
-    let own = folder.path().join("own.ron");
-    harness.state_mut().save_to(&ctx, &own);
-    harness.state_mut().take_dropped(&ctx, &own);
+    let file = folder.path().join("own.ron");
+    harness.state_mut().save_to(&ctx, &file);
+    harness.state_mut().take_dropped(&ctx, &file);
     harness.run_steps(3);
-    assert_eq!(harness.state().session.editor.path(), Some(own.as_path()));
+    assert_eq!(harness.state().session.editor.path(), Some(file.as_path()));
     // in a lesson it waits
     command(&mut harness, Command::OpenLesson(interwell::scene::lesson::LESSONS[0].name));
     harness.state_mut().take_dropped(&ctx, &path);

@@ -97,7 +97,8 @@ fn the_lesson_says_what_the_scene_does() {
         harness.get_by_label("What stops do, and why:");
         let landscape = &harness.state().session.model().mechanism().landscape;
         let well = landscape.right_stable().unwrap().x;
-        let hardest = landscape.extrema.iter().find(|own| own.x > 1e-4 && own.x < well).unwrap();
+        let hardest =
+            landscape.extrema.iter().find(|extremum| extremum.x > 1e-4 && extremum.x < well).unwrap();
         let words =
             format!("most of all at ±{:.1} mm, and from there to the well less again", hardest.x * 1e3);
         harness.get_by_label_contains(&words);
@@ -270,8 +271,8 @@ fn notes_in_the_column_end_with_a_sentence() {
         harness.get_by_label("About this scene");
         let notes = harness.state().session.scene().notes.clone();
         let begin = &notes[..30];
-        let own = painted(&harness).into_iter().find(|own| own.0.starts_with(begin));
-        assert!(own.is_none_or(|own| own.0.ends_with('.')));
+        let found = painted(&harness).into_iter().find(|text| text.0.starts_with(begin));
+        assert!(found.is_none_or(|text| text.0.ends_with('.')));
     }
 }
 
@@ -298,6 +299,6 @@ fn the_bar_of_the_present_fits_the_scene() {
     harness.key_press_modifiers(Modifiers::COMMAND, Key::Num2);
     harness.run_steps(20);
     // 1 kg that falls 1 m
-    let end = painted(&harness).into_iter().map(|own| own.0).find(|text| text.ends_with("0 J"));
+    let end = painted(&harness).into_iter().map(|text| text.0).find(|text| text.ends_with("0 J"));
     assert_eq!(end.as_deref(), Some("10 J"));
 }

@@ -31,8 +31,8 @@ fn number(text: &str) -> Option<f64> {
 }
 
 /// Whether a text is the name of a vertical axis, or its unit alone.
-fn is_title(own: &(String, Rect, Rect), name: &str) -> bool {
-    own.0 == name && (own.1.height() > own.1.width() || name.len() < 5)
+fn is_title(text: &(String, Rect, Rect), name: &str) -> bool {
+    text.0 == name && (text.1.height() > text.1.width() || name.len() < 5)
 }
 
 /// The numbers of the vertical axis of the picture that is called so at its side, with their heights; and
@@ -40,20 +40,20 @@ fn is_title(own: &(String, Rect, Rect), name: &str) -> bool {
 fn axes(harness: &Harness<'static, Window>, name: &str) -> [Vec<(f64, f32)>; 2] {
     let all = painted(harness);
     let title =
-        all.iter().find(|own| is_title(own, name)).unwrap_or_else(|| panic!("{name}: {all:?}")).clone();
-    let beside = |own: &&(String, Rect, Rect)| {
-        let gap = own.1.left() - title.1.right();
-        (-8.0..60.0).contains(&gap) && title.2.intersects(own.1)
+        all.iter().find(|text| is_title(text, name)).unwrap_or_else(|| panic!("{name}: {all:?}")).clone();
+    let beside = |text: &&(String, Rect, Rect)| {
+        let gap = text.1.left() - title.1.right();
+        (-8.0..60.0).contains(&gap) && title.2.intersects(text.1)
     };
-    let numbers = all.iter().filter_map(|own| Some((number(&own.0)?, own))).collect::<Vec<_>>();
-    let up = numbers.iter().filter(|own| beside(&own.1));
-    let up: Vec<_> = up.map(|(value, own)| (*value, own.1.center().y)).collect();
+    let numbers = all.iter().filter_map(|text| Some((number(&text.0)?, text))).collect::<Vec<_>>();
+    let up = numbers.iter().filter(|number| beside(&number.1));
+    let up: Vec<_> = up.map(|(value, text)| (*value, text.1.center().y)).collect();
     // the lowest row of numbers in the picture
-    let inside = numbers.iter().map(|own| own.1).filter(|own| title.2.contains_rect(own.1));
-    let right: Vec<_> = inside.filter(|own| own.1.left() > title.1.right() + 30.0).collect();
-    let lowest = right.iter().map(|own| own.1.center().y).fold(0.0, f32::max);
-    let below = numbers.iter().filter(|(_, own)| right.contains(own) && own.1.center().y > lowest - 2.0);
-    [up, below.map(|(value, own)| (*value, own.1.center().x)).collect()]
+    let inside = numbers.iter().map(|number| number.1).filter(|text| title.2.contains_rect(text.1));
+    let right: Vec<_> = inside.filter(|text| text.1.left() > title.1.right() + 30.0).collect();
+    let lowest = right.iter().map(|text| text.1.center().y).fold(0.0, f32::max);
+    let below = numbers.iter().filter(|(_, text)| right.contains(text) && text.1.center().y > lowest - 2.0);
+    [up, below.map(|(value, text)| (*value, text.1.center().x)).collect()]
 }
 
 fn shapes(harness: &Harness<'static, Window>) -> Vec<Shape> {
@@ -64,7 +64,7 @@ fn shapes(harness: &Harness<'static, Window>) -> Vec<Shape> {
         }
     }
     let mut all = Vec::new();
-    harness.output().shapes.iter().for_each(|own| flat(&own.shape, &mut all));
+    harness.output().shapes.iter().for_each(|clipped| flat(&clipped.shape, &mut all));
     all
 }
 
@@ -72,13 +72,13 @@ fn shapes(harness: &Harness<'static, Window>) -> Vec<Shape> {
 fn masses(harness: &Harness<'static, Window>) -> (Option<Rect>, Option<Rect>) {
     let all = shapes(harness);
     let ball = all.iter().find_map(|shape| match shape {
-        Shape::Circle(own) if own.fill == MASS && own.radius > 10.0 => {
-            Some(Rect::from_center_size(own.center, eframe::egui::Vec2::splat(2.0 * own.radius)))
+        Shape::Circle(circle) if circle.fill == MASS && circle.radius > 10.0 => {
+            Some(Rect::from_center_size(circle.center, eframe::egui::Vec2::splat(2.0 * circle.radius)))
         }
         _ => None,
     });
     let body = all.iter().find_map(|shape| match shape {
-        Shape::Rect(own) if own.fill == MASS && own.rect.height() > 30.0 => Some(own.rect),
+        Shape::Rect(rect) if rect.fill == MASS && rect.rect.height() > 30.0 => Some(rect.rect),
         _ => None,
     });
     (ball, body)
@@ -126,12 +126,15 @@ fn the_force_curve_has_the_force_and_the_push_that_frees_the_mass() {
     for size in [WIDE, PROJECTED] {
         let harness = showing("paper", size, &[View::ForceCurve]);
         let all = painted(&harness);
-        let labels: Vec<_> = all.iter().filter(|own| own.0.contains(" N = ")).collect();
+        let labels: Vec<_> = all.iter().filter(|label| label.0.contains(" N = ")).collect();
         let model = harness.state().session.model();
         let force = model.mechanism().curve.force(1.5e-3).abs();
         let text = format!("{force:.3} N = {:.3} g", force / model.mass() / 9.80665);
-        assert!(labels.len() == 2 && labels.iter().all(|own| own.0.ends_with(&text)), "{text}: {labels:?}");
-        assert!(labels.iter().all(|own| own.2.contains_rect(own.1)), "{labels:?}");
+        assert!(
+            labels.len() == 2 && labels.iter().all(|label| label.0.ends_with(&text)),
+            "{text}: {labels:?}"
+        );
+        assert!(labels.iter().all(|label| label.2.contains_rect(label.1)), "{labels:?}");
         keep_apart(&harness);
     }
 }
@@ -139,11 +142,11 @@ fn the_force_curve_has_the_force_and_the_push_that_frees_the_mass() {
 /// No two texts lie over each other.
 fn keep_apart(harness: &Harness<'static, Window>) {
     let all = painted(harness);
-    let seen: Vec<_> = all.iter().filter(|own| own.2.intersects(own.1) && own.1.is_positive()).collect();
-    for (i, own) in seen.iter().enumerate() {
+    let seen: Vec<_> = all.iter().filter(|text| text.2.intersects(text.1) && text.1.is_positive()).collect();
+    for (i, text) in seen.iter().enumerate() {
         for other in &seen[i + 1..] {
-            let over = own.1.shrink(1.5).intersects(other.1.shrink(1.5));
-            assert!(!over || own.0 == other.0, "{own:?} {other:?}");
+            let over = text.1.shrink(1.5).intersects(other.1.shrink(1.5));
+            assert!(!over || text.0 == other.0, "{text:?} {other:?}");
         }
     }
 }
@@ -153,8 +156,8 @@ fn axes_fit_what_they_show() {
     let ends = |view: View, name: &str| {
         let harness = showing("paper", WIDE, &[view]);
         let numbers = axes(&harness, name);
-        let own = &numbers[usize::from(view != View::Displacement)];
-        (own.len(), own.iter().map(|number| number.0.abs()).fold(0.0, f64::max))
+        let axis = &numbers[usize::from(view != View::Displacement)];
+        (axis.len(), axis.iter().map(|number| number.0.abs()).fold(0.0, f64::max))
     };
     // the stops are at 1.5 mm, the wells at 6.3 mm
     for (view, name) in [
@@ -189,7 +192,8 @@ fn every_axis_has_three_numbers_and_its_unit_in_its_name() {
             }
             let all = painted(&harness);
             // none where it is behind another tab
-            let Some(name) = names.into_iter().find(|name| all.iter().any(|own| is_title(own, name))) else {
+            let Some(name) = names.into_iter().find(|name| all.iter().any(|text| is_title(text, name)))
+            else {
                 continue;
             };
             let [up, _] = axes(&harness, name);
@@ -197,7 +201,7 @@ fn every_axis_has_three_numbers_and_its_unit_in_its_name() {
         }
         let with_unit = |text: &str| text.strip_suffix(" mm").is_some_and(|text| number(text).is_some());
         // but for the bar that shows a length
-        assert!(painted(&harness).iter().all(|own| own.0 == "10 mm" || !with_unit(&own.0)));
+        assert!(painted(&harness).iter().all(|text| text.0 == "10 mm" || !with_unit(&text.0)));
     }
 }
 
@@ -281,10 +285,10 @@ fn a_legend_is_whole_in_a_narrow_card() {
             let all = painted(&harness);
             count += 1;
             for name in names {
-                let is_whole = |own: &&(String, Rect, Rect)| {
-                    own.0 == *name && place.contains_rect(own.1) && own.2.contains_rect(own.1)
+                let is_whole = |text: &&(String, Rect, Rect)| {
+                    text.0 == *name && place.contains_rect(text.1) && text.2.contains_rect(text.1)
                 };
-                assert!(all.iter().any(|own| is_whole(&own)), "{view:?} {size:?}: {name} {place:?}");
+                assert!(all.iter().any(|text| is_whole(&text)), "{view:?} {size:?}: {name} {place:?}");
             }
         }
     }
@@ -293,9 +297,9 @@ fn a_legend_is_whole_in_a_narrow_card() {
 
 /// Every circle of this radius whose middle is seen.
 fn circles(harness: &Harness<'static, Window>, radius: f32) -> Vec<(Rect, Rect)> {
-    let all = harness.output().shapes.iter().filter_map(|own| match &own.shape {
-        Shape::Circle(circle) if circle.radius == radius && own.clip_rect.contains(circle.center) => {
-            Some((Rect::from_center_size(circle.center, vec2(2.0 * radius, 2.0 * radius)), own.clip_rect))
+    let all = harness.output().shapes.iter().filter_map(|clipped| match &clipped.shape {
+        Shape::Circle(circle) if circle.radius == radius && clipped.clip_rect.contains(circle.center) => {
+            Some((Rect::from_center_size(circle.center, vec2(2.0 * radius, 2.0 * radius)), clipped.clip_rect))
         }
         _ => None,
     });
@@ -312,7 +316,7 @@ fn the_mass_is_whole_at_the_ends_of_the_axes() {
             harness.run_steps(1);
             let all = circles(&harness, radius);
             let frame = harness.state().tiling.place_of(view).unwrap();
-            for (circle, clip) in all.into_iter().filter(|own| frame.contains_rect(own.0)) {
+            for (circle, clip) in all.into_iter().filter(|ball| frame.contains_rect(ball.0)) {
                 // one that is drawn beyond the axis is not seen
                 let is_inside = clip.shrink(radius + 1.0).contains(circle.center());
                 assert!(!is_inside || clip.contains_rect(circle), "{view:?} {circle:?} {clip:?}");
@@ -333,7 +337,7 @@ fn a_coil_lies_clear_of_the_stops() {
                 Shape::Rect(rect) if rect.fill == fill => Some(rect.rect),
                 _ => None,
             };
-            let parts = |own: &eframe::egui::epaint::ClippedShape| match &own.shape {
+            let parts = |clipped: &eframe::egui::epaint::ClippedShape| match &clipped.shape {
                 Shape::Vec(all) => all.iter().filter_map(of_shape).collect(),
                 shape => of_shape(shape).into_iter().collect::<Vec<Rect>>(),
             };
@@ -359,7 +363,7 @@ fn the_headings_of_energy_stand_apart() {
     let all = painted(&harness);
     let heads = [["since the start", "last period"], ["total", "period"]];
     let heads = heads.iter().find_map(|pair| {
-        let [a, b] = pair.map(|head| all.iter().find(|own| own.0 == head && own.2.intersects(own.1)));
+        let [a, b] = pair.map(|head| all.iter().find(|text| text.0 == head && text.2.intersects(text.1)));
         Some((a?.1, b?.1))
     });
     assert!(heads.is_none_or(|(start, period)| period.right() + 6.0 < start.left()), "{heads:?}");
@@ -368,8 +372,9 @@ fn the_headings_of_energy_stand_apart() {
 /// The texts that are seen and lie at least in part in one of a view.
 fn seen_in(harness: &Harness<'static, Window>, view: View) -> Vec<(String, Rect)> {
     let place = harness.state().tiling.place_of(view).unwrap();
-    let all = painted(harness).into_iter().filter(|own| own.2.intersects(own.1) && place.intersects(own.1));
-    all.map(|own| (own.0, own.1)).collect()
+    let all =
+        painted(harness).into_iter().filter(|text| text.2.intersects(text.1) && place.intersects(text.1));
+    all.map(|text| (text.0, text.1)).collect()
 }
 
 #[test]
@@ -387,11 +392,11 @@ fn what_is_read_under_the_pointer_lies_over_no_title() {
             harness.run_steps(3);
             let all = seen_in(&harness, view);
             let begins = |text: &str| text.starts_with(|c: char| c == '\u{2212}' || c.is_ascii_digit());
-            let read = all.iter().find(|own| own.0.contains(reading) && begins(&own.0));
+            let read = all.iter().find(|text| text.0.contains(reading) && begins(&text.0));
             let (_, read) = read.unwrap_or_else(|| panic!("{view:?}: {all:?}"));
             for title in titles {
                 let title =
-                    all.iter().find(|own| own.0 == title).unwrap_or_else(|| panic!("{title}: {all:?}"));
+                    all.iter().find(|text| text.0 == title).unwrap_or_else(|| panic!("{title}: {all:?}"));
                 assert!(!title.1.intersects(*read), "{view:?} {size:?}: {read:?} {title:?}");
             }
             // and not in the picture: in the row of the legend
@@ -417,8 +422,8 @@ fn a_live_picture_is_few_shapes() {
         harness.run_steps(3);
         let place = harness.state().tiling.place_of(view).unwrap();
         let is_text = |shape: &Shape| matches!(shape, Shape::Text(_) | Shape::Noop);
-        let of_view = harness.output().shapes.iter().filter(|own| place.contains_rect(own.clip_rect));
-        let count = of_view.filter(|own| !is_text(&own.shape)).count();
+        let of_view = harness.output().shapes.iter().filter(|clipped| place.contains_rect(clipped.clip_rect));
+        let count = of_view.filter(|clipped| !is_text(&clipped.shape)).count();
         // the hatching of two walls among them
         assert!(count < 250, "{view:?}: {count}");
     }

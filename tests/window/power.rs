@@ -21,8 +21,8 @@ const LIMIT: &str = "stops.travel_limit_mm";
 const LOAD: &str = "transducer.load_ohm";
 
 #[track_caller]
-fn near(own: f64, known: f64, tolerance: f64) {
-    assert!((own - known).abs() <= tolerance, "{own:e} is not {known:e}");
+fn near(value: f64, known: f64, tolerance: f64) {
+    assert!((value - known).abs() <= tolerance, "{value:e} is not {known:e}");
 }
 
 fn number(session: &Session, path: &str) -> Option<f64> {
@@ -138,25 +138,25 @@ fn its_sentences_hold_for_every_transducer() {
         });
         session.wait_settled(LONG);
         harness.run_steps(3);
-        let words: Vec<String> = painted(&harness).into_iter().map(|own| own.0).collect();
-        let line = |begin: &str| words.iter().find(|own| own.starts_with(begin)).cloned();
+        let words: Vec<String> = painted(&harness).into_iter().map(|text| text.0).collect();
+        let line = |begin: &str| words.iter().find(|text| text.starts_with(begin)).cloned();
         // an open circuit is typed and shown as inf
         let sentences = || words.iter().filter(|word| *word != "inf");
         assert!(sentences().all(|text| !text.contains("NaN") && !text.contains("inf")), "{words:?}");
         (line("Into the load: mean ").unwrap(), line("Coil: "), line("Voltage: "))
     };
     // nothing is taken by an open circuit, a short one, without coupling, and without motion
-    for (own, shaken) in [
+    for (transducer, shaken) in [
         (coil(5.0, f64::INFINITY), true),
         (coil(5.0, 0.0), true),
         (coil(0.0, 60.0), true),
         (coil(5.0, 60.0), false),
         (layer(0.0), true),
     ] {
-        let (load, ..) = shown(own, shaken);
-        assert!(load.starts_with("Into the load: mean 0 mW"), "{own:?}: {load}");
+        let (load, ..) = shown(transducer, shaken);
+        assert!(load.starts_with("Into the load: mean 0 mW"), "{transducer:?}: {load}");
     }
-    assert!(shown(coil(5.0, 0.0), true).1.is_some_and(|own| !own.starts_with("Coil: mean 0 mW")));
+    assert!(shown(coil(5.0, 0.0), true).1.is_some_and(|text| !text.starts_with("Coil: mean 0 mW")));
     // what has no coil does not speak of one
     let (load, coil, voltage) = shown(layer(100.0), true);
     assert!(load.ends_with("% of the work of the base.") && coil.is_none() && voltage.is_some());
@@ -174,7 +174,7 @@ fn a_current_that_goes_on_by_itself_is_drawn_through_impacts() {
         harness.state().session.player.watch().samples().iter().any(|sample| sample.electrical.is_nan())
     });
     assert!(is_painted(&harness, "Into the load: mean ") && is_painted(&harness, "power into the load (mW)"));
-    assert!(painted(&harness).iter().all(|own| !own.0.contains("NaN")));
+    assert!(painted(&harness).iter().all(|text| !text.0.contains("NaN")));
 }
 
 #[test]

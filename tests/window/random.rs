@@ -278,8 +278,11 @@ impl Hand {
 }
 
 fn bounds(node: &eframe::egui::accesskit::Node) -> Option<Rect> {
-    let own = node.bounds()?;
-    let rect = Rect::from_min_max(pos2(own.x0 as f32, own.y0 as f32), pos2(own.x1 as f32, own.y1 as f32));
+    let bounds = node.bounds()?;
+    let rect = Rect::from_min_max(
+        pos2(bounds.x0 as f32, bounds.y0 as f32),
+        pos2(bounds.x1 as f32, bounds.y1 as f32),
+    );
     (rect.is_finite() && rect.size() != Vec2::ZERO).then_some(rect)
 }
 

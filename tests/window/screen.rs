@@ -61,7 +61,7 @@ impl Screen {
         self.stands = output.viewport_output[&ViewportId::ROOT].repaint_delay;
         if let Some(update) = output.platform_output.accesskit_update {
             self.nodes.clear();
-            self.nodes.extend(update.nodes.into_iter().map(|own| own.1));
+            self.nodes.extend(update.nodes.into_iter().map(|entry| entry.1));
         }
     }
 

@@ -34,7 +34,7 @@ fn shaken() {
              period up to "
         )
     });
-    assert!(likely.any(|own| text.starts_with(&own)), "{text}");
+    assert!(likely.any(|beginning| text.starts_with(&beginning)), "{text}");
     assert!(text.contains("g short of crossing at about 1.1"), "{text}");
 
     let (kind, text) = of("first-look", &[&stops(1.5)]);
@@ -84,8 +84,8 @@ fn shaken() {
 fn a_transient_is_told_as_one() {
     // irregular in the scene's own window, then in step with the drive
     for amplitude in ["1.16", "1.2", "1.25", "1.3", "1.33"] {
-        let mut own = settled("first-look", &[&format!("excitation.amplitude_g={amplitude}")]);
-        let (kind, text) = says(&own);
+        let mut session = settled("first-look", &[&format!("excitation.amplitude_g={amplitude}")]);
+        let (kind, text) = says(&session);
         let (start, rest) = text.split_once(" s on").unwrap();
         // the path cannot be trusted up to then
         let (how, since) = start.rsplit_once(" from about ").unwrap();
@@ -93,11 +93,11 @@ fn a_transient_is_told_as_one() {
         assert!(kind == Kind::Interwell && how.starts_with("Interwell: will cross "), "{text}");
         assert!(rest.starts_with([',', ' ']), "{text}");
         // once it has been seen to repeat it is told as it is
-        own.player.speed = 1.0;
-        while own.player.watch().time() < since + 5.0 {
-            own.player.tick(0.1);
+        session.player.speed = 1.0;
+        while session.player.watch().time() < since + 5.0 {
+            session.player.tick(0.1);
         }
-        assert!(says(&own).1.starts_with("Interwell: crosses "), "{:?}", says(&own));
+        assert!(says(&session).1.starts_with("Interwell: crosses "), "{:?}", says(&session));
     }
     // irregular for as long as it was followed
     let (kind, text) = says(&settled("first-look", &["excitation.amplitude_g=1.5"]));
@@ -107,19 +107,19 @@ fn a_transient_is_told_as_one() {
 
 #[test]
 fn a_forecast_that_the_path_does_not_reach_says_about() {
-    let mut own = session("first-look", &["excitation.amplitude_g=1.5"]);
-    let text = says(&own).1;
+    let mut live = session("first-look", &["excitation.amplitude_g=1.5"]);
+    let text = says(&live).1;
     assert!(text.contains(" will cross in about ") || text.contains("will cross in every period"), "{text}");
-    own = session("paper-ramp", &[]);
-    own.player.speed = 1.0;
-    own.player.set_playing(true);
-    assert!(says(&own).1.contains("will cross at "), "{:?}", says(&own));
+    live = session("paper-ramp", &[]);
+    live.player.speed = 1.0;
+    live.player.set_playing(true);
+    assert!(says(&live).1.contains("will cross at "), "{:?}", says(&live));
     // what has happened is past
-    own.player.speed = 100.0;
-    while own.player.watch().time() < 110.0 {
-        own.player.tick(0.05);
+    live.player.speed = 100.0;
+    while live.player.watch().time() < 110.0 {
+        live.player.tick(0.05);
     }
-    let text = says(&own).1;
+    let text = says(&live).1;
     assert!(
         text.contains("was first released at 0.689 g") && text.contains("; crossed at 0.719 g"),
         "{text}"
@@ -128,9 +128,9 @@ fn a_forecast_that_the_path_does_not_reach_says_about() {
 
 #[test]
 fn what_comes_to_repeat_is_not_called_chaotic() {
-    let own = session("first-look", &["excitation.amplitude_g=1.2"]);
-    assert!(own.settled_now().unwrap().period.is_some());
-    let (short, long) = own.trust().unwrap();
+    let session = session("first-look", &["excitation.amplitude_g=1.2"]);
+    assert!(session.settled_now().unwrap().period.is_some());
+    let (short, long) = session.trust().unwrap();
     // the path is lost on the way there
     assert!(long.contains("grows tenfold every"), "{long}");
     assert!(short.starts_with("Path reliable up to "), "{short}");
@@ -226,76 +226,80 @@ fn not_shaken() {
 
 #[test]
 fn held_ended_and_wrong() {
-    let mut own = settled("first-look", &[]);
-    own.player.hold(3.2e-3);
-    assert!(says(&own).1.starts_with("Held at 3.2 mm: it pulls outwards with 0.1"), "{:?}", says(&own));
-    own.player.hold(7.4e-3);
-    assert!(says(&own).1.contains("inwards"), "{:?}", says(&own));
-    own.player.hold(1e-9);
-    assert_eq!(says(&own).1, "Held at 0.0 mm: nothing pulls.");
+    let mut session = settled("first-look", &[]);
+    session.player.hold(3.2e-3);
+    assert!(
+        says(&session).1.starts_with("Held at 3.2 mm: it pulls outwards with 0.1"),
+        "{:?}",
+        says(&session)
+    );
+    session.player.hold(7.4e-3);
+    assert!(says(&session).1.contains("inwards"), "{:?}", says(&session));
+    session.player.hold(1e-9);
+    assert_eq!(says(&session).1, "Held at 0.0 mm: nothing pulls.");
 
-    let own = settled("first-look", &["start=At(x_mm: 7.9, v_m_per_s: 2)"]);
-    let (kind, text) = says(&own);
+    let session = settled("first-look", &["start=At(x_mm: 7.9, v_m_per_s: 2)"]);
+    let (kind, text) = says(&session);
     assert!(kind == Kind::Fault && text.starts_with("The run ended at 0.0"), "{text}");
     assert!(text.contains("went further than the flexures were computed, 8.3 mm"), "{text}");
-    let own = settled("paper-table", &["stops=None", "start=At(x_mm: 7.9, v_m_per_s: 2)"]);
-    assert!(says(&own).1.contains("left the force table"), "{:?}", says(&own));
+    let session = settled("paper-table", &["stops=None", "start=At(x_mm: 7.9, v_m_per_s: 2)"]);
+    assert!(says(&session).1.contains("left the force table"), "{:?}", says(&session));
 
-    let mut own = settled("first-look", &[]);
-    own.edit_once(|scene| scene.mass_g = f64::NAN);
-    assert_eq!(says(&own).0, Kind::Fault);
-    own.undo();
-    own.wait_settled(LONG);
-    assert_eq!(says(&own).0, Kind::Intrawell);
+    let mut session = settled("first-look", &[]);
+    session.edit_once(|scene| scene.mass_g = f64::NAN);
+    assert_eq!(says(&session).0, Kind::Fault);
+    session.undo();
+    session.wait_settled(LONG);
+    assert_eq!(says(&session).0, Kind::Intrawell);
 }
 
 #[test]
 fn the_future_until_it_has_been_seen() {
-    let mut own = session("first-look", &[]);
-    own.player.tick(0.05);
-    own.switch_stops(true);
-    own.wait(LONG);
-    assert!(says(&own).1.starts_with("Interwell: will cross twice a period"), "{:?}", says(&own));
-    let (gone, of) = own.settling().unwrap();
+    let mut session = session("first-look", &[]);
+    session.player.tick(0.05);
+    session.switch_stops(true);
+    session.wait(LONG);
+    assert!(says(&session).1.starts_with("Interwell: will cross twice a period"), "{:?}", says(&session));
+    let (gone, of) = session.settling().unwrap();
     assert!(gone == 0.0 && of > 0.3 && of < 2.0, "{gone} {of}");
-    own.player.speed = 1.0;
-    while own.settling().is_some() {
-        assert!(says(&own).1.starts_with("Interwell: will cross"), "{:?}", says(&own));
-        own.player.tick(0.1);
+    session.player.speed = 1.0;
+    while session.settling().is_some() {
+        assert!(says(&session).1.starts_with("Interwell: will cross"), "{:?}", says(&session));
+        session.player.tick(0.1);
     }
-    assert!(says(&own).1.starts_with("Interwell: crosses twice a period"), "{:?}", says(&own));
+    assert!(says(&session).1.starts_with("Interwell: crosses twice a period"), "{:?}", says(&session));
     // three periods of it have been drawn
-    let since = own.player.watch().time() - own.changed_at();
+    let since = session.player.watch().time() - session.changed_at();
     assert!(since >= 1.0 - 1e-9, "{since}");
     // paused in mid-air, it is not said to rest on a stop
-    while own.player.state().phase != interwell::dynamics::Phase::Free {
-        own.player.tick(0.01);
+    while session.player.state().phase != interwell::dynamics::Phase::Free {
+        session.player.tick(0.01);
     }
-    own.edit_once(|scene| {
+    session.edit_once(|scene| {
         if let Excitation::Sine { amplitude_g, .. } = &mut scene.excitation {
             *amplitude_g = 0.3;
         }
     });
-    own.wait(LONG);
-    assert!(says(&own).1.contains("will stay pressed on the "), "{:?}", says(&own));
+    session.wait(LONG);
+    assert!(says(&session).1.contains("will stay pressed on the "), "{:?}", says(&session));
 }
 
 #[test]
 fn no_number_that_can_be_set_ends_the_program() {
-    let mut own = session("first-look", &[]);
+    let mut session = session("first-look", &[]);
     for value in [0.0, -1.0, 1e-300, 1e300, f64::INFINITY, f64::NAN] {
-        own.edit_once(|scene| {
+        session.edit_once(|scene| {
             if let Excitation::Sine { amplitude_g, frequency_hz, .. } = &mut scene.excitation {
                 (*amplitude_g, *frequency_hz) = (value, value);
             }
         });
-        own.edit_once(|scene| scene.stops = Stops::Rigid { travel_limit_mm: value, restitution: value });
-        own.edit_once(|scene| scene.mass_g = value);
-        own.player.tick(0.1);
-        own.wait(LONG);
-        assert!(!says(&own).1.is_empty());
+        session.edit_once(|scene| scene.stops = Stops::Rigid { travel_limit_mm: value, restitution: value });
+        session.edit_once(|scene| scene.mass_g = value);
+        session.player.tick(0.1);
+        session.wait(LONG);
+        assert!(!says(&session).1.is_empty());
     }
-    while own.undo() {}
-    own.wait(LONG);
-    assert_eq!(says(&own).0, Kind::Intrawell);
+    while session.undo() {}
+    session.wait(LONG);
+    assert_eq!(says(&session).0, Kind::Intrawell);
 }

@@ -48,8 +48,8 @@ fn gesture(random: &mut ChaCha8Rng, screen: &mut Screen) -> (String, Vec<Vec<Eve
         return (format!("{key:?}"), vec![vec![event(true), event(false)]]);
     }
     let bounds = |node: &eframe::egui::accesskit::Node| {
-        let own = node.bounds().filter(|_| node.role() == wanted)?;
-        Some(Rect::from_min_max(pos2(own.x0 as f32, own.y0 as f32), pos2(own.x1 as f32, own.y1 as f32)))
+        let area = node.bounds().filter(|_| node.role() == wanted)?;
+        Some(Rect::from_min_max(pos2(area.x0 as f32, area.y0 as f32), pos2(area.x1 as f32, area.y1 as f32)))
     };
     let all: Vec<Rect> = screen.nodes.iter().filter_map(bounds).collect();
     let (rect, share) = (all[below(all.len())], below(100) as f32 / 100.0);
@@ -141,7 +141,7 @@ fn the_guide_line_holds_its_longest_text_and_its_buttons_stand_at_the_right() {
         harness.get_by_label("What stops do, and why:");
         assert_eq!(harness.get_by_label("Dismiss").rect(), right, "{size:?}");
         let all = painted(&harness);
-        let (_, text, clip) = all.iter().find(|own| own.0.starts_with("a stop near the middle")).unwrap();
+        let (_, text, clip) = all.iter().find(|label| label.0.starts_with("a stop near the middle")).unwrap();
         assert!(clip.expand(1.0).contains_rect(*text) && text.right() < right.left(), "{text:?} {clip:?}");
         // it leaves with the stops
         harness.state_mut().session.switch_stops(false);
@@ -162,7 +162,7 @@ fn a_number_keeps_its_unit_and_code_has_no_backticks() {
         let notes = harness.state().message().unwrap().replace('`', "");
         let all = painted_as_is(&harness);
         let plain = |text: &str| text.replace('\u{a0}', " ");
-        let shown = all.iter().find(|own| plain(&own.0) == notes);
+        let shown = all.iter().find(|text| plain(&text.0) == notes);
         let (text, ..) = shown.unwrap_or_else(|| panic!("{}: {notes}", preset.name));
         assert_eq!(*text, unbroken(&notes), "{}", preset.name);
     }
@@ -175,7 +175,7 @@ fn notes_begin_with_two_sentences() {
         let notes = harness.state().session.scene().notes.trim().to_owned();
         let begin = notes.chars().take_while(|letter| *letter != '`').take(30).collect::<String>();
         let all = painted(&harness);
-        let shown = all.iter().map(|own| &own.0).find(|text| text.starts_with(&begin)).unwrap();
+        let shown = all.iter().map(|text| &text.0).find(|text| text.starts_with(&begin)).unwrap();
         let ends = shown.match_indices(". ").count();
         assert!(shown.ends_with('.') && ends <= 1, "{}: {shown}", preset.name);
         harness.get_by_label("Read on").click();

@@ -131,22 +131,26 @@ pub fn painted_as_is(harness: &Harness<'static, Window>) -> Vec<(String, Rect, R
     }
     let mut all = Vec::new();
     let screen = harness.ctx.content_rect();
-    for own in &harness.output().shapes {
-        texts(&own.shape, own.clip_rect.intersect(screen), &mut all);
+    for clipped in &harness.output().shapes {
+        texts(&clipped.shape, clipped.clip_rect.intersect(screen), &mut all);
     }
     all
 }
 
 /// Whether words are painted where they are seen.
 pub fn is_painted(harness: &Harness<'static, Window>, words: &str) -> bool {
-    painted(harness).iter().any(|own| own.0.contains(words) && own.2.intersects(own.1))
+    painted(harness).iter().any(|text| text.0.contains(words) && text.2.intersects(text.1))
 }
 
 /// The texts of which a part is seen and a part is not.
 pub fn sliced(harness: &Harness<'static, Window>) -> Vec<String> {
-    let cut = |own: &&(String, Rect, Rect)| {
-        let (text, clip) = (own.1.shrink(1.0), own.2);
+    let cut = |label: &&(String, Rect, Rect)| {
+        let (text, clip) = (label.1.shrink(1.0), label.2);
         text.is_positive() && text.intersects(clip) && !clip.expand(0.5).contains_rect(text)
     };
-    painted(harness).iter().filter(cut).map(|own| format!("{} {:?} in {:?}", own.0, own.1, own.2)).collect()
+    painted(harness)
+        .iter()
+        .filter(cut)
+        .map(|text| format!("{} {:?} in {:?}", text.0, text.1, text.2))
+        .collect()
 }

@@ -19,18 +19,18 @@ fn alone(harness: &mut Harness<'static, Window>, view: View) {
 fn rows(harness: &Harness<'static, Window>, view: View) -> Vec<Vec<String>> {
     let place = harness.state().tiling.place_of(view).unwrap();
     let mut texts: Vec<_> =
-        painted(harness).into_iter().filter(|own| place.contains(own.1.center())).collect();
+        painted(harness).into_iter().filter(|text| place.contains(text.1.center())).collect();
     texts.sort_by(|a, b| a.1.left().total_cmp(&b.1.left()));
-    let is_name = |own: &&(String, eframe::egui::Rect, eframe::egui::Rect)| {
-        own.1.left() < place.left() + 16.0 && own.1.top() > place.top() + 30.0
+    let is_name = |text: &&(String, eframe::egui::Rect, eframe::egui::Rect)| {
+        text.1.left() < place.left() + 16.0 && text.1.top() > place.top() + 30.0
     };
     let mut names: Vec<_> = texts.iter().filter(is_name).collect();
     names.sort_by(|a, b| a.1.top().total_cmp(&b.1.top()));
     let row = |name: &eframe::egui::Rect| {
-        let beside = texts.iter().filter(|own| (own.1.center().y - name.center().y).abs() < 7.0);
-        beside.map(|own| own.0.clone()).collect::<Vec<_>>()
+        let beside = texts.iter().filter(|text| (text.1.center().y - name.center().y).abs() < 7.0);
+        beside.map(|text| text.0.clone()).collect::<Vec<_>>()
     };
-    names.iter().map(|own| row(&own.1)).filter(|row| row[0] != "Pin" && row[0] != "With stops").collect()
+    names.iter().map(|name| row(&name.1)).filter(|row| row[0] != "Pin" && row[0] != "With stops").collect()
 }
 
 fn named<'a>(rows: &'a [Vec<String>], name: &str) -> &'a Vec<String> {
@@ -60,15 +60,15 @@ fn before_now_and_compare_are_one_table() {
     }
     // what is equal in both has no row
     assert!(!names(&card).iter().any(|name| name == "mass" || name == "damping"));
-    let order = |name: &str| names(&card).iter().position(|own| own == name).unwrap();
+    let order = |name: &str| names(&card).iter().position(|other| other == name).unwrap();
     assert!(order("preload") < order("motion") && order("motion") < order("RMS velocity"));
     assert_eq!(named(&card, "motion")[1], "once settled");
     // the same units, and the same digits of the present motion
     for (name, unit) in [("RMS velocity", "mm/s"), ("reach", "mm"), ("stops", "mm"), ("preload", "mm")] {
-        let (own, beside) = (named(&card, name), named(&compare, name));
-        assert!(own[1] == unit && beside[1] == unit, "{own:?} {beside:?}");
-        assert_eq!(own[3], beside[2], "{own:?} {beside:?}");
-        assert_eq!(own[2], beside[3], "{own:?} {beside:?}");
+        let (row, beside) = (named(&card, name), named(&compare, name));
+        assert!(row[1] == unit && beside[1] == unit, "{row:?} {beside:?}");
+        assert_eq!(row[3], beside[2], "{row:?} {beside:?}");
+        assert_eq!(row[2], beside[3], "{row:?} {beside:?}");
     }
     assert_eq!(named(&card, "restitution")[1..], ["0.36", "0.5"]);
     assert_eq!(named(&card, "preload")[2..], ["2.7", "2.5"]);

@@ -186,17 +186,18 @@ fn the_wheel_zooms_all_traces() {
 
 #[test]
 fn axes_stand_still_while_the_wells_move_apart() {
-    let (mut own, mut memory) = (session("first-look", &[]), Memory::default());
-    let (before, well) = (memory.span(&own), own.model().mechanism().landscape.barrier.unwrap().right_well);
+    let (mut session, mut memory) = (session("first-look", &[]), Memory::default());
+    let (before, well) =
+        (memory.span(&session), session.model().mechanism().landscape.barrier.unwrap().right_well);
     for mm in [2.75, 2.9, 3.1] {
-        assert!(own.set_number("mechanism.preload_mm", mm).unwrap());
-        own.poll();
-        assert_eq!(memory.span(&own), before, "{mm}");
+        assert!(session.set_number("mechanism.preload_mm", mm).unwrap());
+        session.poll();
+        assert_eq!(memory.span(&session), before, "{mm}");
     }
-    let moved = own.model().mechanism().landscape.barrier.unwrap().right_well;
+    let moved = session.model().mechanism().landscape.barrier.unwrap().right_well;
     assert!(moved > 1.04 * well && moved < before.high, "{well} {moved} {before:?}");
-    own.end_gesture();
-    assert!(memory.span(&own).high > before.high);
+    session.end_gesture();
+    assert!(memory.span(&session).high > before.high);
 }
 
 #[test]

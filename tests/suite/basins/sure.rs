@@ -41,7 +41,7 @@ fn starts_that_another_tolerance_sends_elsewhere_are_not_sure() {
     assert!(unsure > 20 && unsure < 170, "{unsure} of 425");
     for other in [at("1e-8"), at("1e-10")] {
         let elsewhere = |row: &usize| {
-            let [one, another] = [&answer, &other].map(|own| own.rows[*row].map(|_| attractor(own, *row)));
+            let [one, another] = [&answer, &other].map(|each| each.rows[*row].map(|_| attractor(each, *row)));
             let apart = |a: &Attractor, b: &Attractor| {
                 a.period.is_some() && (a.states[0].0 - b.states[0].0).abs() > 2e-4
             };

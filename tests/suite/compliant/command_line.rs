@@ -78,12 +78,12 @@ fn check_says_the_loss_at_the_speed_that_occurs() {
     // The documented stop is that one: struck as fast, with that restitution.
     let page = include_str!("../../../docs/scene.md").split_whitespace().collect::<Vec<_>>().join(" ");
     let stops = page.split_once("`stops: Hertz(").unwrap().1.split_once(")`").unwrap().0.replace(' ', "");
-    let own = said(&format!("paper --set stops=Hertz({stops})"));
-    assert!((number(&own, "restitution ") - 0.36).abs() < 2e-3, "{own}");
-    assert!((number(&own, "struck at ") / speed - 1.0).abs() < 0.01, "{own}");
+    let text = said(&format!("paper --set stops=Hertz({stops})"));
+    assert!((number(&text, "restitution ") - 0.36).abs() < 2e-3, "{text}");
+    assert!((number(&text, "struck at ") / speed - 1.0).abs() < 0.01, "{text}");
     for (wanted, product) in [("0.8 takes ", 0.3734), ("0.5 takes ", 1.4334), ("0.36 takes ", 2.427)] {
-        let found = number(&own, wanted) * number(&own, "struck at ");
-        assert!((found / product - 1.0).abs() < 2e-3, "{wanted}: {found}, {own}");
+        let found = number(&text, wanted) * number(&text, "struck at ");
+        assert!((found / product - 1.0).abs() < 2e-3, "{wanted}: {found}, {text}");
     }
     // Nothing strikes, nothing is said; no loss takes all speed.
     assert_eq!(line("paper --set excitation=None"), None);
@@ -159,7 +159,7 @@ fn restitution_over_impact_speed_as_rows_and_as_a_picture() {
         rows[2..]
             .iter()
             .zip(&rows[1..])
-            .all(|(next, own)| { next[1].parse::<f64>().unwrap() < own[1].parse::<f64>().unwrap() })
+            .all(|(next, row)| { next[1].parse::<f64>().unwrap() < row[1].parse::<f64>().unwrap() })
     );
     let drawn = std::fs::read_to_string(picture).unwrap();
     for words in ["impact speed (m/s)", "restitution", "rigid stop, 0.36", "yields from"] {

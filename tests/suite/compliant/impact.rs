@@ -71,11 +71,11 @@ fn the_order_holds_at_touch_down_and_every_tolerance_is_kept() {
     let (touch, leave, _, v_out) = contact(&exact);
     let mut steps = Vec::new();
     for (tolerance, allowed) in [(1e-3, 1e-3), (1e-6, 1e-6), (1e-9, 1e-9), (1e-12, 1e-12), (1e-14, 4e-14)] {
-        let own = run(&flight(0.5, 4.854, tolerance));
-        let (begin, end, _, rebound) = contact(&own);
+        let run = run(&flight(0.5, 4.854, tolerance));
+        let (begin, end, _, rebound) = contact(&run);
         near_relative(rebound, v_out, allowed);
         near_relative(end - begin, leave - touch, 10.0 * allowed);
-        steps.push(own.summary.steps);
+        steps.push(run.summary.steps);
     }
     assert!(steps.windows(2).all(|pair| pair[0] <= pair[1]), "{steps:?}");
     assert!(steps[3] <= 2 * steps[1] && steps[4] < 40, "{steps:?}");

@@ -32,9 +32,9 @@ fn reference(model: &Model, times: &[f64]) -> Run {
 
 /// Peak force in N, depth in m, RMS velocity in m/s and dissipated energy in J.
 fn figures(run: &Run) -> [f64; 4] {
-    let own = &run.summary;
-    let (force, depth) = (own.peak_contact_force.unwrap(), own.max_abs_x.unwrap() - 1e-3);
-    [force, depth, own.rms_velocity.unwrap(), own.ledger.unwrap().impact_j]
+    let summary = &run.summary;
+    let (force, depth) = (summary.peak_contact_force.unwrap(), summary.max_abs_x.unwrap() - 1e-3);
+    [force, depth, summary.rms_velocity.unwrap(), summary.ledger.unwrap().impact_j]
 }
 
 /// One touch, and the separation that follows.
@@ -65,34 +65,38 @@ fn an_impact_is_one_step_and_as_exact_as_many() {
         let exact = reference(&exact, &times);
         for tolerance in [1e-3, 1e-6, 1e-9, 1e-12] {
             let model = touch(speed, loss, force, &rest, tolerance);
-            let own = run_at(&model, &times);
+            let run = run_at(&model, &times);
             let what = format!("{index} {speed} {loss} {force} at {tolerance}");
             let mut check = |name: &str, off: f64, bound: f64| {
                 if !(off.abs() < bound) {
                     faults.push(format!("{name} off by {off:e}, allowed {bound:e}: {what}"));
                 }
             };
-            let contacts = of_kind(&own, EventKind::Contact).len() as u64;
+            let contacts = of_kind(&run, EventKind::Contact).len() as u64;
             check(
                 "steps",
-                (own.summary.steps / contacts) as f64,
+                (run.summary.steps / contacts) as f64,
                 if speed < 0.02 || loss * speed > 1.5 { 40.0 } else { 5.0 },
             );
-            one_step += u32::from(own.summary.steps < 5 * contacts);
+            one_step += u32::from(run.summary.steps < 5 * contacts);
             let bound = 0.1 * tolerance + 2e-14;
-            let (_, leave, rebound) = first(&own);
+            let (_, leave, rebound) = first(&run);
             check("speed", rebound / v_out - 1.0, bound);
             check("time", (leave - end) / (end - begin), bound);
-            for (k, (own, exact)) in figures(&own).into_iter().zip(figures(&exact)).enumerate() {
+            for (k, (figure, exact)) in figures(&run).into_iter().zip(figures(&exact)).enumerate() {
                 // (of the depth 1e-6 of the displacement is left, in doubles)
                 let rounding = if k == 1 { 1e-9 } else { 1e-12 };
-                check("figure", if exact == 0.0 { own } else { own / exact - 1.0 }, tolerance + rounding);
+                check(
+                    "figure",
+                    if exact == 0.0 { figure } else { figure / exact - 1.0 },
+                    tolerance + rounding,
+                );
             }
-            check("ledger", own.summary.ledger.unwrap().energy_residual, 0.1 * tolerance + 1e-13);
-            for (own, exact) in own.samples.iter().zip(&exact.samples) {
-                assert_eq!((own.phase, own.t), (Phase::RightStop, exact.t));
-                check("sample's speed", (own.v - exact.v) / speed, tolerance + 1e-11);
-                check("sample's place", (own.x - exact.x) / (speed * (end - begin)), tolerance + 1e-9);
+            check("ledger", run.summary.ledger.unwrap().energy_residual, 0.1 * tolerance + 1e-13);
+            for (sample, exact) in run.samples.iter().zip(&exact.samples) {
+                assert_eq!((sample.phase, sample.t), (Phase::RightStop, exact.t));
+                check("sample's speed", (sample.v - exact.v) / speed, tolerance + 1e-11);
+                check("sample's place", (sample.x - exact.x) / (speed * (end - begin)), tolerance + 1e-9);
             }
         }
     }
@@ -153,11 +157,11 @@ fn an_impact_that_reaches_a_break_or_the_barrier_is_followed_in_steps() {
          start: At(x_mm: 0, v_m_per_s: 0.3), run: (duration_s: 0.01, settle_s: 0, tolerance: 1e-10)",
     );
     for (model, crossings) in [(walls, 0), (barrier, 2)] {
-        let (own, exact) = (run(&model), reference(&model, &[]));
-        assert_eq!((own.summary.crossings, exact.summary.crossings), (crossings, crossings));
-        assert_eq!((own.summary.total_impacts, exact.summary.total_impacts), (1, 1));
-        assert!(own.summary.steps > 8, "{}", own.summary.steps);
-        near(own.summary.final_v, exact.summary.final_v, 1e-9 * model.scales().speed);
-        near(own.summary.ledger.unwrap().energy_residual, 0.0, 1e-9);
+        let (run, exact) = (run(&model), reference(&model, &[]));
+        assert_eq!((run.summary.crossings, exact.summary.crossings), (crossings, crossings));
+        assert_eq!((run.summary.total_impacts, exact.summary.total_impacts), (1, 1));
+        assert!(run.summary.steps > 8, "{}", run.summary.steps);
+        near(run.summary.final_v, exact.summary.final_v, 1e-9 * model.scales().speed);
+        near(run.summary.ledger.unwrap().energy_residual, 0.0, 1e-9);
     }
 }

@@ -21,7 +21,7 @@ fn pressed(force: f64, stop: &str, rest: &str) -> Model {
 fn a_start_at_rest_is_pressed_in_as_deep_as_the_forces_balance() {
     for well in ["", "mechanism=DoubleWell(equilibrium_mm: 7, barrier_mj: 0.5)"] {
         let changes: Vec<&str> =
-            [well, "excitation=None"].into_iter().filter(|own| !own.is_empty()).collect();
+            [well, "excitation=None"].into_iter().filter(|change| !change.is_empty()).collect();
         let model = prototype(&changes);
         let stop = model.compliant().unwrap();
         let run = run_at(&model, &[0.0, 1.0, 10.0]);
@@ -31,7 +31,11 @@ fn a_start_at_rest_is_pressed_in_as_deep_as_the_forces_balance() {
         near_relative(run.summary.peak_contact_force.unwrap(), press, 1e-10);
         assert!(depth > 1e-8 && depth < 1e-6);
         assert!(run.summary.outcome == Outcome::Done && run.summary.steps < 10);
-        assert!(run.samples.iter().all(|own| own.phase == Phase::RightStop && own.x == run.summary.final_x));
+        assert!(
+            run.samples
+                .iter()
+                .all(|sample| sample.phase == Phase::RightStop && sample.x == run.summary.final_x)
+        );
         assert_eq!((run.summary.rested_share, run.summary.total_impacts), (Some(1.0), 0));
         assert_eq!(run.summary.regime.name(), "rest");
         assert_eq!(run.events.len(), 1);
@@ -74,11 +78,11 @@ fn trembling_on_a_stop_has_the_frequency_of_its_stiffness() {
     let omega = (1.5 * stop.stiffness * depth.sqrt() / model.mass()).sqrt();
     let swing = 2.0 * 9.80665e-4 / omega.powi(2);
     let times: Vec<f64> = (1..=40).map(|i| std::f64::consts::PI * f64::from(i) / omega).collect();
-    for (i, own) in run_at(&model, &times).samples.iter().enumerate() {
+    for (i, sample) in run_at(&model, &times).samples.iter().enumerate() {
         // inward by the whole swing after every odd half period, back after every even one
         let inward = if i % 2 == 0 { swing } else { 0.0 };
-        near(own.x, 1.5e-3 + depth - inward, 2e-3 * swing + 2e-5 * swing * i as f64);
-        assert_eq!(own.phase, Phase::RightStop);
+        near(sample.x, 1.5e-3 + depth - inward, 2e-3 * swing + 2e-5 * swing * i as f64);
+        assert_eq!(sample.phase, Phase::RightStop);
     }
 }
 
@@ -158,11 +162,11 @@ fn a_break_of_the_curve_next_to_the_surface_is_passed_with_it() {
                 "run.settle_s=0",
             ],
         );
-        run(&model).events.iter().map(|own| (own.kind, own.side)).collect::<Vec<_>>()
+        run(&model).events.iter().map(|event| (event.kind, event.side)).collect::<Vec<_>>()
     };
     for v in [0.3, 0.45] {
         let clear = events(1e-3, 1e-9, v);
-        assert!(clear.iter().filter(|own| own.0 == EventKind::Contact).count() > 1, "{clear:?}");
+        assert!(clear.iter().filter(|event| event.0 == EventKind::Contact).count() > 1, "{clear:?}");
         for tolerance in [1e-3, 1e-5, 1e-8] {
             for below_mm in [0.0, 2e-15, 4e-15, 1e-14, 1e-13, 1e-12, 1e-11] {
                 assert_eq!(events(below_mm, tolerance, v), clear, "{below_mm} {tolerance} {v}");

@@ -21,8 +21,8 @@ fn exact(model: &Model, times: &[f64]) -> Run {
 /// The largest deviations of displacement in m and velocity in m/s from the reference.
 fn deviations(run: &Run, exact: &Run) -> (f64, f64) {
     assert_eq!(run.samples.len(), exact.samples.len());
-    run.samples.iter().zip(&exact.samples).fold((0.0, 0.0), |(x, v): (f64, f64), (own, exact)| {
-        (x.max((own.x - exact.x).abs()), v.max((own.v - exact.v).abs()))
+    run.samples.iter().zip(&exact.samples).fold((0.0, 0.0), |(x, v): (f64, f64), (sample, exact)| {
+        (x.max((sample.x - exact.x).abs()), v.max((sample.v - exact.v).abs()))
     })
 }
 

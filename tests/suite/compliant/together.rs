@@ -60,7 +60,8 @@ fn fast_rebounds_are_those_of_one_contact_alone() {
         seen += 1;
     }
     assert!(seen > 30, "{seen}");
-    let fastest = of_kind(&run, EventKind::Contact).iter().map(|own| own.v_in.abs()).fold(0.0, f64::max);
+    let fastest =
+        of_kind(&run, EventKind::Contact).iter().map(|contact| contact.v_in.abs()).fold(0.0, f64::max);
     near_relative(run.summary.peak_contact_force.unwrap(), stop.peak_force(model.mass(), fastest), 1e-2);
 }
 
@@ -80,9 +81,9 @@ fn a_drive_as_fast_as_the_contact_acts_in_it() {
     assert!(!of_kind(&run, EventKind::Separate).is_empty());
     let exact = model.run_reference(&Request { events: true, ..Request::default() }, 1e-22);
     assert_eq!(run.events.len(), exact.events.len());
-    for (own, exact) in run.events.iter().zip(&exact.events) {
-        near(own.t, exact.t, 1e-9 * model.scales().time);
-        near(own.v_in, exact.v_in, 1e-8 * model.scales().speed);
+    for (event, exact) in run.events.iter().zip(&exact.events) {
+        near(event.t, exact.t, 1e-9 * model.scales().time);
+        near(event.v_in, exact.v_in, 1e-8 * model.scales().speed);
     }
     near(run.summary.ledger.unwrap().energy_residual, 0.0, 1e-9);
 }
@@ -104,7 +105,7 @@ fn ramps_records_and_noise_act_in_contact_too() {
 #[test]
 fn the_mirrored_drive_gives_the_mirrored_run() {
     let start = |x: f64, v: f64| format!("start=At(x_mm: {x}, v_m_per_s: {v})");
-    let own = run(&prototype(&["run.duration_s=2", "run.settle_s=1", &start(1.2, 0.3)]));
+    let plain = run(&prototype(&["run.duration_s=2", "run.settle_s=1", &start(1.2, 0.3)]));
     let mirrored = run(&prototype(&[
         "run.duration_s=2",
         "run.settle_s=1",
@@ -112,12 +113,12 @@ fn the_mirrored_drive_gives_the_mirrored_run() {
         &start(-1.2, -0.3),
     ]));
     assert_eq!(
-        (own.summary.final_x, own.summary.final_v),
+        (plain.summary.final_x, plain.summary.final_v),
         (-mirrored.summary.final_x, -mirrored.summary.final_v)
     );
-    assert_eq!(own.summary.peak_contact_force, mirrored.summary.peak_contact_force);
-    assert_eq!(own.events.len(), mirrored.events.len());
-    for (a, b) in own.events.iter().zip(&mirrored.events) {
+    assert_eq!(plain.summary.peak_contact_force, mirrored.summary.peak_contact_force);
+    assert_eq!(plain.events.len(), mirrored.events.len());
+    for (a, b) in plain.events.iter().zip(&mirrored.events) {
         assert_eq!((a.t, a.kind, a.v_in), (b.t, b.kind, -b.v_in));
         assert_ne!(a.side, b.side);
     }
@@ -157,12 +158,12 @@ fn live_it_is_the_same_run_in_any_pieces() {
     times.sort_by(f64::total_cmp);
     let last = *times.last().unwrap();
     let run = run_at(&model, &times);
-    assert!(run.samples.iter().filter(|own| own.phase != Phase::Free).count() > 50);
+    assert!(run.samples.iter().filter(|sample| sample.phase != Phase::Free).count() > 50);
     for piece in [0.000_13, 0.016_7, 0.25, 5.0] {
         let (live, passage) = in_pieces(&model, last, piece, &times);
         assert_eq!(passage.samples.len(), times.len());
-        for (own, one) in passage.samples.iter().zip(&run.samples) {
-            assert_eq!(own, one, "{piece}");
+        for (sample, one) in passage.samples.iter().zip(&run.samples) {
+            assert_eq!(sample, one, "{piece}");
         }
         let events: Vec<_> = run.events.iter().filter(|event| event.t <= last).collect();
         assert_eq!(passage.events.iter().collect::<Vec<_>>(), events, "{piece}");

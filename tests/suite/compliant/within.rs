@@ -56,15 +56,15 @@ impl Case {
 
 /// Velocity, energies, mean and largest displacement, in units of an impact at a speed that takes a time.
 fn figures(run: &Run, speed: f64, time: f64) -> [f64; 6] {
-    let own = &run.summary;
-    let (ledger, energy) = (own.ledger.unwrap(), 0.0152 * speed * speed);
+    let summary = &run.summary;
+    let (ledger, energy) = (summary.ledger.unwrap(), 0.0152 * speed * speed);
     [
-        own.rms_velocity.unwrap() / speed,
+        summary.rms_velocity.unwrap() / speed,
         ledger.impact_j / energy,
         ledger.work_j / energy,
         ledger.damping_j / energy,
-        own.mean_x.unwrap() / 1e-3,
-        own.max_abs_x.unwrap() / (speed * time),
+        summary.mean_x.unwrap() / 1e-3,
+        summary.max_abs_x.unwrap() / (speed * time),
     ]
 }
 
@@ -75,7 +75,7 @@ fn it_is_as_exact_as_the_ends() {
         let case = Case::new(index);
         let Some(end) = case.end() else { continue };
         let times: Vec<f64> = [0.003, 0.02, 0.1, 0.2, 0.31, 0.4, 0.5, 0.6, 0.69, 0.8, 0.93, 0.99, 0.999]
-            .map(|own| own * end)
+            .map(|share| share * end)
             .into();
         let span = (1.01 * end, 0.3 * end);
         let request = Request { sample_times: &times, events: true, ledger: true, ..Request::default() };
@@ -83,8 +83,8 @@ fn it_is_as_exact_as_the_ends() {
         let leaves = |run: &Run| of_kind(run, EventKind::Separate)[0];
         let shown = figures(&exact, case.speed, end);
         for tolerance in [1e-3, 1e-6, 1e-9, 1e-12] {
-            let own = run_at(&case.model(span, tolerance), &times);
-            if own.summary.steps > 3 {
+            let run = run_at(&case.model(span, tolerance), &times);
+            if run.summary.steps > 3 {
                 continue; // not in one step
             }
             one_step += 1;
@@ -93,18 +93,18 @@ fn it_is_as_exact_as_the_ends() {
                     faults.push(format!("{name} of {index} at {tolerance}: {:.1e}", off / tolerance));
                 }
             };
-            let (a, b) = (leaves(&own), leaves(&exact));
+            let (a, b) = (leaves(&run), leaves(&exact));
             check("time", (a.t - b.t) / end);
             check("speed", (a.v_out - b.v_out) / case.speed);
-            for (own, exact) in own.samples.iter().zip(&exact.samples) {
-                check("sample's speed", (own.v - exact.v) / case.speed);
-                check("sample's place", (own.x - exact.x) / (case.speed * end));
+            for (sample, exact) in run.samples.iter().zip(&exact.samples) {
+                check("sample's speed", (sample.v - exact.v) / case.speed);
+                check("sample's place", (sample.x - exact.x) / (case.speed * end));
             }
-            figures(&own, case.speed, end)
+            figures(&run, case.speed, end)
                 .into_iter()
                 .zip(shown)
-                .for_each(|(own, exact)| check("figure", own - exact));
-            check("ledger", own.summary.ledger.unwrap().energy_residual);
+                .for_each(|(figure, exact)| check("figure", figure - exact));
+            check("ledger", run.summary.ledger.unwrap().energy_residual);
         }
     }
     assert!(faults.is_empty(), "{faults:#?}");

@@ -44,14 +44,14 @@ fn chattering_error(run: &Run, reference: &Run) -> f64 {
     let fast = |run: &Run| -> Vec<Event> {
         of_kind(run, EventKind::Impact).into_iter().filter(|e| e.v_in.abs() > 1e-2).collect()
     };
-    let (own, exact) = (fast(run), fast(reference));
-    assert_eq!(own.len(), exact.len());
-    assert!(own.len() > 200);
+    let (impacts, exact) = (fast(run), fast(reference));
+    assert_eq!(impacts.len(), exact.len());
+    assert!(impacts.len() > 200);
     let error = |(a, b): (&Event, &Event)| {
         assert_eq!(a.side, b.side);
         (3.0 * (a.t - b.t).abs()).max((a.v_in / b.v_in - 1.0).abs())
     };
-    own.iter().zip(&exact).map(error).fold(rms_error(run, reference), f64::max)
+    impacts.iter().zip(&exact).map(error).fold(rms_error(run, reference), f64::max)
 }
 
 /// Errors at every tolerance, the coarsest first: each within `share` of its tolerance plus `rounding`, and

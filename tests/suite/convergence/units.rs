@@ -57,18 +57,18 @@ fn units_do_not_matter() {
                 Units { mass: factor, length: factor, time: 1.0 / factor },
                 Units { mass: 1.0 / factor, length: factor, time: factor },
             ] {
-                let own = run(&cubic(units, stops, 1e-12));
-                let (a, b) = (scaled(one, &base), scaled(units, &own));
+                let converted = run(&cubic(units, stops, 1e-12));
+                let (a, b) = (scaled(one, &base), scaled(units, &converted));
                 assert_eq!(a.len(), b.len(), "{units:?}");
                 for (a, b) in a.iter().zip(&b) {
                     assert_eq!(a.0, b.0, "{units:?}");
                     near(b.1, a.1, 5e-12);
                     near(b.2, a.2, 5e-12);
                 }
-                near(own.summary.final_x / units.length, base.summary.final_x, 5e-13);
+                near(converted.summary.final_x / units.length, base.summary.final_x, 5e-13);
                 let energy = units.mass * (units.length / units.time).powi(2);
-                near_relative(own.summary.ledger.unwrap().work_j / energy, ledger.work_j, 1e-12);
-                near(own.summary.steps as f64, base.summary.steps as f64, 2.0);
+                near_relative(converted.summary.ledger.unwrap().work_j / energy, ledger.work_j, 1e-12);
+                near(converted.summary.steps as f64, base.summary.steps as f64, 2.0);
             }
         }
     }
@@ -82,12 +82,12 @@ fn powers_of_two_change_no_digit() {
         let base = run(&cubic(one, stops, 1e-9));
         for (mass, time) in [(2f64.powi(30), 1.0), (1.0, 2f64.powi(-30)), (2f64.powi(-7), 2f64.powi(20))] {
             let units = Units { mass, length: 1.0, time };
-            let own = run(&cubic(units, stops, 1e-9));
-            assert_eq!(scaled(one, &base), scaled(units, &own));
-            assert_eq!(own.summary.final_x, base.summary.final_x);
-            assert_eq!(own.summary.final_v * time, base.summary.final_v);
-            assert_eq!(own.summary.rms_velocity.unwrap() * time, base.summary.rms_velocity.unwrap());
-            assert_eq!(own.summary.steps, base.summary.steps);
+            let converted = run(&cubic(units, stops, 1e-9));
+            assert_eq!(scaled(one, &base), scaled(units, &converted));
+            assert_eq!(converted.summary.final_x, base.summary.final_x);
+            assert_eq!(converted.summary.final_v * time, base.summary.final_v);
+            assert_eq!(converted.summary.rms_velocity.unwrap() * time, base.summary.rms_velocity.unwrap());
+            assert_eq!(converted.summary.steps, base.summary.steps);
         }
     }
 }

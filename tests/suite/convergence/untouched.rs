@@ -105,8 +105,8 @@ fn watching_changes_no_bit() {
             if events {
                 assert_eq!(run.events, full.events);
             }
-            let own = full.samples.iter().filter(|s| sample_times.contains(&s.t));
-            assert!(run.samples.iter().eq(own));
+            let expected = full.samples.iter().filter(|s| sample_times.contains(&s.t));
+            assert!(run.samples.iter().eq(expected));
             assert_eq!(run.samples.len(), sample_times.len());
         }
     }
@@ -119,10 +119,10 @@ fn the_settled_window_changes_no_bit_of_the_motion() {
     let with = |settle: &str| run_at(&preset("nominal-cubic", &[&format!("run.settle_s={settle}")]), &times);
     let base = with("5");
     for settle in ["0", "None", "1.2345", "9.99", "10"] {
-        let own = with(settle);
-        assert_eq!(own.samples, base.samples);
-        assert_eq!(own.events, base.events);
-        assert_eq!(own.summary.steps, base.summary.steps);
+        let other = with(settle);
+        assert_eq!(other.samples, base.samples);
+        assert_eq!(other.events, base.events);
+        assert_eq!(other.summary.steps, base.summary.steps);
     }
 }
 

@@ -73,10 +73,10 @@ fn the_rows_of_the_comparison_are_measured() {
     assert_eq!(row("change of the threshold for 1 % of a size")[0], format!("{change:.0} %"));
     for (i, name) in ["paper", "balanced", "magnet", "paper-unconstrained"].into_iter().enumerate() {
         let document = beside_paper(name, &[]);
-        let own = settled(&build(&document), &AtomicBool::new(false)).unwrap();
+        let summary = settled(&build(&document), &AtomicBool::new(false)).unwrap();
         // of the two irregular motions below
         let irregular = ["balanced", "magnet"].contains(&name);
-        let (reach, speed) = (1e3 * own.max_abs_x.unwrap(), 1e3 * own.rms_velocity.unwrap());
+        let (reach, speed) = (1e3 * summary.max_abs_x.unwrap(), 1e3 * summary.rms_velocity.unwrap());
         if !irregular {
             assert_eq!(row("reach, mm")[i], with([1, 0, 0, 2][i], reach), "{name}");
             assert!(row("RMS velocity, mm/s")[i].starts_with(&with(1, speed)), "{name}: {speed}");
@@ -84,7 +84,7 @@ fn the_rows_of_the_comparison_are_measured() {
         let least = crossing(&document);
         let range = [0.717..0.719, 0.185..0.21, 0.133..0.138, 1.145..1.16][i].clone();
         assert!(range.contains(&least), "{name}: {least}");
-        let (crosses, impacts) = (own.crossings > 0, own.impacts > 0);
+        let (crosses, impacts) = (summary.crossings > 0, summary.impacts > 0);
         assert_eq!((crosses, impacts), (name != "paper-unconstrained", name == "paper"), "{name}");
         assert_eq!(row("fastest impact, mm/s")[i] == "none", !impacts, "{name}");
     }
@@ -95,11 +95,11 @@ fn the_rows_of_the_comparison_are_measured() {
 fn speeds_of_irregular_motions_are_those_of_a_long_window() {
     for (i, name) in [(1, "balanced"), (2, "magnet")] {
         let long = beside_paper(name, &["run.duration_s=2000", "run.settle_s=340"]);
-        let own = build(&long).run(&Request::default()).summary;
-        assert_eq!((own.regime, own.window), (Regime::Irregular, (340.0, 2000.0)));
+        let summary = build(&long).run(&Request::default()).summary;
+        assert_eq!((summary.regime, summary.window), (Regime::Irregular, (340.0, 2000.0)));
         let speed: f64 = row("RMS velocity, mm/s")[i].parse().unwrap();
-        near(1e3 * own.rms_velocity.unwrap(), speed, 1.5);
-        assert_eq!(row("reach, mm")[i], format!("{:.1}", 1e3 * own.max_abs_x.unwrap()));
+        near(1e3 * summary.rms_velocity.unwrap(), speed, 1.5);
+        assert_eq!(row("reach, mm")[i], format!("{:.1}", 1e3 * summary.max_abs_x.unwrap()));
         let short = settled(&build(&beside_paper(name, &[])), &AtomicBool::new(false)).unwrap();
         assert_eq!((short.regime, short.window), (Regime::Irregular, (335.0, 340.0)));
         near_relative(1e3 * short.rms_velocity.unwrap(), speed, 0.1);
@@ -113,8 +113,8 @@ fn the_threshold_beside_the_spring_is_sharp_for_who_waits() {
     let crosses = |amplitude: f64| {
         let change = format!("excitation.amplitude_g={amplitude}");
         let model = build(&beside_paper("balanced", &[&change]));
-        let own = model.run(&Request { until_settled: Some(3000.0), ..Request::default() }).summary;
-        own.crossings > 0
+        let summary = model.run(&Request { until_settled: Some(3000.0), ..Request::default() }).summary;
+        summary.crossings > 0
     };
     assert!(crosses(0.21) && !crosses(0.2));
     says("Followed for 3000 s, it crosses from 0.21 g on, and not at 0.20 g");
@@ -140,7 +140,7 @@ fn the_change_of_the_threshold_by_one_percent_of_a_size_is_as_said() {
     says("moves the threshold by 75 to 90 % beside the spring");
     let magnet = beside_paper("magnet", &[]);
     let without = [0.99, 1.01].map(|by| beside_paper("magnet", &[&length(&magnet, parallel, by)]));
-    assert!(without.iter().any(|own| mechanism(own).landscape.barrier.is_none()));
+    assert!(without.iter().any(|document| mechanism(document).landscape.barrier.is_none()));
     assert_eq!(row("change of the threshold for 1 % of a size")[2], "no threshold left");
 }
 
@@ -193,7 +193,7 @@ fn the_best_limits_at_other_amplitudes_are_as_said() {
 fn the_best_limit_under_noise_is_better_than_those_around_it() {
     let cells = row("noise of 0.3 g, 1 to 6 Hz, mean of five seeds");
     let [limit, speed, below, above] =
-        cells[..].try_into().map(|own: [&str; 4]| own.map(|s| s.parse().unwrap())).unwrap();
+        cells[..].try_into().map(|texts: [&str; 4]| texts.map(|s| s.parse().unwrap())).unwrap();
     let mean = |limit: f64| -> f64 {
         let model = |seed: u32| {
             let changes = [format!("stops.travel_limit_mm={limit}"), format!("excitation.seed={seed}")];
@@ -203,13 +203,13 @@ fn the_best_limit_under_noise_is_better_than_those_around_it() {
         let runs = Model::run_all(&models, None, None);
         runs.iter().map(|run| 1e3 * run.summary.rms_velocity.unwrap()).sum::<f64>() / 5.0
     };
-    let own = mean(limit);
-    assert_eq!(format!("{own:.1}"), format!("{speed:.1}"));
+    let best = mean(limit);
+    assert_eq!(format!("{best:.1}"), format!("{speed:.1}"));
     for other in [limit - below, limit + above] {
-        assert!(mean(other) < 0.9 * own, "{other}");
+        assert!(mean(other) < 0.9 * best, "{other}");
     }
     for share in [-0.8, -0.5, -0.2, 0.2, 0.5, 0.8] {
         let other = limit + share * if share < 0.0 { below } else { above };
-        assert!((0.9 * own..own).contains(&mean(other)), "{other}");
+        assert!((0.9 * best..best).contains(&mean(other)), "{other}");
     }
 }

@@ -13,17 +13,17 @@ const CREEPING: &str = "mass_g: 606, mechanism: DoubleWell(equilibrium_mm: 6850,
 
 #[test]
 fn energy_that_does_not_balance_is_an_outcome() {
-    let own = model(CREEPING);
-    let listed = run(&own);
+    let model = model(CREEPING);
+    let listed = run(&model);
     let Outcome::Inaccurate { residual } = listed.summary.outcome else { panic!("{:?}", listed.summary) };
     assert_eq!(residual, listed.summary.ledger.unwrap().energy_residual);
     assert!(residual > 0.1, "{residual}");
     // It has reached its end, and all that was asked for is there.
     let (name, ended) = (listed.summary.outcome.name(), listed.summary.outcome.ended_at());
     assert_eq!((name, ended), ("inaccurate", None));
-    assert_eq!(run_at(&own, &[0.0, 50.0, 100.0]).samples.len(), 3);
+    assert_eq!(run_at(&model, &[0.0, 50.0, 100.0]).samples.len(), 3);
     // Without a ledger nobody knows.
-    assert_eq!(own.run(&Request::default()).summary.outcome, Outcome::Done);
+    assert_eq!(model.run(&Request::default()).summary.outcome, Outcome::Done);
 }
 
 #[test]
@@ -38,12 +38,12 @@ fn a_motion_far_smaller_than_the_wells_is_no_noise() {
             "damping=Ratio(0.1)",
             &format!("run.tolerance={tolerance}"),
         ];
-        let own = preset("nominal-cubic", &changes);
-        let summary = run(&own).summary;
-        let stiffness = own.mechanism().damping_stiffness().unwrap();
-        let push = 1e-8 * interwell::dynamics::STANDARD_GRAVITY * own.mass();
+        let model = preset("nominal-cubic", &changes);
+        let summary = run(&model).summary;
+        let stiffness = model.mechanism().damping_stiffness().unwrap();
+        let push = 1e-8 * interwell::dynamics::STANDARD_GRAVITY * model.mass();
         let rate = std::f64::consts::TAU * 0.1;
-        let factor = 1.0 / (1.0 - rate * rate * own.mass() / stiffness);
+        let factor = 1.0 / (1.0 - rate * rate * model.mass() / stiffness);
         let exact = push / stiffness * factor * rate * std::f64::consts::FRAC_1_SQRT_2;
         near_relative(summary.rms_velocity.unwrap(), exact, bound);
         assert_eq!(summary.outcome, Outcome::Done, "{tolerance}");
@@ -63,15 +63,15 @@ fn stops_far_inside_the_wells_set_the_scale() {
         amplitude_g: 0.1),
         start: At(x_mm: 0.3, v_m_per_s: 0.05), run: (duration_s: 10, tolerance: 1e-6)";
     for (text, room) in [(rattles, 0.155), (wells, 1e-3)] {
-        let own = model(text);
-        near_relative(own.scales().length, room, 1e-12);
-        let coarse = run(&own).summary;
+        let model = model(text);
+        near_relative(model.scales().length, room, 1e-12);
+        let coarse = run(&model).summary;
         assert_eq!(coarse.outcome, Outcome::Done);
         assert!(coarse.ledger.unwrap().energy_residual < 1e-7, "{coarse:?}");
-        let fine = run(&own.with_tolerance(1e-13)).summary;
+        let fine = run(&model.with_tolerance(1e-13)).summary;
         near_relative(coarse.rms_velocity.unwrap(), fine.rms_velocity.unwrap(), 1e-5);
         // of the way that it has gone
-        let way = fine.rms_velocity.unwrap() * own.duration();
+        let way = fine.rms_velocity.unwrap() * model.duration();
         near(coarse.final_x, fine.final_x, 1e-5 * way);
     }
 }
@@ -96,12 +96,12 @@ fn the_scales_of_a_room_go_over_into_those_of_the_wells() {
 #[test]
 fn elastic_contacts_keep_their_energy_to_thousandths_of_the_tolerance_each() {
     for tolerance in [1e-3, 1e-6, 1e-9] {
-        let own = model(&format!(
+        let model = model(&format!(
             "mass_g: 1000, mechanism: Cubic(linear_n_per_m: 0.05, cubic_n_per_m3: 0.3), damping: None,
              stops: Hertz(travel_limit_mm: 0.1, stiffness_n_per_m1_5: 4.3e8, loss_s_per_m: 0),
              start: At(x_mm: 0, v_m_per_s: 0.01), run: (duration_s: 3, tolerance: {tolerance:?})"
         ));
-        let summary = run(&own).summary;
+        let summary = run(&model).summary;
         let drift = summary.ledger.unwrap().energy_residual / summary.total_impacts as f64;
         assert!(summary.total_impacts > 100 && drift < 1e-2 * tolerance, "{drift:e} of {tolerance:e}");
     }
@@ -116,7 +116,7 @@ fn finite(run: &Run) -> bool {
     let window = [summary.rms_velocity, summary.travel(), summary.max_abs_x];
     let samples = run.samples.iter().flat_map(|sample| [sample.x, sample.v]);
     let all = samples.chain(energies).chain([summary.final_x, summary.final_v]);
-    all.chain(window.map(|own| own.unwrap_or(f64::NAN))).all(f64::is_finite)
+    all.chain(window.map(|value| value.unwrap_or(f64::NAN))).all(f64::is_finite)
 }
 
 #[test]
@@ -141,11 +141,11 @@ fn a_run_that_is_done_has_numbers() {
          stops: Hertz(travel_limit_mm: 1, stiffness_n_per_m1_5: 1e60, loss_s_per_m: 1),
          start: At(x_mm: 0, v_m_per_s: 1), run: (duration_s: 1)",
     ] {
-        let own: Model = model(text);
-        let times: Vec<f64> = (0..=50).map(|i| own.duration() * f64::from(i) / 50.0).collect();
+        let model: Model = model(text);
+        let times: Vec<f64> = (0..=50).map(|i| model.duration() * f64::from(i) / 50.0).collect();
         let request = Request { sample_times: &times, events: true, ledger: true, ..Request::default() };
-        let run = own.run(&request);
-        let (outcome, bare) = (run.summary.outcome, own.run(&Request::default()).summary);
+        let run = model.run(&request);
+        let (outcome, bare) = (run.summary.outcome, model.run(&Request::default()).summary);
         assert!(outcome != Outcome::Done || finite(&run), "{text}\n{:?}", run.summary);
         assert!(bare.outcome != Outcome::Done || bare.rms_velocity.is_some(), "{text}\n{bare:?}");
     }

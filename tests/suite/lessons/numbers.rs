@@ -24,15 +24,15 @@ struct Told {
 
 impl Told {
     fn new(number: usize) -> Self {
-        let own = &LESSONS[number - 1];
-        let read = LessonDocument::load(own.name, &result_fields()).unwrap();
+        let lesson = &LESSONS[number - 1];
+        let read = LessonDocument::load(lesson.name, &result_fields()).unwrap();
         let hint = |step: &Step| match step {
             Step::Do { hint: Some(hint), .. } => format!(" {hint}"),
             _ => String::new(),
         };
         let steps = read.lesson.steps.iter().map(|step| format!("{}{} ", step.text(), hint(step)));
         let words = steps.collect::<String>() + &read.lesson.lecturer;
-        Self { name: own.name, words, scene: read.begin(0).clone() }
+        Self { name: lesson.name, words, scene: read.begin(0).clone() }
     }
 
     /// The lesson says this, and what it says has been measured.
@@ -54,9 +54,9 @@ impl Told {
 
     /// What its scene with fields changed comes to.
     fn run(&self, changes: &[&str]) -> Summary {
-        let own = self.model(changes).run(&Request { ledger: true, ..Request::default() }).summary;
-        assert_eq!(own.outcome, Outcome::Done, "{} {changes:?}", self.name);
-        own
+        let summary = self.model(changes).run(&Request { ledger: true, ..Request::default() }).summary;
+        assert_eq!(summary.outcome, Outcome::Done, "{} {changes:?}", self.name);
+        summary
     }
 
     /// The least shaking in g, from rest, with which this happens.
@@ -95,22 +95,22 @@ fn stopped(limit_mm: f64) -> String {
 }
 
 /// The RMS velocity in mm/s.
-fn rms(own: &Summary) -> f64 {
-    1e3 * own.rms_velocity.unwrap()
+fn rms(summary: &Summary) -> f64 {
+    1e3 * summary.rms_velocity.unwrap()
 }
 
 /// The travel from end to end in mm.
-fn travel(own: &Summary) -> f64 {
-    let (low, high) = own.range.unwrap();
+fn travel(summary: &Summary) -> f64 {
+    let (low, high) = summary.range.unwrap();
     1e3 * (high - low)
 }
 
-fn hops(own: &Summary) -> bool {
-    own.regime == Regime::Intrawell && own.releases > 0 && own.crossings == 0
+fn hops(summary: &Summary) -> bool {
+    summary.regime == Regime::Intrawell && summary.releases > 0 && summary.crossings == 0
 }
 
-fn crosses(own: &Summary) -> bool {
-    own.regime == Regime::Interwell
+fn crosses(summary: &Summary) -> bool {
+    summary.regime == Regime::Interwell
 }
 
 const MASS: f64 = 0.0152;
@@ -153,14 +153,14 @@ fn shaking() {
     assert!((15.5..16.0).contains(&travel(&told.run(&[&shaken(1.16)]))));
     told.says("just above, it jumps to nearly 16 mm");
     let extrema = told.model(&[]).mechanism().landscape.extrema.clone();
-    let hardest = extrema.iter().fold(0.0_f64, |most, own| most.max(own.force));
+    let hardest = extrema.iter().fold(0.0_f64, |most, extremum| most.max(extremum.force));
     told.says(&format!("would need {:.2} g to get past the steepest", hardest / MASS / STANDARD_GRAVITY));
     for tolerance in ["run.tolerance=1e-9", "run.tolerance=1e-12"] {
         let request = Request { until_settled: Some(600.0), ..Request::default() };
-        let own =
+        let summary =
             told.model(&["excitation.amplitude_g=1.3", "run.settle_s=0", tolerance]).run(&request).summary;
-        assert_eq!((own.regime, own.period), (Regime::Interwell, Some(1)), "{tolerance}");
-        let since = own.settles_at.unwrap();
+        assert_eq!((summary.regime, summary.period), (Regime::Interwell, Some(1)), "{tolerance}");
+        let since = summary.settles_at.unwrap();
         assert!((3.0..600.0).contains(&since), "{since}");
     }
     told.says("goes over and back once in every period: the steady motion");
@@ -184,7 +184,7 @@ fn stops_that_help() {
     told.says("Stops out to 2.19 mm let it cross at 1 g; at 2.2 mm it leaves its stop and falls back");
     let open = told.least(Onset::Crossing, &[], 1.0..1.3);
     let from = |limit: f64| told.least(Onset::Crossing, &[&stopped(limit)], 1.0..1.6);
-    assert!(from(2.6) < open && [2.7, 3.0, 4.0, 5.0, 6.0, 7.0, 7.15].iter().all(|own| from(*own) > open));
+    assert!(from(2.6) < open && [2.7, 3.0, 4.0, 5.0, 6.0, 7.0, 7.15].iter().all(|limit| from(*limit) > open));
     told.says("from about 2.7 mm out to the wells at 7.2 mm the mass needs more shaking");
     let outer = told.model(&[]).mechanism().landscape.kink_at_right_well().unwrap().outer;
     let damping = 2.0 * 0.023 * (outer * MASS).sqrt();

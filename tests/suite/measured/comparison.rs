@@ -55,7 +55,7 @@ fn row(found: &Comparison, quantity: &str) -> [f64; 4] {
         interwell::study::Values::Words(words) => words.clone(),
         _ => Vec::new(),
     };
-    let at = words.iter().position(|own| *own == quantity).unwrap();
+    let at = words.iter().position(|word| *word == quantity).unwrap();
     ["measured", "computed", "difference", "difference_percent"]
         .map(|name| found.table.numbers(name).unwrap()[at])
 }

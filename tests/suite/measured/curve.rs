@@ -14,7 +14,7 @@ fn cubic() -> Mechanism {
 
 fn row(table: &Table, quantity: &str) -> [f64; 4] {
     let Values::Words(words) = &table.column("quantity").unwrap().values else { panic!("no words") };
-    let at = words.iter().position(|own| *own == quantity).unwrap();
+    let at = words.iter().position(|word| *word == quantity).unwrap();
     ["measured", "computed", "difference", "difference_percent"].map(|name| table.numbers(name).unwrap()[at])
 }
 
@@ -31,7 +31,7 @@ fn the_numbers_are_those_of_the_difference() {
     assert_eq!(found.largest.0, -3e-3);
     let [measured, computed, difference, percent] = row(&found.table, "largest_difference");
     assert!((difference + 0.032).abs() < 1e-15 && measured - computed == -difference, "{difference}");
-    let whole = (force.iter().map(|own| own * own).sum::<f64>() / 161.0).sqrt();
+    let whole = (force.iter().map(|value| value * value).sum::<f64>() / 161.0).sqrt();
     assert!((percent - 100.0 * difference / whole).abs() < 1e-12, "{percent}");
     assert_eq!(row(&found.table, "largest_difference_at")[..2], [-3e-3, -3e-3]);
     assert_eq!(row(&found.table, "minimum")[1], mechanism.curve.force(x[121]));

@@ -45,8 +45,8 @@ fn without_noise_ratio_and_frequency_have_their_digits() {
         let damped = number(&found, "frequency_hz");
         assert!((damped.value / (HERTZ * (1.0 - xi * xi).sqrt()) - 1.0).abs() < bound, "{xi}: {damped:?}");
         // row by row the ratio is the same, and the amplitude that of the decay
-        for (row, own) in found.rows.numbers("damping_ratio").unwrap().iter().enumerate() {
-            assert!((own / xi - 1.0).abs() < 50.0 * bound, "{xi}: row {row}: {own}");
+        for (row, of_row) in found.rows.numbers("damping_ratio").unwrap().iter().enumerate() {
+            assert!((of_row / xi - 1.0).abs() < 50.0 * bound, "{xi}: row {row}: {of_row}");
             let column = |name: &str| found.rows.numbers(name).unwrap()[row];
             let middle = 0.5 * (column("from_s") + column("to_s"));
             let exact = AMPLITUDE * (1.0 - xi * xi).sqrt() * (-xi * TAU * HERTZ * middle).exp();
@@ -230,12 +230,12 @@ fn the_rows_follow_a_ratio_that_grows_with_the_amplitude() {
     let channel = Channel { quantity: Quantity::Displacement, column: "x_m".into(), values };
     let found = damping(&times, &channel).unwrap();
     let column = |name: &str| found.rows.numbers(name).unwrap();
-    for (own, amplitude) in column("damping_ratio").iter().zip(column("amplitude_m")) {
+    for (ratio, amplitude) in column("damping_ratio").iter().zip(column("amplitude_m")) {
         let exact = xi + s * amplitude;
-        assert!((own / exact - 1.0).abs() < 0.02, "{own} at {amplitude}, not {exact}");
+        assert!((ratio / exact - 1.0).abs() < 0.02, "{ratio} at {amplitude}, not {exact}");
     }
     assert!(
-        found.remarks.iter().any(|own| own.contains("with the amplitude by more than the intervals")),
+        found.remarks.iter().any(|remark| remark.contains("with the amplitude by more than the intervals")),
         "{:?}",
         found.remarks
     );

@@ -15,8 +15,8 @@ fn a_record_is_read_by_its_names_or_by_the_units_that_end_them() {
     ] {
         let found = Record::parse(text).unwrap();
         assert_eq!(found.times, expected.times, "{text}");
-        for (own, expected) in found.accelerations.iter().zip(&expected.accelerations) {
-            assert!((own - expected).abs() < 1e-15, "{text}: {own}");
+        for (value, expected) in found.accelerations.iter().zip(&expected.accelerations) {
+            assert!((value - expected).abs() < 1e-15, "{text}: {value}");
         }
     }
 }

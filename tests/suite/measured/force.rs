@@ -51,8 +51,8 @@ fn without_noise_the_curve_and_its_landscape_have_their_digits() {
         ("hysteresis_n", 2.0 * FRICTION, 1e-12),
         ("hysteresis_j", 2.0 * FRICTION * range, 1e-12),
     ] {
-        let own = number(&found, name);
-        assert!((own.value - exact).abs() < bound, "{name}: {} is not {exact}", own.value);
+        let identity = number(&found, name);
+        assert!((identity.value - exact).abs() < bound, "{name}: {} is not {exact}", identity.value);
     }
 }
 
@@ -162,8 +162,7 @@ fn the_curve_is_a_table_that_makes_a_mechanism() {
     let found = force(&x, &measured, FORCE_POINTS).unwrap();
     let text = header(&found.rows) + &rows(&found.rows, 0..found.rows.rows());
     let mechanism = Mechanism::from_table(&text, 1e-3).unwrap();
-    let wells: Vec<f64> =
-        mechanism.landscape.equilibria.iter().filter(|own| own.stable).map(|own| own.x).collect();
+    let wells: Vec<f64> = mechanism.landscape.equilibria.iter().filter(|e| e.stable).map(|e| e.x).collect();
     assert!(
         wells.len() == 2 && (wells[1] - WELL).abs() < 5e-6 && (wells[0] + WELL).abs() < 5e-6,
         "{wells:?}"
@@ -176,8 +175,8 @@ fn the_curve_is_a_table_that_makes_a_mechanism() {
 fn one_direction_is_said_to_be_one_and_too_little_is_refused() {
     let (x, measured) = pull((0.0, 0.0), 4000, 0);
     let found = force(&x[..4000], &measured[..4000], FORCE_POINTS).unwrap();
-    assert!(found.remarks.iter().any(|own| own.contains("one direction")), "{:?}", found.remarks);
-    assert!(found.rows.numbers("force_falling_n").unwrap().iter().all(|own| own.is_nan()));
+    assert!(found.remarks.iter().any(|remark| remark.contains("one direction")), "{:?}", found.remarks);
+    assert!(found.rows.numbers("force_falling_n").unwrap().iter().all(|force| force.is_nan()));
     assert!(matches!(force(&[1.0; 9], &[0.0; 9], FORCE_POINTS), Err(Unidentified::Still)));
     assert!(matches!(force(&x[..50], &measured[..50], 101), Err(Unidentified::FewSamples { .. })));
 }

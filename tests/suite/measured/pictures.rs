@@ -23,7 +23,7 @@ fn says(texts: &[String], words: &[&str]) {
 /// The numbers of a column in the rows of one series.
 fn of_series(csv: &str, series: &str, name: &str) -> Vec<f64> {
     let rows = column(csv, "series").into_iter().zip(column(csv, name));
-    rows.filter(|own| own.0 == series).map(|own| own.1.parse().unwrap()).collect()
+    rows.filter(|row| row.0 == series).map(|row| row.1.parse().unwrap()).collect()
 }
 
 fn file(
@@ -57,7 +57,9 @@ fn the_envelope_of_a_decay_is_the_one_that_made_it() {
         assert!((upper * 1e3 - exact).abs() < 3e-4 * away(*t) + 1e-6, "{upper} {exact} at {t}");
     }
     let ratios = of_series(&csv, "damping_ratio", "damping_ratio");
-    assert!(!ratios.is_empty() && ratios.iter().all(|own| (own - 0.8 / 40.0_f64.hypot(0.8)).abs() < 1e-5));
+    assert!(
+        !ratios.is_empty() && ratios.iter().all(|ratio| (ratio - 0.8 / 40.0_f64.hypot(0.8)).abs() < 1e-5)
+    );
 }
 
 #[test]
@@ -93,7 +95,7 @@ fn what_is_left_of_a_pull_is_its_friction() {
     let (texts, csv) = drawn("identify --of force", &path);
     says(&texts, &["wells at \u{2212}7.071 and 7.071 mm", "hysteresis 0.01 N", "residual (N)"]);
     let residual = of_series(&csv, "residual", "force_n");
-    assert!(residual.len() > 3000 && residual.iter().all(|own| (own.abs() - 5e-3).abs() < 1e-9));
+    assert!(residual.len() > 3000 && residual.iter().all(|left| (left.abs() - 5e-3).abs() < 1e-9));
     let scene = "--set mechanism=Cubic(linear_n_per_m:-40,cubic_n_per_m3:8e5)";
     let (texts, csv) = drawn(&format!("curve nominal-cubic {scene} --measured"), &path);
     says(&texts, &["RMS difference 0.005 N", "at most 0.005 N", "computed", "difference (N)"]);

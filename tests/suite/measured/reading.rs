@@ -3,8 +3,8 @@
 use interwell::scene::{ColumnRequest, Measured, MeasuredError, Quantity};
 
 fn ask(quantities: &[Quantity], column: Option<&str>, unit: Option<&str>) -> ColumnRequest {
-    let own = |text: Option<&str>| text.map(str::to_owned);
-    ColumnRequest::by_options(quantities, &own(column), &own(unit), ["--column", "--unit"])
+    let owned = |text: Option<&str>| text.map(str::to_owned);
+    ColumnRequest::by_options(quantities, &owned(column), &owned(unit), ["--column", "--unit"])
 }
 
 fn asks() -> [ColumnRequest; 2] {
@@ -28,8 +28,8 @@ fn layouts_and_units_that_are_meant_are_read() {
         "t_s,x_m,a_g\n0,0.001,9\n0.5,0.0025,8\n1.5,-3e-3,7\n",
     ] {
         let found = read(text).unwrap();
-        for (own, expected) in found.channels.iter().zip(&expected.channels) {
-            assert_eq!((own.quantity, &own.values), (expected.quantity, &expected.values), "{text}");
+        for (channel, expected) in found.channels.iter().zip(&expected.channels) {
+            assert_eq!((channel.quantity, &channel.values), (expected.quantity, &expected.values), "{text}");
         }
         assert_eq!(found.decimal_commas, text.contains("0,5;"), "{text}");
     }

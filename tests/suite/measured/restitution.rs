@@ -19,7 +19,7 @@ fn bounces(e: f64, count: u32) -> (impl Fn(f64) -> f64, Vec<f64>, Vec<f64>) {
     }
     let (times, outs) = (impacts.clone(), speeds.clone());
     let height = move |t: f64| {
-        let k = times.partition_point(|own| *own <= t);
+        let k = times.partition_point(|time| *time <= t);
         if k == 0 {
             return 0.1 - 0.5 * GRAVITY * t * t;
         }

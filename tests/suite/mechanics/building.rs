@@ -11,7 +11,7 @@ use super::{build, polynomial};
 #[test]
 fn flexures_enter_in_si() {
     let group = |count, length_mm, width_mm| scene::FlexureGroup { count, length_mm, width_mm };
-    let own = build(scene::Mechanism::Flexures {
+    let mechanism = build(scene::Mechanism::Flexures {
         preload_mm: 2.7,
         thickness_mm: 0.1,
         young_gpa: 190.0,
@@ -33,7 +33,7 @@ fn flexures_enter_in_si() {
         parallel: Group { count: 2, length: 26e-3, width: 20e-3 },
         buckling: Group { count: 1, length: 27.7e-3, width: 6.8e-3 },
     };
-    assert_eq!(own.flexures.as_ref().unwrap().geometry(), &expected);
+    assert_eq!(mechanism.flexures.as_ref().unwrap().geometry(), &expected);
     assert_eq!(polynomial(&[0.0, 1.0]).flexures, None);
 }
 

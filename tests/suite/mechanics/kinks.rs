@@ -25,27 +25,27 @@ fn chain(points: &[(f64, f64)]) -> ForceCurve {
 
 #[test]
 fn an_equilibrium_may_lie_on_a_corner() {
-    let own =
+    let landscape =
         Landscape::of(&chain(&[(-2.0, -4.0), (-1.0, 0.0), (0.0, 1.0), (1.0, 0.0), (2.0, -1.0), (3.0, 5.0)]));
-    let found: Vec<(f64, bool)> = own.equilibria.iter().map(|e| (e.x, e.stable)).collect();
+    let found: Vec<(f64, bool)> = landscape.equilibria.iter().map(|e| (e.x, e.stable)).collect();
     assert_eq!(found.len(), 3, "{found:?}");
     assert_eq!(found[..2], [(-1.0, true), (1.0, false)]);
     close(found[2].0, 2.0 + 1.0 / 6.0, 1e-15);
-    assert_eq!((own.equilibria[0].stiffness_left, own.equilibria[0].stiffness_right), (4.0, 1.0));
-    let extrema: Vec<f64> = own.extrema.iter().map(|e| e.x).collect();
+    assert_eq!((landscape.equilibria[0].stiffness_left, landscape.equilibria[0].stiffness_right), (4.0, 1.0));
+    let extrema: Vec<f64> = landscape.extrema.iter().map(|e| e.x).collect();
     assert_eq!(extrema, [0.0, 2.0]);
-    let barrier = own.barrier.unwrap();
+    let barrier = landscape.barrier.unwrap();
     close(barrier.from_left_j, 1.0, 1e-15);
-    assert_eq!(own.kinks.len(), 3, "{:?}", own.kinks);
+    assert_eq!(landscape.kinks.len(), 3, "{:?}", landscape.kinks);
 }
 
 #[test]
 fn the_ends_of_the_domain_are_known_from_one_side() {
-    let own = Landscape::of(&chain(&[(0.0, 0.0), (1.0, 1.0), (2.0, 0.0)]));
-    let found: Vec<(f64, bool)> = own.equilibria.iter().map(|e| (e.x, e.stable)).collect();
+    let landscape = Landscape::of(&chain(&[(0.0, 0.0), (1.0, 1.0), (2.0, 0.0)]));
+    let found: Vec<(f64, bool)> = landscape.equilibria.iter().map(|e| (e.x, e.stable)).collect();
     assert_eq!(found, [(0.0, false), (2.0, false)]);
-    assert!(own.equilibria[0].stiffness_left.is_nan());
-    assert_eq!(own.equilibria[0].stiffness_right, 1.0);
+    assert!(landscape.equilibria[0].stiffness_left.is_nan());
+    assert_eq!(landscape.equilibria[0].stiffness_right, 1.0);
 }
 
 #[test]
@@ -57,16 +57,16 @@ fn the_damping_stiffness_does_not_jump_while_an_equilibrium_crosses_a_corner() {
     let before = landscape(-1.0 + 1e-9);
     assert_eq!(before.kinks.len(), 2);
     for shift in [-0.9, -1.0 + 1e-9, -1.0, -1.0 - 1e-9, -1.1] {
-        let own = landscape(shift);
-        let well = own.right_stable().unwrap();
+        let shifted = landscape(shift);
+        let well = shifted.right_stable().unwrap();
         assert_eq!(well.x > 2.0, shift < -1.0);
-        close(own.damping_stiffness().unwrap(), 2.0, 1e-12);
+        close(shifted.damping_stiffness().unwrap(), 2.0, 1e-12);
     }
 }
 
 #[test]
 fn either_well_has_its_own_inner_stiffness() {
-    let own = Landscape::of(&chain(&[
+    let landscape = Landscape::of(&chain(&[
         (-3.0, -4.0),
         (-2.0, 0.5),
         (-1.0, 1.0),
@@ -75,7 +75,7 @@ fn either_well_has_its_own_inner_stiffness() {
         (3.0, 40.0),
     ]));
     let inner: Vec<f64> =
-        own.equilibria.iter().filter(|e| e.stable).map(|e| own.inner_stiffness(e)).collect();
+        landscape.equilibria.iter().filter(|e| e.stable).map(|e| landscape.inner_stiffness(e)).collect();
     // The left well lies beyond its corner at -2, the right one beyond that at 2.
     assert_eq!(inner.len(), 2);
     close(inner[0], 0.5, 1e-12);
@@ -119,22 +119,22 @@ fn kinked(inner: f64, outer: f64, past: f64) -> Mechanism {
 #[test]
 fn a_kink_beside_a_well_gives_it_two_stiffnesses() {
     for past in [1e-4, 9e-3, 0.0] {
-        let own = kinked(137.0, 4000.0, past).landscape;
-        let kink = own.kink_at_right_well().unwrap();
+        let landscape = kinked(137.0, 4000.0, past).landscape;
+        let kink = landscape.kink_at_right_well().unwrap();
         close(kink.inner, 137.0, 1e-12);
         close(kink.outer, 4000.0, 1e-12);
-        assert_eq!(own.damping_kink().map(|kink| kink.x), Some(1.0));
-        close(own.damping_stiffness().unwrap(), 137.0, 1e-12);
+        assert_eq!(landscape.damping_kink().map(|kink| kink.x), Some(1.0));
+        close(landscape.damping_stiffness().unwrap(), 137.0, 1e-12);
     }
     // Far beyond the kink a small pluck does not meet it; the ratio still means the inner slope.
-    let own = kinked(137.0, 4000.0, 0.02).landscape;
-    assert_eq!(own.kink_at_right_well(), None);
-    close(own.damping_stiffness().unwrap(), 137.0, 1e-12);
+    let landscape = kinked(137.0, 4000.0, 0.02).landscape;
+    assert_eq!(landscape.kink_at_right_well(), None);
+    close(landscape.damping_stiffness().unwrap(), 137.0, 1e-12);
     // Just inside it, the slope that counts is that of the well itself, and the kink is still beside it.
-    let own = kinked(137.0, 4000.0, -1e-4).landscape;
-    assert!(own.right_stable().unwrap().x < 1.0);
-    assert_eq!(own.damping_kink(), None);
-    close(own.kink_at_right_well().unwrap().inner, 137.0, 1e-12);
+    let landscape = kinked(137.0, 4000.0, -1e-4).landscape;
+    assert!(landscape.right_stable().unwrap().x < 1.0);
+    assert_eq!(landscape.damping_kink(), None);
+    close(landscape.kink_at_right_well().unwrap().inner, 137.0, 1e-12);
     // Well inside it, as in the prototype's table.
     let table = Mechanism::from_table(PROTOTYPE, 1e-4).unwrap().landscape;
     assert_eq!((table.kink_at_right_well(), table.damping_kink()), (None, None));
@@ -153,10 +153,10 @@ fn the_scales_do_not_jump_while_a_well_crosses_its_kink() {
     };
     let at = scales(0.0);
     for past in [-1e-6, -1e-9, 1e-9, 1e-6] {
-        let own = scales(past);
-        close(own.length, at.length, 1e-4);
-        close(own.speed, at.speed, 1e-4);
-        close(own.time, at.time, 1e-4);
+        let moved = scales(past);
+        close(moved.length, at.length, 1e-4);
+        close(moved.speed, at.speed, 1e-4);
+        close(moved.time, at.time, 1e-4);
     }
     close(at.time, (15.2e-3_f64 / 137.0).sqrt(), 1e-9);
 }

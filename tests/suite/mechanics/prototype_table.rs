@@ -20,21 +20,21 @@ fn the_prototype_is_few_pieces() {
 
 #[test]
 fn the_prototype_has_two_wells_and_two_corners() {
-    let own = Mechanism::from_table(PROTOTYPE, 1e-4).unwrap();
-    let [left, top, right] = own.landscape.equilibria[..] else { panic!("{:?}", own.landscape) };
+    let mechanism = Mechanism::from_table(PROTOTYPE, 1e-4).unwrap();
+    let [left, top, right] = mechanism.landscape.equilibria[..] else { panic!("{:?}", mechanism.landscape) };
     assert!((right.x - 6.882862e-3).abs() < 2e-7);
     assert_eq!((left.x, top.x), (-right.x, 0.0));
     assert!(left.stable && !top.stable && right.stable);
     close(right.stiffness_left, 146.0, 0.02);
-    assert_eq!(own.damping_stiffness(), Some(right.stiffness_left));
-    let [_, corner] = own.landscape.kinks[..] else { panic!("{:?}", own.landscape.kinks) };
+    assert_eq!(mechanism.damping_stiffness(), Some(right.stiffness_left));
+    let [_, corner] = mechanism.landscape.kinks[..] else { panic!("{:?}", mechanism.landscape.kinks) };
     assert_eq!(corner.x, 7.179338e-3);
     close(corner.stiffness_left, 165.0, 0.02);
     close(corner.stiffness_right, 4430.0, 0.02);
-    let barrier = own.landscape.barrier.unwrap();
+    let barrier = mechanism.landscape.barrier.unwrap();
     close(barrier.from_right_j, 0.94e-3, 0.05);
     assert_eq!(barrier.from_left_j, barrier.from_right_j);
-    let [_, least] = own.landscape.extrema[..] else { panic!("{:?}", own.landscape.extrema) };
+    let [_, least] = mechanism.landscape.extrema[..] else { panic!("{:?}", mechanism.landscape.extrema) };
     assert!((least.x - 3.91e-3).abs() < 5e-5);
     assert!((least.force + 0.20316).abs() < 2e-5);
 }
@@ -50,8 +50,8 @@ fn the_presets_table_is_the_embedded_one() {
 
 #[test]
 fn potential_and_stiffness_belong_to_the_force() {
-    let own = Mechanism::from_table(PROTOTYPE, 1e-4).unwrap();
-    let curve = &own.curve;
+    let mechanism = Mechanism::from_table(PROTOTYPE, 1e-4).unwrap();
+    let curve = &mechanism.curve;
     assert_eq!(curve.potential(0.0), 0.0);
     for (i, piece) in curve.pieces().iter().enumerate() {
         let (left, right) = curve.piece_interval(i);

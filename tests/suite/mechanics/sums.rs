@@ -28,9 +28,9 @@ fn table() -> scene::Mechanism {
 
 #[test]
 fn a_duffing_with_a_spring_is_the_duffing_of_the_shifted_stiffness_to_the_last_digit() {
-    let (own, shifted) = (build(sum(vec![cubic(-40.0), linear(30.0)])), build(cubic(-10.0)));
-    assert_eq!(own.curve, shifted.curve);
-    assert_eq!(own.landscape, shifted.landscape);
+    let (summed, shifted) = (build(sum(vec![cubic(-40.0), linear(30.0)])), build(cubic(-10.0)));
+    assert_eq!(summed.curve, shifted.curve);
+    assert_eq!(summed.landscape, shifted.landscape);
     let balanced = build(sum(vec![cubic(-40.0), linear(30.0), linear(10.0)]));
     assert_eq!(balanced.curve, build(cubic(0.0)).curve);
     // order and parts that are nothing change nothing
@@ -42,15 +42,15 @@ fn a_duffing_with_a_spring_is_the_duffing_of_the_shifted_stiffness_to_the_last_d
 #[test]
 fn a_sum_of_pieces_is_the_sum_of_the_forces_potentials_and_slopes() {
     let parts = [table(), magnet(12.0, 4.0), linear(-7.0), cubic(3.0)];
-    let own = build(sum(parts.to_vec()));
+    let summed = build(sum(parts.to_vec()));
     let parts = parts.map(build);
-    assert!(own.curve.is_odd());
-    let (low, high) = own.curve.domain();
+    assert!(summed.curve.is_odd());
+    let (low, high) = summed.curve.domain();
     assert_eq!((low, high), parts[0].curve.domain());
     let mut breaks: Vec<f64> = parts.iter().flat_map(|part| part.curve.breaks()).copied().collect();
     breaks.retain(|x| *x > low && *x < high);
     breaks.sort_by(f64::total_cmp);
-    assert_eq!(own.curve.breaks(), breaks);
+    assert_eq!(summed.curve.breaks(), breaks);
     assert!(breaks.len() > parts[0].curve.breaks().len(), "{breaks:?}");
     let largest = |of: fn(&ForceCurve, f64) -> f64| {
         let at = |i: i32| low + (high - low) * f64::from(i) / 499.0;
@@ -61,15 +61,15 @@ fn a_sum_of_pieces_is_the_sum_of_the_forces_potentials_and_slopes() {
     for i in 0..=4000 {
         let x = (low + (high - low) * f64::from(i) / 4000.0).clamp(low, high);
         let of = |of: fn(&ForceCurve, f64) -> f64| -> f64 {
-            of(&own.curve, x) - parts.iter().map(|part| of(&part.curve, x)).sum::<f64>()
+            of(&summed.curve, x) - parts.iter().map(|part| of(&part.curve, x)).sum::<f64>()
         };
         assert!(of(|curve, x| curve.force(x)).abs() <= 1e-14 * force, "{x}");
         assert!(of(|curve, x| curve.potential(x)).abs() <= 1e-14 * potential, "{x}");
         assert!(of(|curve, x| curve.stiffness(x)).abs() <= 1e-12 * slope, "{x}");
-        assert_eq!(own.curve.force(-x), -own.curve.force(x));
+        assert_eq!(summed.curve.force(-x), -summed.curve.force(x));
     }
     // a kink of a part is one of the sum, and the magnet has none of its own
-    let [of_sum, of_table] = [&own, &parts[0]].map(|own| own.landscape.kinks.len());
+    let [of_sum, of_table] = [&summed, &parts[0]].map(|mechanism| mechanism.landscape.kinks.len());
     assert_eq!(of_sum, of_table);
 }
 
@@ -80,18 +80,18 @@ fn a_lopsided_sum_is_known_where_both_parts_are() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("own.csv");
     std::fs::write(&path, text).unwrap();
-    let own = build(sum(vec![
+    let summed = build(sum(vec![
         scene::Mechanism::Table { path: path.to_str().unwrap().into(), tolerance: 1e-6 },
         table(),
         scene::Mechanism::Polynomial { coefficients_si: vec![0.5, 0.0, 3.0] },
     ]));
-    assert_eq!(own.curve.domain(), (-0.002, 0.003));
-    assert!(!own.curve.is_odd());
+    assert_eq!(summed.curve.domain(), (-0.002, 0.003));
+    assert!(!summed.curve.is_odd());
     let other = interwell::mechanics::Mechanism::from_table(PROTOTYPE, 1e-4).unwrap();
     for (x, force) in [(-0.002, -1.0), (0.0, 0.1), (0.003, 2.0)] {
-        close(own.curve.force(x), force + other.curve.force(x) + 0.5 + 3.0 * x * x, 1e-13);
+        close(summed.curve.force(x), force + other.curve.force(x) + 0.5 + 3.0 * x * x, 1e-13);
     }
-    assert_eq!(own.curve.potential(0.0), 0.0);
+    assert_eq!(summed.curve.potential(0.0), 0.0);
 }
 
 /// The energy in 31 digits.
@@ -132,11 +132,13 @@ fn a_magnet_has_its_stiffness_its_zeros_and_its_far_field() {
         let far = -3.0 * strength / x.powi(4) * (1.0 - 7.5 / (gaps * gaps));
         close(magnet_force(strength, gap, x), far, 50.0 / gaps.powi(4) + 1e-15);
     }
-    let own = build(magnet(7.0, 4.0));
-    let [left, middle, right] = own.landscape.equilibria[..] else { panic!("{:?}", own.landscape) };
+    let mechanism = build(magnet(7.0, 4.0));
+    let [left, middle, right] = mechanism.landscape.equilibria[..] else {
+        panic!("{:?}", mechanism.landscape)
+    };
     assert!(middle.x == 0.0 && middle.stable && !left.stable && !right.stable);
     close(right.x, 8e-3, 1e-7);
-    close(own.damping_stiffness().unwrap(), 12.0 * strength / gap.powi(5), 1e-6);
+    close(mechanism.damping_stiffness().unwrap(), 12.0 * strength / gap.powi(5), 1e-6);
     let repelling = build(magnet(-7.0, 4.0));
     let barrier = repelling.landscape.barrier.unwrap();
     close(barrier.right_well, 8e-3, 1e-7);
@@ -148,16 +150,16 @@ fn a_magnet_has_its_stiffness_its_zeros_and_its_far_field() {
 #[test]
 fn the_pieces_of_a_magnet_are_as_near_to_its_formula_as_is_said() {
     for (strength_n_mm4, gap_mm) in [(7.0, 4.0), (-2e3, 11.0), (1e-40, 1e-10), (-3e30, 1e9)] {
-        let own = build(magnet(strength_n_mm4, gap_mm));
+        let mechanism = build(magnet(strength_n_mm4, gap_mm));
         let (strength, gap) = (strength_n_mm4 * 1e-12, gap_mm / 1e3);
-        let fit = own.curve.fit().unwrap();
-        assert!(own.curve.is_odd() && own.landscape.kinks.is_empty());
-        let reach = own.curve.domain().1;
+        let fit = mechanism.curve.fit().unwrap();
+        assert!(mechanism.curve.is_odd() && mechanism.landscape.kinks.is_empty());
+        let reach = mechanism.curve.domain().1;
         close(reach, 100.0 * gap, 1e-9);
         let mut worst = 0.0_f64;
         for i in 0..=30_000 {
             let x = (gap * (5.3 * f64::from(i) / 30_000.0).sinh()).min(reach);
-            worst = worst.max((own.curve.force(x) - magnet_force(strength, gap, x)).abs());
+            worst = worst.max((mechanism.curve.force(x) - magnet_force(strength, gap, x)).abs());
         }
         assert!(worst <= fit.worst_n, "{worst} {fit:?}");
         assert!(worst >= 0.9 * fit.worst_n, "{worst} {fit:?}");

@@ -102,10 +102,10 @@ fn a_monostable_table_is_relative_to_its_largest_force() {
     let table = sampled(-1.0, 2.0, 31, |x| 3.0 * x + 0.1 * x * x);
     assert_eq!(force_scale(&table), 6.4);
     let curve = keeps_its_promises(&table, 1e-4);
-    let own = Mechanism::new(curve);
-    assert_eq!(own.landscape.equilibria.len(), 1);
-    close(own.damping_stiffness().unwrap(), 3.0, 1e-9);
-    assert!((own.landscape.crossing_position().unwrap()).abs() < 1e-12);
+    let mechanism = Mechanism::new(curve);
+    assert_eq!(mechanism.landscape.equilibria.len(), 1);
+    close(mechanism.damping_stiffness().unwrap(), 3.0, 1e-9);
+    assert!((mechanism.landscape.crossing_position().unwrap()).abs() < 1e-12);
 }
 
 #[test]
@@ -131,9 +131,9 @@ fn no_force_at_all_is_a_table_too() {
     assert_eq!(Landscape::of(&curve), Landscape::default());
     // A dead zone between two springs: the force vanishes on an interval, which is no equilibrium.
     let dead = |x: f64| if x.abs() < 0.5 { 0.0 } else { 4.0 * (x - 0.5 * x.signum()) };
-    let own = Mechanism::new(keeps_its_promises(&sampled(-1.0, 1.0, 41, dead), 1e-4));
-    assert!(own.landscape.equilibria.is_empty(), "{:?}", own.landscape.equilibria);
-    assert_eq!(own.landscape.kinks.len(), 2);
+    let mechanism = Mechanism::new(keeps_its_promises(&sampled(-1.0, 1.0, 41, dead), 1e-4));
+    assert!(mechanism.landscape.equilibria.is_empty(), "{:?}", mechanism.landscape.equilibria);
+    assert_eq!(mechanism.landscape.kinks.len(), 2);
 }
 
 #[test]
@@ -222,18 +222,18 @@ proptest! {
         let curve = keeps_its_promises(&table, 10.0_f64.powi(-digits));
         let read = ForceTable::parse(&text_of(&table));
         prop_assert_eq!(read.as_ref(), Ok(&table));
-        let own = Landscape::of(&curve);
+        let landscape = Landscape::of(&curve);
         let mut last = (curve.domain().0, curve.force(curve.domain().0));
         for i in 1..=400 {
             let at = curve.domain().0 + (curve.domain().1 - curve.domain().0) * f64::from(i) / 400.0;
             let at = at.min(curve.domain().1);
             let force = curve.force(at);
             if last.1 * force < 0.0 {
-                prop_assert!(own.equilibria.iter().any(|e| e.x >= last.0 && e.x <= at));
+                prop_assert!(landscape.equilibria.iter().any(|e| e.x >= last.0 && e.x <= at));
             }
             last = (at, force);
         }
-        for e in &own.equilibria {
+        for e in &landscape.equilibria {
             prop_assert!(curve.force(e.x).abs() <= 1e-10 * (1.0 + roughness));
         }
     }

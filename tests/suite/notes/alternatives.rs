@@ -38,8 +38,8 @@ fn crosses_at(name: &str, amplitude: f64) -> bool {
 pub fn balanced(text: &mut Text) {
     low_barrier(text, "balanced");
     // in between it depends on rounding which motion the irregular crossings end in
-    assert!([0.21, 0.22, 0.23].iter().all(|own| crosses_at("balanced", *own)));
-    assert!([0.18, 0.19, 0.2].iter().all(|own| !crosses_at("balanced", *own)));
+    assert!([0.21, 0.22, 0.23].iter().all(|amplitude| crosses_at("balanced", *amplitude)));
+    assert!([0.18, 0.19, 0.2].iter().all(|amplitude| !crosses_at("balanced", *amplitude)));
     text.says("From rest it crosses for good from 0.21 g on");
     // with the run of `paper`, and as long as a motion is followed for a threshold
     let compared = changed("balanced", &["run.duration_s=10", "run.settle_s=5"]);
@@ -66,7 +66,7 @@ pub fn balanced(text: &mut Text) {
 pub fn magnet(text: &mut Text) {
     low_barrier(text, "magnet");
     within(least(Onset::Crossing, "magnet", &[], 0.1..0.2), 0.133..0.137);
-    assert!([0.14, 0.15, 0.16].iter().all(|own| crosses_at("magnet", *own)));
+    assert!([0.14, 0.15, 0.16].iter().all(|amplitude| crosses_at("magnet", *amplitude)));
     text.says("in place of the spring: crosses from 0.14 g");
     text.says("From rest it crosses from 0.14 g on");
     let strength = 1_331.382_602_919_717_3;

@@ -26,12 +26,12 @@ fn response() -> f64 {
 /// in m/s^2.
 fn one_impact(amplitude: f64) -> (f64, f64) {
     let (decay, period) = (0.5 * DAMPING, TAU / RATE);
-    let own = (1.0 - decay * decay).sqrt();
-    let (sine, cosine) = (own * period).sin_cos();
+    let damped = (1.0 - decay * decay).sqrt();
+    let (sine, cosine) = (damped * period).sin_cos();
     let kept = (-decay * period).exp();
     // of a free swing over a period: [[a, b], [c, d]]
-    let (a, d) = (kept * (cosine + decay / own * sine), kept * (cosine - decay / own * sine));
-    let (b, c) = (kept * sine / own, -kept * sine / own);
+    let (a, d) = (kept * (cosine + decay / damped * sine), kept * (cosine - decay / damped * sine));
+    let (b, c) = (kept * sine / damped, -kept * sine / damped);
     // speeds of the decaying swing that begins and ends at 1, after and before an impact
     let after = (1.0 - a) / b;
     let before = c + d * after;
@@ -59,9 +59,9 @@ pub fn impact_oscillator(text: &mut Text) {
     assert!(below.range.unwrap().1 < 1.0 && above.range.unwrap().1 > 1.0);
     text.says(&format!("reaches it at {grazing:.6} g"));
 
-    let own = at(0.056, &[]);
-    assert_eq!((own.period, own.settled, own.impacts), (Some(1), Some(true), own.periods));
-    let speed = own.impact_speed_max.unwrap();
+    let summary = at(0.056, &[]);
+    assert_eq!((summary.period, summary.settled, summary.impacts), (Some(1), Some(true), summary.periods));
+    let speed = summary.impact_speed_max.unwrap();
     near_relative(speed, one_impact(0.056 * STANDARD_GRAVITY).0, 1e-8);
     text.says(&format!(
         "At 0.056 g, as set here, there is 1 impact in each period, with {:.0} mm/s",
@@ -76,19 +76,19 @@ pub fn impact_oscillator(text: &mut Text) {
     let (below, above) = (at(flip - 5e-5, &[]), at(flip + 5e-5, &[]));
     assert_eq!((below.period, above.period), (Some(2), Some(1)));
     text.says(&format!("loses its stability at {flip:.6} g"));
-    let own = at(0.0549, &[]);
-    assert_eq!((own.period, own.settled, own.impacts), (Some(2), Some(true), own.periods));
+    let summary = at(0.0549, &[]);
+    assert_eq!((summary.period, summary.settled, summary.impacts), (Some(2), Some(true), summary.periods));
     text.says("at 0.0549 g a harder and a lighter impact alternate, 2 in 2 periods");
     assert_eq!(at(0.05475, &[]).period, Some(4));
     text.says("At 0.05475 g the motion repeats after 4 periods");
     assert_eq!(at(0.0545, &[]).period, None);
     text.says("at 0.0545 g no period is found");
-    let own = at(0.054, &[]);
-    assert_eq!((own.period, 8 * own.impacts), (Some(8), 5 * own.periods));
+    let summary = at(0.054, &[]);
+    assert_eq!((summary.period, 8 * summary.impacts), (Some(8), 5 * summary.periods));
     text.says("at 0.0540 g there are 5 impacts in 8 periods");
 
-    let own = at(0.0538, &[]);
-    assert_eq!((own.period, 2 * own.impacts), (Some(2), own.periods));
+    let summary = at(0.0538, &[]);
+    assert_eq!((summary.period, 2 * summary.impacts), (Some(2), summary.periods));
     let lag = -(DAMPING * RATE).atan2(1.0 - RATE * RATE);
     let reach = 0.0538 * STANDARD_GRAVITY * response();
     let start =

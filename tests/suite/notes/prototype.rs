@@ -18,27 +18,27 @@ fn stopped(limit: f64) -> String {
     format!("stops=Rigid(travel_limit_mm: {limit}, restitution: 0.36)")
 }
 
-fn barrier(own: &Mechanism) -> f64 {
-    1e3 * own.landscape.barrier.unwrap().from_right_j
+fn barrier(mechanism: &Mechanism) -> f64 {
+    1e3 * mechanism.landscape.barrier.unwrap().from_right_j
 }
 
 pub fn first_look(text: &mut Text) {
     for change in [TOLERANCES[0], TOLERANCES[1], "start=At(x_mm: 6, v_m_per_s: 0)"] {
-        let own = settled("first-look", &[change]);
-        assert_eq!((own.regime, own.period, own.total_crossings), (Regime::Intrawell, None, 0));
-        let (low, high) = own.range.unwrap();
+        let summary = settled("first-look", &[change]);
+        assert_eq!((summary.regime, summary.period, summary.total_crossings), (Regime::Intrawell, None, 0));
+        let (low, high) = summary.range.unwrap();
         near(low, 5.65e-3, 5e-5);
         near(high, 7.28e-3, 3e-5);
-        within(rms(&own), 16.2..18.5);
+        within(rms(&summary), 16.2..18.5);
     }
     text.says("between 5.65 and 7.28 mm");
     text.says("of 16 to 18 mm/s");
     text.says("irregularly at first, for some seconds or even minutes");
     for tolerance in TOLERANCES {
-        let own = settled("first-look", &["excitation.amplitude_g=1.3", tolerance]);
-        crosses(&own);
-        within(own.settles_at.unwrap(), 3.0..600.0);
-        text.says(&format!("goes over and back once in every period, at {:.0} mm/s", rms(&own)));
+        let summary = settled("first-look", &["excitation.amplitude_g=1.3", tolerance]);
+        crosses(&summary);
+        within(summary.settles_at.unwrap(), 3.0..600.0);
+        text.says(&format!("goes over and back once in every period, at {:.0} mm/s", rms(&summary)));
     }
     text.says("At 1.3 g it crosses");
     let at = |limit: f64| settled("first-look", &[&stopped(limit)]);
@@ -76,8 +76,11 @@ pub fn paper(text: &mut Text) {
     ));
     assert!(at(2.6) < open - 0.005);
     let further = [2.7, 3.0, 4.0, 4.4, 4.6, 4.8, 5.0, 6.0, 6.5, 7.0].map(at);
-    assert!(further.iter().all(|own| *own > open + 0.01), "{further:?}");
-    assert!(further[..5].is_sorted() && further[5..].iter().all(|own| *own < further[4]), "{further:?}");
+    assert!(further.iter().all(|amplitude| *amplitude > open + 0.01), "{further:?}");
+    assert!(
+        further[..5].is_sorted() && further[5..].iter().all(|amplitude| *amplitude < further[4]),
+        "{further:?}"
+    );
     text.says(&format!("it is higher than without stops, at most {:.2} g at 4.6 mm", further[4]));
     // The other reading of the damping ratio
     let mechanism = preset("paper", &[]).mechanism().clone();
@@ -106,7 +109,7 @@ pub fn paper_table(text: &mut Text) {
     assert!(header.contains("good to 0.003 N for |x| < 7.1 mm"));
     text.says("good to 3 mN between -7.1 and 7.1 mm");
     let (landscape, curve) = (&solid.landscape, &solid.curve);
-    let hardest = landscape.extrema.iter().fold(0.0_f64, |most, own| most.max(own.force));
+    let hardest = landscape.extrema.iter().fold(0.0_f64, |most, extremum| most.max(extremum.force));
     let (well, kink) = (landscape.right_stable().unwrap().x, landscape.kinks.last().unwrap().x);
     let barrier = barrier(&solid);
     text.says(&format!("the largest force between the wells is {hardest:.3} N, the barrier {barrier:.2} mJ"));
@@ -141,13 +144,13 @@ pub fn paper_table(text: &mut Text) {
 
 pub fn paper_unconstrained(text: &mut Text) {
     const NAME: &str = "paper-unconstrained";
-    let own = settled(NAME, &[]);
-    assert_eq!((own.regime, own.period), (Regime::Intrawell, Some(1)));
-    let (low, high) = own.range.unwrap();
+    let summary = settled(NAME, &[]);
+    assert_eq!((summary.regime, summary.period), (Regime::Intrawell, Some(1)));
+    let (low, high) = summary.range.unwrap();
     let kink = preset(NAME, &[]).mechanism().landscape.kinks.last().unwrap().x;
     near(high, kink, 1e-4);
     text.says(&format!("between {:.1} and {:.1} mm, where the flexures are taut", 1e3 * low, 1e3 * high));
-    text.says(&format!("of {:.0} mm/s", rms(&own)));
+    text.says(&format!("of {:.0} mm/s", rms(&summary)));
     for hundredths in [3, 20, 40, 60, 80, 90, 100, 105, 110, 113, 115] {
         let change = shaken(f64::from(hundredths) / 100.0);
         assert_eq!(settled(NAME, &[&change]).total_crossings, 0, "{change}");
@@ -158,12 +161,12 @@ pub fn paper_unconstrained(text: &mut Text) {
     for hundredths in 116..=136 {
         let change = shaken(f64::from(hundredths) / 100.0);
         for tolerance in TOLERANCES {
-            let own = settled(NAME, &[&change, tolerance]);
+            let summary = settled(NAME, &[&change, tolerance]);
             // at 1.24 g it may cross in every period and yet never repeat
-            let settled = own.settled == Some(true) || hundredths == 124;
-            assert!(own.total_crossings > 0 && settled, "{change} {tolerance}");
-            match own.regime {
-                Regime::Interwell => within(reach(&own), 7.83..7.9),
+            let settled = summary.settled == Some(true) || hundredths == 124;
+            assert!(summary.total_crossings > 0 && settled, "{change} {tolerance}");
+            match summary.regime {
+                Regime::Interwell => within(reach(&summary), 7.83..7.9),
                 _ => others += 1,
             }
         }
@@ -173,9 +176,9 @@ pub fn paper_unconstrained(text: &mut Text) {
     text.says("regular, between -7.9 and 7.9 mm");
     for tolerance in TOLERANCES {
         let speed = |amplitude: f64| {
-            let own = settled(NAME, &[&shaken(amplitude), tolerance]);
-            crosses(&own);
-            rms(&own)
+            let summary = settled(NAME, &[&shaken(amplitude), tolerance]);
+            crosses(&summary);
+            rms(&summary)
         };
         text.says(&format!(
             "at 1.18 g with {:.0} mm/s, at 1.3 g with {:.0} mm/s, at 1.35 g with {:.0} mm/s",
@@ -189,16 +192,16 @@ pub fn paper_unconstrained(text: &mut Text) {
     crosses(&stops);
     text.says(&format!("With stops at 1.5 mm, 1 g gives {:.0} mm/s", rms(&stops)));
     for hundredths in 137..=150 {
-        let own = settled(NAME, &[&shaken(f64::from(hundredths) / 100.0)]);
-        assert_eq!((own.regime, own.period), (Regime::Irregular, None), "{hundredths}");
+        let summary = settled(NAME, &[&shaken(f64::from(hundredths) / 100.0)]);
+        assert_eq!((summary.regime, summary.period), (Regime::Irregular, None), "{hundredths}");
     }
     text.says("From 1.37 to 1.5 g no period was found within 600 s; at 1.8 g there is one again");
 }
 
 pub fn paper_ramp(text: &mut Text) {
     let ramp = run(&preset("paper-ramp", &[]));
-    let own = ramp.summary.firsts.unwrap();
-    let (frees, crosses) = (own.release.unwrap(), own.crossing.unwrap());
+    let firsts = ramp.summary.firsts.unwrap();
+    let (frees, crosses) = (firsts.release.unwrap(), firsts.crossing.unwrap());
     let in_g = |first: interwell::dynamics::First| first.amplitude.unwrap() / 9.80665;
     let holds = least(Onset::Release, "paper", &[], 0.0..2.0);
     text.says(&format!("The stop at 1.5 mm holds the mass up to {holds:.3} g"));
@@ -214,23 +217,23 @@ pub fn paper_ramp(text: &mut Text) {
         crosses.t,
         in_g(crosses)
     ));
-    assert_eq!(own.crossing_in_every_period, own.crossing);
+    assert_eq!(firsts.crossing_in_every_period, firsts.crossing);
     assert_eq!(ramp.summary.crossings, 2 * ramp.summary.periods);
     text.says("it crosses twice in every period up to the end");
     text.says("from 0 to 2 g in five minutes: when it frees, when it crosses");
     for tolerance in TOLERANCES {
-        let own = run(&preset("paper-ramp", &["stops=None", tolerance])).summary.firsts.unwrap();
-        within(in_g(own.crossing.unwrap()), 1.15..1.25);
-        within(in_g(own.crossing_in_every_period.unwrap()), 1.2..1.6);
+        let firsts = run(&preset("paper-ramp", &["stops=None", tolerance])).summary.firsts.unwrap();
+        within(in_g(firsts.crossing.unwrap()), 1.15..1.25);
+        within(in_g(firsts.crossing_in_every_period.unwrap()), 1.2..1.6);
     }
     text.says("crosses first somewhere between 1.15 and 1.25 g");
     text.says("in every period only from somewhere between 1.2 and 1.6 g on");
 }
 
 pub fn uneven_stops(text: &mut Text) {
-    let own = settled("uneven-stops", &[]);
-    crosses(&own);
-    let (left, right) = own.range.unwrap();
+    let summary = settled("uneven-stops", &[]);
+    crosses(&summary);
+    let (left, right) = summary.range.unwrap();
     text.says(&format!("The right stop is {:.1} mm further out", 1e3 * (right + left)));
     let uneven = run(&preset("uneven-stops", &[]));
     // the first impact after each crossing, once settled
@@ -301,9 +304,9 @@ pub fn random_shaking(text: &mut Text) {
     let all = |changes: &[&str]| {
         let seeds = (1..=8).map(|seed| format!("excitation.seed={seed}"));
         let runs = seeds.map(|seed| settled("random-shaking", &[&[seed.as_str()], changes].concat()));
-        let runs: Vec<(u64, f64)> = runs.map(|own| (own.total_crossings, rms(&own))).collect();
-        let counts = runs.iter().map(|own| own.0);
-        let speeds = |most: fn(f64, f64) -> f64| runs.iter().map(|own| own.1).reduce(most).unwrap();
+        let runs: Vec<(u64, f64)> = runs.map(|summary| (summary.total_crossings, rms(&summary))).collect();
+        let counts = runs.iter().map(|run| run.0);
+        let speeds = |most: fn(f64, f64) -> f64| runs.iter().map(|run| run.1).reduce(most).unwrap();
         ((counts.clone().min().unwrap(), counts.max().unwrap()), (speeds(f64::min), speeds(f64::max)))
     };
     let ((few, many), slow) = all(&[]);

@@ -12,13 +12,13 @@ fn drive(amplitude: f64) -> (String, String) {
 }
 
 pub fn nominal_cubic(text: &mut Text) {
-    let own = preset("nominal-cubic", &[]);
-    let well = own.mechanism().landscape.right_stable().unwrap().x;
+    let model = preset("nominal-cubic", &[]);
+    let well = model.mechanism().landscape.right_stable().unwrap().x;
     text.says(&format!("Its wells lie at {:.0} mm", 1e3 * well));
-    let own = run(&own);
-    crosses(&own.summary);
-    assert_eq!(own.summary.releases, 2 * own.summary.periods);
-    let faster = of_kind(&own, EventKind::Impact).iter().filter(|event| event.v_in.abs() > 1e-6).count();
+    let run = run(&model);
+    crosses(&run.summary);
+    assert_eq!(run.summary.releases, 2 * run.summary.periods);
+    let faster = of_kind(&run, EventKind::Impact).iter().filter(|event| event.v_in.abs() > 1e-6).count();
     text.says(&format!("some {faster} of them above 1 um/s in ten seconds"));
     let axes = changed("nominal-cubic", &[]).scene.sweep;
     let counts: Vec<String> =
@@ -28,15 +28,15 @@ pub fn nominal_cubic(text: &mut Text) {
 }
 
 pub fn monostable(text: &mut Text) {
-    let own = settled("monostable", &[]);
-    text.says(&format!("At 1 g and 3 Hz it swings to {:.1} mm on both sides", reach(&own)));
-    text.says(&format!("of {:.0} mm/s", rms(&own)));
+    let summary = settled("monostable", &[]);
+    text.says(&format!("At 1 g and 3 Hz it swings to {:.1} mm on both sides", reach(&summary)));
+    text.says(&format!("of {:.0} mm/s", rms(&summary)));
     let stops = "stops=Rigid(travel_limit_mm: 1.5, restitution: 0.36)";
-    let own = settled("monostable", &[stops]);
-    let share = 100.0 * own.impact_share.unwrap();
+    let summary = settled("monostable", &[stops]);
+    let share = 100.0 * summary.impact_share.unwrap();
     text.says(&format!(
         "a restitution of 0.36 it is {:.0} mm/s, and impacts take {share:.0} % of the work",
-        rms(&own)
+        rms(&summary)
     ));
     text.says("With stops at 1.5 mm");
     let swing =
@@ -49,14 +49,14 @@ pub fn monostable(text: &mut Text) {
 
 pub fn bouncing_ball(text: &mut Text) {
     let times = |changes: &[&str]| {
-        let own = run(&preset("bouncing-ball", changes));
-        let first = |kind| of_kind(&own, kind).first().unwrap().t;
+        let run = run(&preset("bouncing-ball", changes));
+        let first = |kind| of_kind(&run, kind).first().unwrap().t;
         (first(EventKind::Impact), first(EventKind::Rest))
     };
     let (lands, rests) = times(&[]);
     text.says("keeps 80 % of the speed, so every flight takes 80 % of the time");
-    let own = run(&preset("bouncing-ball", &[]));
-    let impacts = of_kind(&own, EventKind::Impact);
+    let run = run(&preset("bouncing-ball", &[]));
+    let impacts = of_kind(&run, EventKind::Impact);
     near_relative(impacts[0].v_out / impacts[0].v_in, -0.8, 1e-12);
     near_relative((impacts[2].t - impacts[1].t) / (impacts[1].t - impacts[0].t), 0.8, 1e-12);
     text.says(&format!(
@@ -69,19 +69,19 @@ pub fn bouncing_ball(text: &mut Text) {
 }
 
 pub fn elastic_box(text: &mut Text) {
-    let own = run(&preset("elastic-box", &[]));
-    let impacts = of_kind(&own, EventKind::Impact);
+    let elastic = run(&preset("elastic-box", &[]));
+    let impacts = of_kind(&elastic, EventKind::Impact);
     let lap = impacts[1].t - impacts[0].t;
     text.says(&format!(
         "crosses the {:.0} mm between them in {lap:.1} s",
-        1e3 * own.summary.travel().unwrap()
+        1e3 * elastic.summary.travel().unwrap()
     ));
     text.says(&format!(
         "the first wall after {:.1} s, {} impacts in ten seconds",
         impacts[0].t,
         impacts.len()
     ));
-    near(own.summary.ledger.unwrap().stored_j, 0.0, 1e-15);
+    near(elastic.summary.ledger.unwrap().stored_j, 0.0, 1e-15);
     let lossy = run(&preset("elastic-box", &["stops.restitution=0.9"])).events[0];
     let share = 100.0 * (1.0 - lossy.v_out.powi(2) / lossy.v_in.powi(2));
     text.says(&format!("of 0.9 each impact takes {share:.0} % of the energy"));
@@ -90,18 +90,18 @@ pub fn elastic_box(text: &mut Text) {
 pub fn duffing(text: &mut Text) {
     for (amplitude, period) in [(0.2, 1), (0.28, 2), (0.29, 4), (0.37, 5), (0.65, 2)] {
         let (change, in_g) = drive(amplitude);
-        let own = settled("duffing", &[&change]);
-        assert_eq!((own.period, own.settled), (Some(period), Some(true)), "{amplitude}");
-        assert_eq!(own.crossings > 0, amplitude > 0.3, "{amplitude}");
+        let summary = settled("duffing", &[&change]);
+        assert_eq!((summary.period, summary.settled), (Some(period), Some(true)), "{amplitude}");
+        assert_eq!(summary.crossings > 0, amplitude > 0.3, "{amplitude}");
         let set = if amplitude == 0.37 { ", as set here" } else { "" };
         text.says(&format!("{amplitude:.2} ({in_g}{set}): after {period}"));
     }
-    let own = settled("duffing", &[]);
-    assert_eq!(5 * own.crossings, 2 * own.periods);
+    let summary = settled("duffing", &[]);
+    assert_eq!(5 * summary.crossings, 2 * summary.periods);
     text.says("over and back once in 5 periods");
     let (change, in_g) = drive(0.5);
-    let own = settled("duffing", &[&change]);
-    assert_eq!((own.regime, own.period), (Regime::Irregular, None));
+    let summary = settled("duffing", &[&change]);
+    assert_eq!((summary.regime, summary.period), (Regime::Irregular, None));
     text.says(&format!("0.50 ({in_g}): no period is found"));
     text.says("1, 2, 4, 5, chaos, 2");
     text.says("Started from x = 1 m");
@@ -112,14 +112,14 @@ pub fn duffing_chaos(text: &mut Text) {
     // 624 of 900 periods, the reach 1.535 to 1.536 m.
     let mut finals = Vec::new();
     for change in ["start.x_mm=1000", "start.x_mm=1000.000001", "start.x_mm=900", "start.x_mm=1100"] {
-        let own = settled("duffing-chaos", &[change]);
-        assert_eq!((own.regime, own.period, own.impacts), (Regime::Irregular, None, 0));
-        near_relative(own.rms_velocity.unwrap(), 0.52, 0.03);
-        near(own.crossings as f64 / own.periods as f64, 0.71, 0.05);
-        near(own.crossing_periods as f64 / own.periods as f64, 2.0 / 3.0, 0.03);
-        near(own.max_abs_x.unwrap(), 1.54, 0.01);
+        let summary = settled("duffing-chaos", &[change]);
+        assert_eq!((summary.regime, summary.period, summary.impacts), (Regime::Irregular, None, 0));
+        near_relative(summary.rms_velocity.unwrap(), 0.52, 0.03);
+        near(summary.crossings as f64 / summary.periods as f64, 0.71, 0.05);
+        near(summary.crossing_periods as f64 / summary.periods as f64, 2.0 / 3.0, 0.03);
+        near(summary.max_abs_x.unwrap(), 1.54, 0.01);
         text.says("the reach 1.54 m");
-        finals.push((own.final_x, own.final_v));
+        finals.push((summary.final_x, summary.final_v));
     }
     assert_ne!(finals[0], finals[1]);
     text.says("driven with A = 0.50");
@@ -160,10 +160,10 @@ pub fn period_adding(text: &mut Text) {
         ("1 in 2 at 0.160", 0.16, 2),
         ("1 in each at 0.190", 0.19, 1),
     ] {
-        let own = at(amplitude, &[]);
-        assert_eq!((own.period, own.settled), (Some(period), Some(true)), "{amplitude}");
-        near(own.impacts as f64, own.periods as f64 / f64::from(period), 1.0);
-        let speed = 1e3 * own.impact_speed_max.unwrap();
+        let summary = at(amplitude, &[]);
+        assert_eq!((summary.period, summary.settled), (Some(period), Some(true)), "{amplitude}");
+        near(summary.impacts as f64, summary.periods as f64 / f64::from(period), 1.0);
+        let speed = 1e3 * summary.impact_speed_max.unwrap();
         let in_g = drive(amplitude).1;
         text.says(&match period {
             4 => format!(
@@ -175,13 +175,13 @@ pub fn period_adding(text: &mut Text) {
         assert!(period != 6 || speed < 6.9);
     }
     text.says("one impact in 6, 5, 4, 3, 2, 1 periods");
-    let own = run_at(&preset("period-adding", &[]), &every(0.1, 15_000));
-    let late = own.samples.iter().filter(|sample| sample.t > own.summary.window.0);
+    let run = run_at(&preset("period-adding", &[]), &every(0.1, 15_000));
+    let late = run.samples.iter().filter(|sample| sample.t > run.summary.window.0);
     let fastest = late.fold(0.0_f64, |most, sample| most.max(sample.v.abs()));
-    near(own.summary.impact_speed_max.unwrap() / fastest, 1.0 / 8.0, 0.01);
+    near(run.summary.impact_speed_max.unwrap() / fastest, 1.0 / 8.0, 0.01);
     text.says("an eighth of the greatest speed");
-    let own = settled("period-adding", &["excitation.amplitude_g=0.0142"]);
-    assert_eq!((own.period, own.regime), (None, Regime::Intrawell));
+    let summary = settled("period-adding", &["excitation.amplitude_g=0.0142"]);
+    assert_eq!((summary.period, summary.regime), (None, Regime::Intrawell));
     text.says("no period is found, at 0.0142 g for one");
 }
 
@@ -191,9 +191,9 @@ pub fn duffing_cascade(text: &mut Text) {
         [("0.340", 0.34, 1), ("0.350", 0.35, 2), ("0.356", 0.356, 4), ("0.3582", 0.3582, 8)]
     {
         let (change, in_g) = drive(amplitude);
-        let own = settled(name, &[&change]);
-        assert_eq!((own.period, own.settled), (Some(period), Some(true)), "{amplitude}");
-        assert_eq!(own.regime, Regime::Intrawell, "{amplitude}");
+        let summary = settled(name, &[&change]);
+        assert_eq!((summary.period, summary.settled), (Some(period), Some(true)), "{amplitude}");
+        assert_eq!(summary.regime, Regime::Intrawell, "{amplitude}");
         let set = if period == 4 { ", as set here" } else { "" };
         let unit = if period == 1 { " period" } else { "" };
         text.says(&format!("{words} ({in_g}{set}): after {period}{unit}"));
@@ -215,8 +215,8 @@ pub fn duffing_cascade(text: &mut Text) {
     text.says(&format!("at {:.4}, {:.4} and {:.4} g", found[0], found[1], found[2]));
     text.says("about a quarter of the first");
     let (change, in_g) = drive(0.36);
-    let own = settled(name, &[&change]);
-    assert_eq!((own.period, own.regime), (None, Regime::Intrawell));
+    let summary = settled(name, &[&change]);
+    assert_eq!((summary.period, summary.regime), (None, Regime::Intrawell));
     text.says(&format!("At 0.360 ({in_g}) no period is found, and the mass still stays in its well"));
     let document = changed(name, &[]);
     let values = (0..=40).map(|i| 0.036 + 5e-5 * f64::from(i)).collect();

@@ -35,9 +35,9 @@ fn every_cycle_of_a_billion_seconds_is_the_first_one() {
     let first = &run.events[releases[0]..releases[2]];
     assert!(first.len() > 20);
     for n in 0..999 {
-        let own = &run.events[releases[2 * n]..releases[2 * n + 2]];
-        assert_eq!(own.len(), cycle);
-        for (a, b) in first.iter().zip(own) {
+        let events = &run.events[releases[2 * n]..releases[2 * n + 2]];
+        assert_eq!(events.len(), cycle);
+        for (a, b) in first.iter().zip(events) {
             assert_eq!((a.kind, a.side, a.v_in, a.v_out), (b.kind, b.side, b.v_in, b.v_out), "cycle {n}");
             // n/f is exact here up to the rounding of 1e-6 itself, 2^-54 of it
             near_relative(b.t, a.t + n as f64 / frequency, 4.0 * f64::EPSILON);

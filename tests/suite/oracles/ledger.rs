@@ -143,9 +143,9 @@ fn a_run_without_stops_agrees_with_twice_the_digits() {
     // 1e-12.
     let model = preset("nominal-cubic", &["stops=None", "excitation.amplitude_g=1.1", "run.tolerance=1e-12"]);
     let request = interwell::dynamics::Request::default();
-    let (own, reference) = (model.run(&request).summary, model.run_reference(&request, 1e-27).summary);
-    near(own.final_x, reference.final_x, 1e-12 * 7e-3);
-    near(own.final_v, reference.final_v, 1e-12 * model.scales().speed);
-    near_relative(own.rms_velocity.unwrap(), reference.rms_velocity.unwrap(), 1e-13);
-    assert_eq!((own.crossings, own.regime), (reference.crossings, Regime::Interwell));
+    let (summary, reference) = (model.run(&request).summary, model.run_reference(&request, 1e-27).summary);
+    near(summary.final_x, reference.final_x, 1e-12 * 7e-3);
+    near(summary.final_v, reference.final_v, 1e-12 * model.scales().speed);
+    near_relative(summary.rms_velocity.unwrap(), reference.rms_velocity.unwrap(), 1e-13);
+    assert_eq!((summary.crossings, summary.regime), (reference.crossings, Regime::Interwell));
 }

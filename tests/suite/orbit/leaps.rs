@@ -45,8 +45,8 @@ fn a_mass_that_rests_leaps_where_it_just_fails_to_cross() {
 /// the one before.
 #[test]
 fn consecutive_motions_are_near_each_other() {
-    let own = changed("paper-unconstrained", &[]);
-    let found = over_amplitude(&own, (1.05, 0.9), None);
+    let document = changed("paper-unconstrained", &[]);
+    let found = over_amplitude(&document, (1.05, 0.9), None);
     assert_eq!((found.end, found.values.last()), (BranchEnd::Range, Some(&1.05)));
     let place = found.events.iter().position(|event| *event == Some(BranchEvent::Fold)).unwrap();
     near(found.orbits[place].multipliers()[0].re, 1.0, 1e-6);
@@ -97,13 +97,13 @@ fn a_branch_does_not_leave_its_range() {
 /// A fold that lies just beyond the end is not reached, and a branch that comes back to its start says so.
 #[test]
 fn a_fold_beyond_the_end_is_not_told_and_a_return_is() {
-    let own = changed("paper-unconstrained", &["run.duration_s=200"]);
-    let whole = over_amplitude(&own, (1.3, 1.1), None);
+    let document = changed("paper-unconstrained", &["run.duration_s=200"]);
+    let whole = over_amplitude(&document, (1.3, 1.1), None);
     let fold = at(&whole, BranchEvent::Fold)[0];
     for (beyond, folds) in [(1e-3, 0), (1e-5, 0), (1e-7, 0), (-1e-7, 1), (-1e-5, 1)] {
         let to = fold + beyond;
-        let found = over_amplitude(&own, (1.3, to), None);
-        assert!(found.values.iter().all(|own| (to..=1.3).contains(own)), "{beyond} {:?}", found.values);
+        let found = over_amplitude(&document, (1.3, to), None);
+        assert!(found.values.iter().all(|value| (to..=1.3).contains(value)), "{beyond} {:?}", found.values);
         let end = if folds == 0 { to } else { 1.3 };
         assert_eq!((found.end, found.values.last()), (BranchEnd::Range, Some(&end)), "{beyond}");
         assert_eq!(at(&found, BranchEvent::Fold).len(), folds, "{beyond}");

@@ -98,12 +98,12 @@ impl OneStop {
     fn branch(&self, range: (f64, f64)) -> interwell::study::Branch {
         let found = over_amplitude(&self.document(), range, Some(1));
         assert_eq!(found.end, BranchEnd::Range);
-        for own in &found.orbits {
-            let Some(speed) = own.gentlest_impact().filter(|speed| *speed > 0.05) else { continue };
-            assert_eq!(own.passage.impacts, 1);
-            let [first, second] = own.multipliers();
+        for orbit in &found.orbits {
+            let Some(speed) = orbit.gentlest_impact().filter(|speed| *speed > 0.05) else { continue };
+            assert_eq!(orbit.passage.impacts, 1);
+            let [first, second] = orbit.multipliers();
             near_relative(first.re + second.re, self.sum(speed), 1e-9);
-            near(own.determinant(), self.determinant(), 1e-15);
+            near(orbit.determinant(), self.determinant(), 1e-15);
         }
         found
     }
@@ -114,9 +114,9 @@ fn it_doubles_its_period_where_the_formula_says() {
     for (w, e, range) in
         [(0.7, 0.8, (0.056, 0.0545)), (0.7, 0.6, (0.056, 0.0545)), (0.8, 0.8, (0.053, 0.0515))]
     {
-        let own = OneStop { w, e, damping: DAMPING, mirrored: false };
-        let found = own.branch(range);
-        let (speed, amplitude) = own.critical(-1.0);
+        let oscillator = OneStop { w, e, damping: DAMPING, mirrored: false };
+        let found = oscillator.branch(range);
+        let (speed, amplitude) = oscillator.critical(-1.0);
         let place = found.events.iter().position(|event| *event == Some(BranchEvent::Flip)).unwrap();
         assert_eq!(at(&found, BranchEvent::Flip).len(), 1);
         near_relative(found.values[place], amplitude, 1e-11);
@@ -126,9 +126,9 @@ fn it_doubles_its_period_where_the_formula_says() {
 
 #[test]
 fn it_folds_where_the_formula_says_and_grazes_where_the_swing_reaches_the_stop() {
-    let own = OneStop { w: 1.5, e: 0.8, damping: DAMPING, mirrored: false };
-    let found = own.branch((0.2, 0.05));
-    let (speed, amplitude) = own.critical(1.0);
+    let oscillator = OneStop { w: 1.5, e: 0.8, damping: DAMPING, mirrored: false };
+    let found = oscillator.branch((0.2, 0.05));
+    let (speed, amplitude) = oscillator.critical(1.0);
     let place = found.events.iter().position(|event| *event == Some(BranchEvent::Fold)).unwrap();
     assert_eq!(at(&found, BranchEvent::Fold).len(), 1);
     near_relative(found.values[place], amplitude, 1e-10);
@@ -136,5 +136,5 @@ fn it_folds_where_the_formula_says_and_grazes_where_the_swing_reaches_the_stop()
     // the unstable motions end where the swing that misses the stop begins
     let grazing = at(&found, BranchEvent::Grazing);
     assert_eq!((grazing.len(), found.orbits.last().unwrap().passage.impacts), (1, 0));
-    near_relative(grazing[0], own.grazing(), 1e-11);
+    near_relative(grazing[0], oscillator.grazing(), 1e-11);
 }

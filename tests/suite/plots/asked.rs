@@ -88,8 +88,8 @@ fn the_first_crossing_parts_a_map_of_frequencies() {
     for row in csv.lines().skip(1).map(|row| row.split(',').collect::<Vec<_>>()) {
         if ["interwell", "irregular"].contains(&row[3]) {
             let (frequency, amplitude): (f64, f64) = (row[0].parse().unwrap(), row[1].parse().unwrap());
-            let own = least.entry(frequency as u32).or_insert(amplitude);
-            *own = own.min(amplitude);
+            let kept = least.entry(frequency as u32).or_insert(amplitude);
+            *kept = kept.min(amplitude);
         }
     }
     let all: Vec<f64> = least.into_values().collect();
@@ -113,7 +113,7 @@ fn a_picture_has_the_size_that_was_asked_for() {
     // Half the size is the same picture, point by point the mean.
     let whole = pixels(&plot("curve", folder.path(), "b.png")).2;
     let half = pixels(&plot("curve --plot-size 800x500", folder.path(), "c.png")).2;
-    let dark = |pixels: &[u8]| pixels.iter().filter(|own| **own < 128).count() as f64 / pixels.len() as f64;
+    let dark = |pixels: &[u8]| pixels.iter().filter(|byte| **byte < 128).count() as f64 / pixels.len() as f64;
     assert!((dark(&half) / dark(&whole) - 1.0).abs() < 0.2, "{} {}", dark(&half), dark(&whole));
     let bare = texts(&plot("curve --no-title", folder.path(), "d.svg"));
     assert!(

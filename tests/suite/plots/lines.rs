@@ -31,7 +31,7 @@ fn release_parts_rest_from_motion() {
     let (limits, amplitudes) =
         (line.numbers("travel_limit_mm").unwrap(), line.numbers("amplitude_g").unwrap());
     let at = |limit: f64| {
-        let place = limits.partition_point(|own| *own < limit).clamp(1, limits.len() - 1);
+        let place = limits.partition_point(|value| *value < limit).clamp(1, limits.len() - 1);
         amplitudes[place - 1].max(amplitudes[place])
     };
     let Values::Words(regimes) = &rows.column("regime").unwrap().values else { panic!() };
@@ -64,7 +64,7 @@ fn the_first_crossing_cell_is_the_first_one() {
                 && ["interwell", "irregular"].contains(&regimes[*i])
         });
         let expected = cells.map(|i| rows.numbers("amplitude_g").unwrap()[i]).reduce(f64::min);
-        assert_eq!(expected, Some(*least).filter(|own| own.is_finite()));
+        assert_eq!(expected, Some(*least).filter(|value| value.is_finite()));
     }
     assert!(least[0].is_finite());
     // Without an amplitude there is no such line.

@@ -83,7 +83,7 @@ fn a_manifest_is_swept_to_the_same_rows() {
 fn a_manifest_brings_the_files_that_its_scene_reads() {
     let folder = tempfile::tempdir().unwrap();
     let (scenes, results) = (folder.path().join("scenes"), folder.path().join("results"));
-    [&scenes, &results].into_iter().for_each(|own| std::fs::create_dir(own).unwrap());
+    [&scenes, &results].into_iter().for_each(|path| std::fs::create_dir(path).unwrap());
     let table = "# \"measured\"\r\nx_m,force_n\n-2,-6\n-1,0\n0,0\n1,0\n2,6\n";
     let record = "t_s,accel_m_per_s2\n0,0\n1,3\n2,-3\n";
     std::fs::write(scenes.join("t.csv"), table).unwrap();

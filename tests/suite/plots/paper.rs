@@ -15,25 +15,25 @@ fn bytes(line: &str, folder: &Path, name: &str) -> Vec<u8> {
 
 /// What made the picture, from the metadata of a PNG or an SVG.
 fn made(path: &Path) -> serde_json::Value {
-    let text = if path.extension().is_some_and(|own| own == "png") {
+    let text = if path.extension().is_some_and(|ending| ending == "png") {
         let file = std::io::BufReader::new(fs::File::open(path).unwrap());
         let reader = png::Decoder::new(file).read_info().unwrap();
         let chunks = &reader.info().utf8_text;
-        let own = chunks.iter().find(|own| own.keyword == "Description").unwrap();
-        own.get_text().unwrap()
+        let description = chunks.iter().find(|chunk| chunk.keyword == "Description").unwrap();
+        description.get_text().unwrap()
     } else {
         let svg = fs::read_to_string(path).unwrap();
-        let own = svg.split("<metadata>").nth(1).unwrap().split("</metadata>").next().unwrap();
-        own.replace("&lt;", "<").replace("&gt;", ">").replace("&amp;", "&")
+        let metadata = svg.split("<metadata>").nth(1).unwrap().split("</metadata>").next().unwrap();
+        metadata.replace("&lt;", "<").replace("&gt;", ">").replace("&amp;", "&")
     };
     serde_json::from_str(&text).unwrap()
 }
 
 /// A text of an SVG as it stands: its words, and left, upper, right and lower edge of its box, about.
 fn boxes(svg: &str) -> Vec<(String, [f64; 4])> {
-    let texts = svg.split("<text ").skip(1).map(|own| own.split("</text>").next().unwrap());
-    let box_of = |own: &str| {
-        let (tag, words) = own.split_once('>').unwrap();
+    let texts = svg.split("<text ").skip(1).map(|piece| piece.split("</text>").next().unwrap());
+    let box_of = |piece: &str| {
+        let (tag, words) = piece.split_once('>').unwrap();
         let value = |name: &str| {
             let rest = tag.split(&format!("{name}=\"")).nth(1)?;
             rest.split('"').next().map(str::to_owned)
@@ -41,7 +41,7 @@ fn boxes(svg: &str) -> Vec<(String, [f64; 4])> {
         let number = |name: &str| value(name).unwrap().parse::<f64>().unwrap();
         let (x, y, size) = (number(" x").max(0.0), number(" y"), number("font-size"));
         let signs = [("&lt;", "<"), ("&gt;", ">"), ("&apos;", "'"), ("&quot;", "\""), ("&amp;", "&")];
-        let words = signs.iter().fold(words.trim().to_owned(), |own, (sign, is)| own.replace(sign, is));
+        let words = signs.iter().fold(words.trim().to_owned(), |text, (sign, is)| text.replace(sign, is));
         // an average letter is about half an em wide, a capital 0.73 em high
         let long = 0.47 * size * words.chars().count() as f64;
         let before = match value("text-anchor").unwrap().as_str() {
@@ -57,7 +57,7 @@ fn boxes(svg: &str) -> Vec<(String, [f64; 4])> {
         };
         (words, area)
     };
-    texts.map(|own| box_of(&format!(" {own}"))).collect()
+    texts.map(|piece| box_of(&format!(" {piece}"))).collect()
 }
 
 #[test]
@@ -79,14 +79,14 @@ fn a_width_in_mm_and_a_size_in_points_hold_on_paper() {
         let view = svg.split("viewBox=\"").nth(1).unwrap().split('"').next().unwrap();
         view.split(' ').nth(2).unwrap().parse().unwrap()
     };
-    let tick = svg.split("<text ").find(|own| own.contains("stable equilibrium")).unwrap();
+    let tick = svg.split("<text ").find(|piece| piece.contains("stable equilibrium")).unwrap();
     let size = tick.split("font-size=\"").nth(1).unwrap().split('"').next().unwrap();
     let points = size.parse::<f64>().unwrap() / units * 85.0 / 25.4 * 72.0;
     assert!((points - 8.0).abs() < 1e-3, "{points}");
     let pdf = bytes(&line, folder.path(), "a.pdf");
     let pdf = String::from_utf8_lossy(&pdf).into_owned();
     let page = pdf.split("/MediaBox [").nth(1).unwrap().split(']').next().unwrap();
-    let sides: Vec<f64> = page.split(' ').map(|own| own.parse().unwrap()).collect();
+    let sides: Vec<f64> = page.split(' ').map(|side| side.parse().unwrap()).collect();
     assert!((sides[2] - 85.0 / 25.4 * 72.0).abs() < 1e-3 && (sides[3] - 100.0 / 25.4 * 72.0).abs() < 1e-3);
     // text is text, in a font that is in the file, without a date
     assert!(pdf.contains("Inter-Regular") && pdf.contains("/ToUnicode") && pdf.contains("/FontFile"));
@@ -130,7 +130,7 @@ fn no_text_lies_on_another_at_any_size() {
             let path = plot(&format!("{line} {size}"), folder.path(), "a.svg");
             let svg = fs::read_to_string(path).unwrap();
             let view = svg.split("viewBox=\"").nth(1).unwrap().split('"').next().unwrap();
-            let canvas: Vec<f64> = view.split(' ').map(|own| own.parse().unwrap()).collect();
+            let canvas: Vec<f64> = view.split(' ').map(|side| side.parse().unwrap()).collect();
             let boxes = boxes(&svg);
             assert!(boxes.len() > 8, "{line}: {boxes:?}");
             for (i, (words, a)) in boxes.iter().enumerate() {
@@ -151,24 +151,29 @@ fn the_arguments_in_a_picture_make_it_again_byte_for_byte() {
     let map = format!("{SMALL_MAP} {PAPER} --jobs 1");
     for line in ["curve --set mass_g=14 --dark", "simulate paper --tolerance 1e-6 --no-title", &map] {
         for kind in ["png", "svg", "pdf"] {
-            let own = bytes(line, folder.path(), &format!("a.{kind}"));
-            assert!(own == bytes(line, other.path(), &format!("b.{kind}")));
+            let original = bytes(line, folder.path(), &format!("a.{kind}"));
+            assert!(original == bytes(line, other.path(), &format!("b.{kind}")));
             // that of a PDF is not read here: its arguments are those of the PNG
             let read = if kind == "pdf" { "c.png".to_owned() } else { format!("a.{kind}") };
             let from = plot(line, folder.path(), &read);
             let made = made(&from);
-            let arguments: Vec<&str> =
-                made["arguments"].as_array().unwrap().iter().map(|own| own.as_str().unwrap()).collect();
+            let arguments: Vec<&str> = made["arguments"]
+                .as_array()
+                .unwrap()
+                .iter()
+                .map(|argument| argument.as_str().unwrap())
+                .collect();
             assert!(
-                !arguments.iter().any(|own| ["--jobs", "--quiet", "--out"].contains(own)),
+                !arguments.iter().any(|argument| ["--jobs", "--quiet", "--out"].contains(argument)),
                 "{arguments:?}"
             );
-            let arguments = arguments.iter().map(|own| own.replace("plot.png", &format!("plot.{kind}")));
+            let arguments =
+                arguments.iter().map(|argument| argument.replace("plot.png", &format!("plot.{kind}")));
             let mut again = assert_cmd::Command::cargo_bin("interwell").unwrap();
             again.args(arguments).args(["--out", "/dev/null", "--quiet", "--jobs", "2"]);
             again.current_dir(other.path()).assert().success();
             let again = fs::read(other.path().join(format!("plot.{kind}"))).unwrap();
-            assert!(own == again, "{line} {kind}");
+            assert!(original == again, "{line} {kind}");
         }
     }
 }
@@ -187,8 +192,8 @@ fn a_picture_says_what_made_it() {
         // the scene's text runs, and has every argument applied
         let scene = folder.path().join("again.ron");
         fs::write(&scene, made["scene_ron"].as_str().unwrap()).unwrap();
-        let own = stdout(&format!("simulate {}", scene.display()));
-        assert_eq!(own, stdout(line));
+        let output = stdout(&format!("simulate {}", scene.display()));
+        assert_eq!(output, stdout(line));
     }
     let pdf = bytes(line, folder.path(), "a.pdf");
     let pdf = String::from_utf8_lossy(&pdf).into_owned();
@@ -258,8 +263,8 @@ fn the_data_of_a_picture_are_the_rows_that_it_shows() {
             "series,amplitude_g,x_m,stable,event\nbranch,0.05,",
         ),
     ] {
-        let own = drawn(line);
-        assert!(own.starts_with(header) && own.lines().count() > 9, "{line}: {}", &own[..200.min(own.len())]);
+        let csv = drawn(line);
+        assert!(csv.starts_with(header) && csv.lines().count() > 9, "{line}: {}", &csv[..200.min(csv.len())]);
     }
     refused(headless("curve --plot-data x.csv"), &["--plot"]);
     let folder = tempfile::tempdir().unwrap();
@@ -286,8 +291,8 @@ fn a_map_is_shown_as_a_surface_and_with_cuts() {
     let release = series(&data, "cut_release");
     let least = stdout("threshold paper --of release --set stops.travel_limit_mm=2 --quiet");
     let least: f64 = least.lines().nth(1).unwrap().split(',').nth(1).unwrap().parse().unwrap();
-    let own: f64 = release.iter().find(|row| row[1] == "2").unwrap()[2].parse().unwrap();
-    assert!((own / least - 1.0).abs() < 1e-4, "{own} {least}");
+    let found: f64 = release.iter().find(|row| row[1] == "2").unwrap()[2].parse().unwrap();
+    assert!((found / least - 1.0).abs() < 1e-4, "{found} {least}");
     assert_eq!(release.iter().filter(|row| row[2] == "1.25").count(), 2);
 
     let folder = tempfile::tempdir().unwrap();

@@ -82,26 +82,28 @@ fn wobble(model: &Model, share: f64) -> Excitation {
 fn moved(scene: &Scene, model: &Model, share: f64) -> Vec<Scene> {
     let mut all = Vec::new();
     let mut with = |change: &dyn Fn(&mut Scene)| {
-        let mut own = scene.clone();
-        change(&mut own);
-        all.push(own);
+        let mut changed = scene.clone();
+        change(&mut changed);
+        all.push(changed);
     };
-    with(&|own| own.mass_g *= 1.0 + share);
-    with(&|own| shake(&mut own.excitation, 1.0 + share));
-    with(&|own| match &mut own.damping {
+    with(&|changed| changed.mass_g *= 1.0 + share);
+    with(&|changed| shake(&mut changed.excitation, 1.0 + share));
+    with(&|changed| match &mut changed.damping {
         Damping::None => {}
         Damping::Ratio(xi) => *xi *= 1.0 + share,
         Damping::Coefficient { c_n_s_per_m } => *c_n_s_per_m *= 1.0 + share,
     });
-    with(&|own| {
-        for path in numeric_fields(own).iter().filter(|path| path.starts_with("stops.restitution")) {
+    with(&|changed| {
+        for path in numeric_fields(changed).iter().filter(|path| path.starts_with("stops.restitution")) {
             let field = FieldPath::new(path);
-            let Some(restitution) = field.get(own) else { continue };
-            assert!(field.set(own, (restitution * (1.0 - share)).min(1.0)));
+            let Some(restitution) = field.get(changed) else { continue };
+            assert!(field.set(changed, (restitution * (1.0 - share)).min(1.0)));
         }
     });
-    with(&|own| own.excitation = Excitation::Sum(vec![own.excitation.clone(), wobble(model, share)]));
-    let [left, right] = distances(&scene.stops).map(|own| own.0 * 1e3);
+    with(&|changed| {
+        changed.excitation = Excitation::Sum(vec![changed.excitation.clone(), wobble(model, share)])
+    });
+    let [left, right] = distances(&scene.stops).map(|distance| distance.0 * 1e3);
     if let Start::At { x_mm: x, v_m_per_s: v, .. } = scene.start {
         let (dx, dv) = (share * model.scales().length * 1e3, share * model.scales().speed);
         // A mass beside a stop is moved inward for either sign: what that moves is then no smooth answer.
@@ -111,10 +113,10 @@ fn moved(scene: &Scene, model: &Model, share: f64) -> Vec<Scene> {
             () if inward(-left) => (dx.abs(), dv.abs()),
             () => (dx, dv),
         };
-        with(&|own| {
-            own.start = Start::At { x_mm: (x + dx).clamp(-left, right), v_m_per_s: v, electrical: 0.0 }
+        with(&|changed| {
+            changed.start = Start::At { x_mm: (x + dx).clamp(-left, right), v_m_per_s: v, electrical: 0.0 }
         });
-        with(&|own| own.start = Start::At { x_mm: x, v_m_per_s: v + dv, electrical: 0.0 });
+        with(&|changed| changed.start = Start::At { x_mm: x, v_m_per_s: v + dv, electrical: 0.0 });
     }
     all
 }
@@ -125,10 +127,10 @@ fn conditioning(scene: &Scene, times: &[f64], share: f64, struck: bool) -> Optio
     let request = Request { sample_times: times, ..Request::default() };
     let base = model(scene)?;
     let answer = |scene: &Scene| {
-        let own = model(scene)?.with_tolerance(TIGHT);
-        let run = own.run(&request);
+        let tight = model(scene)?.with_tolerance(TIGHT);
+        let run = tight.run(&request);
         let mut numbers = numbers(&base, &run, struck);
-        if own.forcing_period() != base.forcing_period() {
+        if tight.forcing_period() != base.forcing_period() {
             numbers.pop();
         }
         (run.summary.outcome == Outcome::Done).then_some(numbers)
@@ -157,32 +159,32 @@ fn the_error_is_bounded_by_conditioning_and_tolerance() {
     let coarse = RefCell::new(Vec::new());
     let name = "the_error_is_bounded_by_conditioning_and_tolerance";
     hold(name, 1000, 0.6, scene_with(stops, excitation()), |scene| {
-        let Some(own) = model(scene) else { return Ok(false) };
+        let Some(model) = model(scene) else { return Ok(false) };
         let end = scene.run.duration_s;
         let times: Vec<f64> = (1..=16).map(|i| (end * f64::from(i) / 16.0).min(end)).collect();
         let request = Request { sample_times: &times, ..Request::default() };
-        let run = own.run(&request);
+        let run = model.run(&request);
         let struck = run.summary.total_impacts + run.summary.rests > 0;
         if run.summary.outcome != Outcome::Done || run.summary.steps > 2000 {
             return Ok(false);
         }
-        let tolerance = own.tolerance();
+        let tolerance = model.tolerance();
         let Some(k) = conditioning(scene, &times, tolerance.max(1e-9), struck) else { return Ok(false) };
         if k * tolerance > LINEAR {
             return Ok(false);
         }
-        let exact = numbers(&own, &own.run_reference(&request, REFERENCE), struck);
-        let per_scale = (run.summary.steps as f64 * own.scales().time / end).max(1.0);
+        let exact = numbers(&model, &model.run_reference(&request, REFERENCE), struck);
+        let per_scale = (run.summary.steps as f64 * model.scales().time / end).max(1.0);
         let bound = k * (tolerance + STEP_ERROR * per_scale);
-        let ratio = far(&numbers(&own, &run, struck), &exact) / bound;
+        let ratio = far(&numbers(&model, &run, struck), &exact) / bound;
         found.borrow_mut().push((ratio, text(scene)));
-        let own = own.with_tolerance(100.0 * tolerance);
-        let ratio = far(&numbers(&own, &own.run(&request), struck), &exact) / bound;
+        let loose = model.with_tolerance(100.0 * tolerance);
+        let ratio = far(&numbers(&loose, &loose.run(&request), struck), &exact) / bound;
         coarse.borrow_mut().push((ratio, text(scene)));
         Ok(true)
     });
-    let (own, coarse) = (sorted(found.into_inner()), sorted(coarse.into_inner()));
-    for (what, all) in [("at the tolerance", &own), ("at 100 times the tolerance", &coarse)] {
+    let (fine, coarse) = (sorted(found.into_inner()), sorted(coarse.into_inner()));
+    for (what, all) in [("at the tolerance", &fine), ("at 100 times the tolerance", &coarse)] {
         let part = |share: f64| &all[((all.len() - 1) as f64 * share) as usize];
         println!(
             "{what}: median {:.1e}, 99 of 100 {:.1e}, worst {:.1e} of\n{}",
@@ -192,9 +194,9 @@ fn the_error_is_bounded_by_conditioning_and_tolerance() {
             part(1.0).1
         );
     }
-    let (middle, last) = (own.len() / 2, own.len() - 1);
-    assert!(own[middle].0 <= MEDIAN, "the median is {:e}", own[middle].0);
-    assert!(own[last].0 <= WORST, "{:e} at worst, of\n{}", own[last].0, own[last].1);
+    let (middle, last) = (fine.len() / 2, fine.len() - 1);
+    assert!(fine[middle].0 <= MEDIAN, "the median is {:e}", fine[middle].0);
+    assert!(fine[last].0 <= WORST, "{:e} at worst, of\n{}", fine[last].0, fine[last].1);
     // The bounds mean something: they do not hold of runs at a hundred times the tolerance.
     assert!(
         coarse[middle].0 > MEDIAN && coarse[last].0 > WORST,

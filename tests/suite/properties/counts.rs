@@ -45,31 +45,31 @@ fn impacts_are_counted_alike_by_runs_orbits_and_sections_at_any_tolerance() {
         let changes: Vec<&str> = fields.iter().map(String::as_str).chain(["run.duration_s=30"]).collect();
         let document = changed(NAMES[drawn.0], &changes);
         let model = build(&document);
-        let Some(own) = clear(&model) else { return Ok(false) };
-        if own.total_impacts == 0 {
+        let Some(expected) = clear(&model) else { return Ok(false) };
+        if expected.total_impacts == 0 {
             return Ok(false);
         }
-        impacts.set(impacts.get() + own.impacts);
-        rests.set(rests.get() + own.rests);
+        impacts.set(impacts.get() + expected.impacts);
+        rests.set(rests.get() + expected.rests);
         // a periodic motion, at its own finer tolerance
         let found = orbit(&model, 0.0, None, &AtomicBool::new(false));
         let found = found.map_err(|error| TestCaseError::fail(error.to_string()))?;
-        prop_assert_eq!(Some(found.period), own.period);
-        let laps = own.periods / u64::from(found.period);
-        if own.periods == laps * u64::from(found.period) {
-            prop_assert_eq!(found.passage.impacts * laps, own.impacts);
+        prop_assert_eq!(Some(found.period), expected.period);
+        let laps = expected.periods / u64::from(found.period);
+        if expected.periods == laps * u64::from(found.period) {
+            prop_assert_eq!(found.passage.impacts * laps, expected.impacts);
         }
         let options =
             SectionOptions { at: SectionAt::Impacts, periods: None, until_settled: None, carry: None };
         let (table, summary) = section(&model, &document.scene, &options, &AtomicBool::new(false)).unwrap();
-        prop_assert_eq!((table.rows() as u64, summary.impacts), (own.impacts, own.impacts));
+        prop_assert_eq!((table.rows() as u64, summary.impacts), (expected.impacts, expected.impacts));
         for tolerance in [1e-6, 1e-7, 1e-8, 1e-10, 1e-12, 1e-14] {
             let other = model.with_tolerance(tolerance);
             let Some(other) = clear(&other) else { continue };
             // the same motion: where the start leads depends on the tolerance beside a border of basins
-            let (a, b) = (own.rms_velocity.unwrap(), other.rms_velocity.unwrap());
-            if other.period == own.period && (a / b - 1.0).abs() < 1e-5 {
-                prop_assert_eq!(other.impacts, own.impacts, "{}", tolerance);
+            let (a, b) = (expected.rms_velocity.unwrap(), other.rms_velocity.unwrap());
+            if other.period == expected.period && (a / b - 1.0).abs() < 1e-5 {
+                prop_assert_eq!(other.impacts, expected.impacts, "{}", tolerance);
                 compared.set(compared.get() + 1);
             }
         }
@@ -88,14 +88,14 @@ fn the_prototype_has_26_impacts_a_period_at_every_tolerance() {
         for tolerance in [1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12, 1e-13, 1e-14] {
             let tolerance = format!("run.tolerance={tolerance:e}");
             let model = build(&changed("paper", &[&tolerance, stops]));
-            let own = model.run(&Request::default()).summary;
+            let summary = model.run(&Request::default()).summary;
             assert_eq!(
-                (own.impacts, own.total_impacts),
+                (summary.impacts, summary.total_impacts),
                 (reference.impacts, reference.total_impacts),
                 "{tolerance}"
             );
             let found = orbit(&model, 0.0, None, &AtomicBool::new(false)).unwrap();
-            assert_eq!(found.passage.impacts * own.periods, own.impacts, "{tolerance} {stops}");
+            assert_eq!(found.passage.impacts * summary.periods, summary.impacts, "{tolerance} {stops}");
             if stops == even {
                 assert_eq!(found.passage.impacts, 26, "{tolerance}");
             }

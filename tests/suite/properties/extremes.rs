@@ -25,12 +25,14 @@ fn magnitude(low: i32, high: i32) -> impl Strategy<Value = f64> {
         1 => Just(10f64.powi(low)),
         1 => Just(10f64.powi(high)),
     ]
-    .prop_map(move |own| own.clamp(format!("1e{low}").parse().unwrap(), format!("1e{high}").parse().unwrap()))
+    .prop_map(move |value| {
+        value.clamp(format!("1e{low}").parse().unwrap(), format!("1e{high}").parse().unwrap())
+    })
 }
 
 fn signed(low: i32, high: i32) -> impl Strategy<Value = f64> {
     (magnitude(low, high), prop_oneof![4 => Just(1.0), 4 => Just(-1.0), 1 => Just(0.0), 1 => Just(-0.0)])
-        .prop_map(|(own, sign)| own * sign)
+        .prop_map(|(value, sign)| value * sign)
 }
 
 /// Coefficients go to 1e30 and not to the 1e200 that a scene accepts, and so with the other numbers of which
@@ -133,20 +135,21 @@ fn scene() -> impl Strategy<Value = Scene> {
 /// The model of a scene that can be run, over so many of its own times as its duration says. A start beyond a
 /// stop is put on it.
 fn model(scene: &Scene) -> Option<Model> {
-    let mut own = scene.clone();
-    if let Start::At { x_mm, .. } = &mut own.start {
+    let mut placed = scene.clone();
+    if let Start::At { x_mm, .. } = &mut placed.start {
         let side = |path: &str| FieldPath::new(path).get(scene);
         let both = side("stops.travel_limit_mm");
         let left = side("stops.left_mm").or(both).unwrap_or(f64::INFINITY);
         let right = side("stops.right_mm").or(both).unwrap_or(f64::INFINITY);
         *x_mm = x_mm.clamp(-left, right);
     }
-    let build =
-        |own: &Scene| check(own).faults.is_empty().then(|| Model::build(own, built(&own.mechanism)).ok())?;
-    own.run.duration_s = 1e-15;
-    let time = build(&own)?.scales().time;
-    own.run.duration_s = (scene.run.duration_s * time).clamp(1e-15, 1e9);
-    build(&own)
+    let build = |drawn: &Scene| {
+        check(drawn).faults.is_empty().then(|| Model::build(drawn, built(&drawn.mechanism)).ok())?
+    };
+    placed.run.duration_s = 1e-15;
+    let time = build(&placed)?.scales().time;
+    placed.run.duration_s = (scene.run.duration_s * time).clamp(1e-15, 1e9);
+    build(&placed)
 }
 
 /// Its first steps: most of these scenes would go on until their budget, and the first moments are the ones

@@ -63,12 +63,12 @@ pub fn built(mechanism: &Mechanism) -> Arc<Built> {
         return build();
     }
     let mut kept = KEPT.get_or_init(Mutex::default).lock().unwrap();
-    if let Some((_, own)) = kept.iter().find(|(known, _)| known == mechanism) {
-        return own.clone();
+    if let Some((_, found)) = kept.iter().find(|(known, _)| known == mechanism) {
+        return found.clone();
     }
-    let own = build();
-    kept.push((mechanism.clone(), own.clone()));
-    own
+    let made = build();
+    kept.push((mechanism.clone(), made.clone()));
+    made
 }
 
 /// F of a mass of 1, with distances of the wells of about 1: to be measured in units later.
@@ -137,8 +137,8 @@ pub fn mechanism() -> impl Strategy<Value = (Mechanism, Units)> {
         1 => (power(), power(), power()).prop_map(|(mass, length, time)| Units { mass, length, time }),
     ];
     prop_oneof![
-        8 => (formula(), units).prop_map(|(own, units)| (units.mechanism(&own), units)),
-        1 => table().prop_map(|own| (own, PROTOTYPE)),
-        1 => flexures().prop_map(|own| (own, PROTOTYPE)),
+        8 => (formula(), units).prop_map(|(mechanism, units)| (units.mechanism(&mechanism), units)),
+        1 => table().prop_map(|mechanism| (mechanism, PROTOTYPE)),
+        1 => flexures().prop_map(|mechanism| (mechanism, PROTOTYPE)),
     ]
 }

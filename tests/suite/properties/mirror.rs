@@ -28,9 +28,9 @@ fn opposite(excitation: &Excitation) -> Option<Excitation> {
         }
         Excitation::Recorded { path, record } => Excitation::Recorded {
             path: path.clone(),
-            record: record.as_ref().map(|own| {
-                let accelerations = own.accelerations.iter().map(|a| -a).collect();
-                Arc::new(Record::new(own.times.clone(), accelerations))
+            record: record.as_ref().map(|original| {
+                let accelerations = original.accelerations.iter().map(|a| -a).collect();
+                Arc::new(Record::new(original.times.clone(), accelerations))
             }),
         },
         Excitation::Sum(parts) => Excitation::Sum(parts.iter().map(opposite).collect::<Option<_>>()?),

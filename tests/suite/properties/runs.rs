@@ -44,10 +44,10 @@ fn any_scene_runs_soundly() {
 fn a_mirrored_scene_has_the_mirrored_run() {
     hold("a_mirrored_scene_has_the_mirrored_run", 1000, 0.5, scene(), |scene| {
         let Some(image) = image(scene) else { return Ok(false) };
-        let (Some(own), Some(other)) = (model(scene), model(&image)) else { return Ok(false) };
+        let (Some(plain), Some(other)) = (model(scene), model(&image)) else { return Ok(false) };
         let times = times(scene, 100);
         let request = Request { sample_times: &times, events: true, ledger: true, ..Request::default() };
-        same_in_a_mirror(&own.run(&request), &other.run(&request))?;
+        same_in_a_mirror(&plain.run(&request), &other.run(&request))?;
         Ok(true)
     });
 }
@@ -70,16 +70,16 @@ fn a_stop_that_is_never_reached_changes_no_bit() {
     hold("a_stop_that_is_never_reached_changes_no_bit", 1000, 0.6, scenes, |scene| {
         let mut open = scene.clone();
         open.run.settle_s = Some(0.0);
-        let Some(own) = model(&open) else { return Ok(false) };
+        let Some(open_model) = model(&open) else { return Ok(false) };
         let times = times(scene, 100);
         let request = Request { sample_times: &times, events: true, ledger: true, ..Request::default() };
-        let run = own.run(&request);
+        let run = open_model.run(&request);
         if run.summary.outcome != Outcome::Done {
             return Ok(false);
         }
         // The reach is that of the settled window, which is all of the run where the drive has no period.
         let seen = run.samples.iter().fold(run.summary.max_abs_x.unwrap(), |most, s| most.max(s.x.abs()));
-        let beyond = if own.forcing_period().is_none() { 1.0 + 1e-9 } else { 1.5 };
+        let beyond = if open_model.forcing_period().is_none() { 1.0 + 1e-9 } else { 1.5 };
         let just = (seen * 1e3 * beyond).max(1e-12);
         let hertz = Stops::Hertz {
             travel_limit_mm: just * 1.5,
@@ -108,7 +108,7 @@ fn a_stop_that_is_never_reached_changes_no_bit() {
             let Some(stopped_model) = model(&stopped) else { continue };
             // Stops far inside all that the mass could do otherwise set the scale: it is soon at one of them,
             // unless the run is shorter.
-            if stopped_model.scales() != own.scales() {
+            if stopped_model.scales() != open_model.scales() {
                 continue;
             }
             let mut watched = stopped_model.run(&request);

@@ -60,8 +60,8 @@ pub fn rigid_stops() -> impl Strategy<Value = Stops> {
         2 => (distance(), restitution())
             .prop_map(|(travel_limit_mm, restitution)| Stops::Rigid { travel_limit_mm, restitution }),
         1 => (side(), distance(), any::<bool>(), given(), restitution()).prop_map(
-            |(other, own, swap, left, right)| {
-                let (left_mm, right_mm) = if swap { (Some(own), other) } else { (other, Some(own)) };
+            |(other, one, swap, left, right)| {
+                let (left_mm, right_mm) = if swap { (Some(one), other) } else { (other, Some(one)) };
                 Stops::Uneven { left_mm, right_mm, restitution_left: left, restitution_right: Some(right) }
             }
         ),

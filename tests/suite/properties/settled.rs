@@ -33,24 +33,38 @@ fn strobes(model: &Model, summary: &Summary) -> Option<Vec<(f64, f64)>> {
 }
 
 /// What a summary says of one motion agrees with itself.
-fn agrees_with_itself(model: &Model, own: &Summary) -> Verdict {
-    let rests = own.regime == Regime::Rest
-        || (own.regime == Regime::OneWell
-            && own.travel().is_some_and(|way| way <= 1e-12 * model.scales().length));
-    match own.settled {
-        None => prop_assert!(own.period.is_none() && own.settles_at.is_none() && own.steady.is_none()),
+fn agrees_with_itself(model: &Model, summary: &Summary) -> Verdict {
+    let rests = summary.regime == Regime::Rest
+        || (summary.regime == Regime::OneWell
+            && summary.travel().is_some_and(|way| way <= 1e-12 * model.scales().length));
+    match summary.settled {
+        None => {
+            prop_assert!(summary.period.is_none() && summary.settles_at.is_none() && summary.steady.is_none())
+        }
         Some(true) => {
-            prop_assert!(own.outcome == Outcome::Done && own.steady == Some(true), "{:?}", own);
-            prop_assert!(own.period.is_some() || rests || own.rested_share == Some(1.0), "{:?}", own);
-            prop_assert!(own.settles_at.is_none_or(|at| at <= own.window.0 * (1.0 + 1e-12)), "{:?}", own);
+            prop_assert!(summary.outcome == Outcome::Done && summary.steady == Some(true), "{:?}", summary);
+            prop_assert!(
+                summary.period.is_some() || rests || summary.rested_share == Some(1.0),
+                "{:?}",
+                summary
+            );
+            prop_assert!(
+                summary.settles_at.is_none_or(|at| at <= summary.window.0 * (1.0 + 1e-12)),
+                "{:?}",
+                summary
+            );
         }
         Some(false) => {
-            prop_assert!(own.period.is_none() && own.settles_at.is_none(), "{:?}", own);
-            prop_assert!(!(rests && own.periods > 0 && own.outcome == Outcome::Done), "{:?}", own);
+            prop_assert!(summary.period.is_none() && summary.settles_at.is_none(), "{:?}", summary);
+            prop_assert!(
+                !(rests && summary.periods > 0 && summary.outcome == Outcome::Done),
+                "{:?}",
+                summary
+            );
         }
     }
-    if own.period.is_some() {
-        prop_assert!(own.settled == Some(true) && own.settles_at.is_some(), "{:?}", own);
+    if summary.period.is_some() {
+        prop_assert!(summary.settled == Some(true) && summary.settles_at.is_some(), "{:?}", summary);
     }
     Ok(())
 }
@@ -66,13 +80,17 @@ fn a_motion_has_settled_where_its_states_come_back_or_it_rests() {
         if let Some(period) = model.forcing_period().filter(short).filter(|_| !elastic(&scene.stops)) {
             model = model.with_duration(60.0 * period, 30.0 * period);
         }
-        let own = model.run(&Request::default()).summary;
-        agrees_with_itself(&model, &own)?;
-        if !model.repeats() || own.outcome != Outcome::Done || own.periods < 2 || own.periods > 400 {
+        let summary = model.run(&Request::default()).summary;
+        agrees_with_itself(&model, &summary)?;
+        if !model.repeats()
+            || summary.outcome != Outcome::Done
+            || summary.periods < 2
+            || summary.periods > 400
+        {
             return Ok(true);
         }
         periodic.set(periodic.get() + 1);
-        let Some(states) = strobes(&model, &own) else { return Ok(true) };
+        let Some(states) = strobes(&model, &summary) else { return Ok(true) };
         let comes_back = |q: usize, within: f64| {
             states.windows(q + 1).all(|pair| apart(&model, pair[0], pair[q]) <= within)
         };
@@ -83,16 +101,20 @@ fn a_motion_has_settled_where_its_states_come_back_or_it_rests() {
         };
         // within rounding of the times at which the samples are taken
         let most = MATCH * (1.0 + 1e-6);
-        match own.period {
+        match summary.period {
             Some(q) => {
                 let q = q as usize;
                 repeat.set(repeat.get() + 1);
-                prop_assert!(2 * q < states.len() && comes_back(q, most) && drift(q) <= most, "{:?}", own);
+                prop_assert!(
+                    2 * q < states.len() && comes_back(q, most) && drift(q) <= most,
+                    "{:?}",
+                    summary
+                );
             }
             // states that stand still over the whole window are not passed over
             None => {
                 let still = comes_back(1, 1e-6) && drift(1) <= 1e-6;
-                prop_assert!(own.settled == Some(true) || !still, "{:?}", own);
+                prop_assert!(summary.settled == Some(true) || !still, "{:?}", summary);
             }
         }
         Ok(true)
@@ -113,27 +135,27 @@ fn a_verdict_does_not_depend_on_how_it_is_computed() {
         let short = model.with_duration(9.0 * period, period).with_recurrence(true);
         for until_settled in [None, Some(60.0 * period)] {
             let request = Request { until_settled, ..Request::default() };
-            let own = short.run(&request).summary;
-            agrees_with_itself(&short, &own)?;
+            let summary = short.run(&request).summary;
+            agrees_with_itself(&short, &summary)?;
             let plain = short.with_recurrence(false).run(&request).summary;
-            recurs.set(recurs.get() + u32::from(own.steps < plain.steps));
-            let verdict = |own: &Summary| {
-                let Summary { regime, settled, steady, period, periods, .. } = *own;
+            recurs.set(recurs.get() + u32::from(summary.steps < plain.steps));
+            let verdict = |one: &Summary| {
+                let Summary { regime, settled, steady, period, periods, .. } = *one;
                 let counts =
-                    (own.crossings, own.impacts, own.releases, own.total_impacts, own.total_crossings);
+                    (one.crossings, one.impacts, one.releases, one.total_impacts, one.total_crossings);
                 (regime, settled, steady, period, periods, counts)
             };
-            if own.outcome == Outcome::Done && plain.outcome == Outcome::Done {
-                prop_assert_eq!(verdict(&own), verdict(&plain));
+            if summary.outcome == Outcome::Done && plain.outcome == Outcome::Done {
+                prop_assert_eq!(verdict(&summary), verdict(&plain));
                 let near = |a: f64, b: f64| (a - b).abs() <= 1e-9 * period;
-                prop_assert!(near(own.window.0, plain.window.0));
-                let same = own.settles_at.zip(plain.settles_at).map(|(a, b)| near(a, b));
-                prop_assert!(same.unwrap_or(own.settles_at == plain.settles_at));
+                prop_assert!(near(summary.window.0, plain.window.0));
+                let same = summary.settles_at.zip(plain.settles_at).map(|(a, b)| near(a, b));
+                prop_assert!(same.unwrap_or(summary.settles_at == plain.settles_at));
             }
             let together = Model::run_together(&vec![short.clone(); 3], &request);
             for mut other in together.into_iter().map(|run| run.summary) {
-                other.cpu_s = own.cpu_s;
-                prop_assert_eq!(format!("{other:?}"), format!("{own:?}"));
+                other.cpu_s = summary.cpu_s;
+                prop_assert_eq!(format!("{other:?}"), format!("{summary:?}"));
             }
         }
         Ok(true)
@@ -165,9 +187,9 @@ fn an_approach_has_settled_once_what_remains_is_small() {
             1e3 * start,
             duration * (1.0 + 1e-12)
         ));
-        let own = model.run(&Request::default()).summary;
-        prop_assert_eq!(own.periods, u64::from(*periods));
-        agrees_with_itself(&model, &own)?;
+        let summary = model.run(&Request::default()).summary;
+        prop_assert_eq!(summary.periods, u64::from(*periods));
+        agrees_with_itself(&model, &summary)?;
         // the steady motion, and what the start is off it
         let push = -0.1 * interwell::dynamics::STANDARD_GRAVITY;
         let (re, im) = (1.0 - rate * rate, 2.0 * ratio * rate);
@@ -176,15 +198,15 @@ fn an_approach_has_settled_once_what_remains_is_small() {
         // the norm in which the transient shrinks evenly, within its swing of some ratios
         let remains = |t: f64| (-ratio * t).exp() * x.hypot(v) / model.scales().length;
         let (first, last) = (remains(settle), remains(duration));
-        if own.period.is_some() {
+        if summary.period.is_some() {
             settled.set(settled.get() + 1);
             // Three states may agree by chance while the transient turns; what is known is what it shrinks
             // by over half a window.
             let half = (-ratio * 0.5 * f64::from(*periods) * period).exp();
-            prop_assert!(last <= 3.0 * MATCH || half > 0.98, "{} remains of {}, {:?}", last, first, own);
+            prop_assert!(last <= 3.0 * MATCH || half > 0.98, "{} remains of {}, {:?}", last, first, summary);
         } else {
             open.set(open.get() + 1);
-            prop_assert!(first > 0.1 * MATCH, "{} remains of {}, {:?}", last, first, own);
+            prop_assert!(first > 0.1 * MATCH, "{} remains of {}, {:?}", last, first, summary);
         }
         Ok(true)
     });

@@ -52,10 +52,10 @@ pub fn finite(model: &Model, run: &Run) -> Verdict {
         return Ok(());
     }
     for s in &run.samples {
-        prop_assert!([s.t, s.x, s.v, s.base_accel].iter().all(|own| own.is_finite()), "{:?}", s);
+        prop_assert!([s.t, s.x, s.v, s.base_accel].iter().all(|number| number.is_finite()), "{:?}", s);
     }
     for e in &run.events {
-        prop_assert!([e.t, e.v_in, e.v_out].iter().all(|own| own.is_finite()), "{:?}", e);
+        prop_assert!([e.t, e.v_in, e.v_out].iter().all(|number| number.is_finite()), "{:?}", e);
     }
     let Summary { final_x, final_v, rms_velocity, max_abs_x, impact_share, rested_share, .. } = run.summary;
     let Summary { peak_contact_force, peak_contact_pressure, cpu_s, ledger, outcome, .. } = run.summary;
@@ -102,7 +102,7 @@ pub fn within_stops(scene: &Scene, run: &Run) -> Verdict {
 fn extremes_hold(model: &Model, run: &Run) -> Verdict {
     let (Some(reach), Some(travel)) = (run.summary.max_abs_x, run.summary.travel()) else { return Ok(()) };
     let periods = |period: f64| ((model.duration() - model.settle()) / period + 1e-9).floor() * period;
-    let length = model.forcing_period().map(periods).filter(|own| *own > 0.0);
+    let length = model.forcing_period().map(periods).filter(|span| *span > 0.0);
     let end = length.map_or(model.duration(), |length| model.settle() + length) * (1.0 - 1e-9);
     let inside = run.samples.iter().filter(|s| s.t >= model.settle() && s.t <= end);
     let (low, high) =
@@ -223,11 +223,11 @@ pub fn ledger_in_tolerances(model: &Model, run: &Run) -> f64 {
 fn ledger_closes(model: &Model, run: &Run, factor: f64) -> Verdict {
     // A motion that runs off to infinity has no energy left to compare.
     let gone = matches!(run.summary.outcome, Outcome::NotFinite { .. });
-    let own = ledger_in_tolerances(model, run);
+    let ratio = ledger_in_tolerances(model, run);
     prop_assert!(
-        gone || own <= factor,
+        gone || ratio <= factor,
         "{} tolerances of {:e}: {:?}",
-        own,
+        ratio,
         model.tolerance(),
         run.summary.ledger
     );

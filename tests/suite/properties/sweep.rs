@@ -59,7 +59,7 @@ fn a_sweep_is_the_same_bytes_for_any_number_of_threads() {
                 .unwrap();
             bytes.push(text);
         }
-        prop_assert!(bytes.iter().all(|own| *own == bytes[0] && own.lines().count() == 10), "{:?}", bytes);
+        prop_assert!(bytes.iter().all(|csv| *csv == bytes[0] && csv.lines().count() == 10), "{:?}", bytes);
         Ok(true)
     });
 }

@@ -191,7 +191,7 @@ fn what_a_threshold_names_is_what_its_runs_do() {
         };
         prop_assert!(told(&scene, value, until).0, "{found:?}");
         prop_assert!(each.iter().all(|(at, (crosses, _))| *at >= value || !crosses), "{found:?} {each:?}");
-        let above: Vec<bool> = each.iter().filter(|own| own.0 >= value).map(|own| own.1.0).collect();
+        let above: Vec<bool> = each.iter().filter(|tried| tried.0 >= value).map(|tried| tried.1.0).collect();
         let changes = above.windows(2).filter(|pair| pair[0] != pair[1]).count() as u64;
         prop_assert_eq!(found.windows, changes, "{:?} {:?}", found, each);
         for (named, does) in [(found.low, false), (found.high, true)] {
@@ -199,8 +199,9 @@ fn what_a_threshold_names_is_what_its_runs_do() {
             prop_assert_eq!(told(&scene, named, until), (does, true), "{:?} at {}", found, named);
         }
         prop_assert!(found.low.is_none_or(|low| low < value) && found.high.is_none_or(|high| high >= value));
-        let known = each.iter().filter(|own| own.1.1);
-        let known_low = known.clone().filter(|own| own.0 < value).map(|own| own.0).fold(-1.0, f64::max);
+        let known = each.iter().filter(|tried| tried.1.1);
+        let known_low =
+            known.clone().filter(|tried| tried.0 < value).map(|tried| tried.0).fold(-1.0, f64::max);
         prop_assert!(found.low.unwrap_or(-1.0) >= known_low, "{found:?} {each:?}");
         if found.undecided {
             undecided.set(undecided.get() + 1);

@@ -161,9 +161,9 @@ impl Units {
             },
             Excitation::Recorded { path, record } => Excitation::Recorded {
                 path: path.clone(),
-                record: record.as_ref().map(|own| {
-                    let times = own.times.iter().map(|t| self.seconds(*t)).collect();
-                    let accelerations = own.accelerations.iter();
+                record: record.as_ref().map(|original| {
+                    let times = original.times.iter().map(|t| self.seconds(*t)).collect();
+                    let accelerations = original.accelerations.iter();
                     let accelerations = accelerations.map(|a| self.gravities(*a) * STANDARD_GRAVITY);
                     Arc::new(Record::new(times, accelerations.collect()))
                 }),

@@ -71,9 +71,9 @@ fn piezo(coupling: f64, capacitance: f64, load: f64) -> Known {
 
 /// A linear oscillator of 1 kg, 1 N s/m and 400 N/m under 1 m/s^2 at the angular frequency `w`, on its steady
 /// orbit for some periods; and the squared amplitude of the state.
-fn steady(own: &Known, w: f64, tolerance: f64) -> (Model, f64) {
-    let electrical = (own.impedance)(w);
-    let k = Complex(own.coupling, 0.0);
+fn steady(known: &Known, w: f64, tolerance: f64) -> (Model, f64) {
+    let electrical = (known.impedance)(w);
+    let k = Complex(known.coupling, 0.0);
     let mechanical = Complex(1.0, w - 400.0 / w) + k * k / electrical;
     let v = Complex(-1.0, 0.0) / mechanical;
     let (x, state) = (v / Complex(0.0, w), k * v / electrical);
@@ -83,7 +83,7 @@ fn steady(own: &Known, w: f64, tolerance: f64) -> (Model, f64) {
          excitation: Sine(frequency_hz: {}, amplitude_g: {}), \
          start: At(x_mm: {}, v_m_per_s: {}, electrical: {}), \
          run: (duration_s: {}, settle_s: 0, tolerance: {tolerance})",
-        own.text,
+        known.text,
         w / TAU,
         1.0 / 9.80665,
         x.1 * 1e3,
@@ -94,14 +94,14 @@ fn steady(own: &Known, w: f64, tolerance: f64) -> (Model, f64) {
     (model(&text), state.squared())
 }
 
-fn is_steady(own: &Known, w: f64, bound: f64) {
-    let (model, squared) = steady(own, w, 1e-13);
+fn is_steady(known: &Known, w: f64, bound: f64) {
+    let (model, squared) = steady(known, w, 1e-13);
     let run = run(&model);
     assert_eq!(run.summary.outcome, Outcome::Done);
     let harvest = run.summary.harvest.unwrap();
-    near_relative(harvest.mean_load_power.unwrap(), 0.5 * own.load * squared, bound);
-    near(harvest.mean_coil_power.unwrap(), 0.5 * own.coil * squared, bound * own.coil * squared);
-    near_relative(harvest.voltage_rms.unwrap(), own.voltage * (0.5 * squared).sqrt(), bound);
+    near_relative(harvest.mean_load_power.unwrap(), 0.5 * known.load * squared, bound);
+    near(harvest.mean_coil_power.unwrap(), 0.5 * known.coil * squared, bound * known.coil * squared);
+    near_relative(harvest.voltage_rms.unwrap(), known.voltage * (0.5 * squared).sqrt(), bound);
     let ledger = run.summary.ledger.unwrap();
     assert!(ledger.energy_residual < 1e-11, "{ledger:?}");
 }

@@ -24,14 +24,14 @@ fn what_is_given_in_place_of_a_fast_circuit_is_the_same_to_the_share_that_is_sai
             "Electromagnetic(coupling_v_s_per_m: 20, coil_ohm: 0, load_ohm: 2000)",
         ),
     ] {
-        let own = preset("nominal-cubic", &[&with(fast), short[0], short[1]]);
-        let words = own.fast_circuit().unwrap();
+        let model = preset("nominal-cubic", &[&with(fast), short[0], short[1]]);
+        let words = model.fast_circuit().unwrap();
         assert!(words.contains(said), "{words}");
         let share: f64 = words.rsplit(' ').next().unwrap().parse().unwrap();
-        assert!(own.describe().contains(&words));
+        assert!(model.describe().contains(&words));
         let other = preset("nominal-cubic", &[&with(instead), short[0], short[1]]);
         assert_eq!((other.fast_circuit(), other.has_electrical_state()), (None, false));
-        let (a, b) = (run(&own).summary, run(&other).summary);
+        let (a, b) = (run(&model).summary, run(&other).summary);
         let (power, same) = (a.harvest.unwrap(), b.harvest.unwrap());
         assert!(a.impacts > 3 && power.mean_load_power > Some(0.0), "{a:?}");
         assert!(share < 1e-3, "{words}");
@@ -73,7 +73,7 @@ fn an_open_circuit_is_given_in_place_of_a_load_without_bounds() {
 #[test]
 fn a_coupling_that_holds_the_mass_fast_gives_no_number_without_a_word() {
     let held = "Electromagnetic(coupling_v_s_per_m: 1e12, coil_ohm: 40, load_ohm: 60, inductance_mh: 3)";
-    let own = run(&preset("paper", &[&with(held), "run.duration_s=0.5", "run.settle_s=0"])).summary;
-    let Outcome::Inaccurate { residual } = own.outcome else { panic!("{:?}", own.outcome) };
-    assert!(residual > 0.1 && own.max_abs_x == Some(1.5e-3), "{own:?}");
+    let summary = run(&preset("paper", &[&with(held), "run.duration_s=0.5", "run.settle_s=0"])).summary;
+    let Outcome::Inaccurate { residual } = summary.outcome else { panic!("{:?}", summary.outcome) };
+    assert!(residual > 0.1 && summary.max_abs_x == Some(1.5e-3), "{summary:?}");
 }

@@ -31,10 +31,10 @@ fn the_double_well_of_erturk_hoffmann_and_inman_is_chaotic_or_on_its_large_orbit
     assert_eq!((chaotic.regime, chaotic.period), (Regime::Irregular, None));
     assert_eq!((large.regime, large.period), (Regime::Interwell, Some(1)));
     assert_eq!(large.crossings, 800);
-    let power = |own: &interwell::dynamics::Summary| own.harvest.unwrap().mean_load_power.unwrap();
+    let power = |summary: &interwell::dynamics::Summary| summary.harvest.unwrap().mean_load_power.unwrap();
     assert!(power(&large) > 2.0 * power(&chaotic), "{} {}", power(&large), power(&chaotic));
-    for own in [chaotic, large] {
-        assert!(own.ledger.unwrap().energy_residual < 1e-9);
+    for summary in [chaotic, large] {
+        assert!(summary.ledger.unwrap().energy_residual < 1e-9);
     }
 }
 
@@ -58,7 +58,7 @@ fn under_noise(mechanism: &str, stops: &str) -> (f64, f64) {
     // white noise of the one-sided density S gives a mass m S/4, whatever holds it
     let whole = 0.25 * rms * rms / band;
     let mean = powers.iter().sum::<f64>() / f64::from(SEEDS);
-    let scatter = powers.iter().map(|own| (own - mean).powi(2)).sum::<f64>() / f64::from(SEEDS - 1);
+    let scatter = powers.iter().map(|power| (power - mean).powi(2)).sum::<f64>() / f64::from(SEEDS - 1);
     (mean / whole, (scatter / f64::from(SEEDS)).sqrt() / whole)
 }
 

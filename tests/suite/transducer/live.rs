@@ -19,7 +19,7 @@ fn it_is_the_run_and_its_ledger_closes() {
         let model = paper(transducer);
         let times = every(0.003_7, 500);
         let run = run_at(&model, &times);
-        assert!(run.samples.iter().any(|own| own.phase != Phase::Free && own.electrical != 0.0));
+        assert!(run.samples.iter().any(|sample| sample.phase != Phase::Free && sample.electrical != 0.0));
         let (mut live, mut into) = (Live::new(&model), LiveOutput::default());
         let mut next = 0;
         for i in 1..=113 {

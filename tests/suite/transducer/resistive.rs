@@ -68,16 +68,16 @@ fn a_coil_is_the_damping_that_it_adds() {
     let coupled =
         format!("transducer=Electromagnetic(coupling_v_s_per_m: {k}, coil_ohm: {coil}, load_ohm: {load})");
     for damping in [0.0, 0.01] {
-        let own = format!("damping=Coefficient(c_n_s_per_m: {damping})");
+        let change = format!("damping=Coefficient(c_n_s_per_m: {damping})");
         let all = format!("damping=Coefficient(c_n_s_per_m: {})", damping + k * (k / (coil + load)));
-        let with = run(&preset("nominal-cubic", &[stops, &own, &coupled]));
+        let with = run(&preset("nominal-cubic", &[stops, &change, &coupled]));
         let without = run(&preset("nominal-cubic", &[stops, &all]));
         assert_eq!(with.events, without.events);
         let (a, b) = (&with.summary, &without.summary);
         assert_eq!((a.final_x, a.final_v, a.steps), (b.final_x, b.final_v, b.steps));
         assert!(a.total_impacts > 10);
-        let (own, all) = (a.ledger.unwrap(), b.ledger.unwrap());
-        let taken = own.damping_j + own.harvested_j.unwrap() + own.coil_j.unwrap();
+        let (ledger, all) = (a.ledger.unwrap(), b.ledger.unwrap());
+        let taken = ledger.damping_j + ledger.harvested_j.unwrap() + ledger.coil_j.unwrap();
         near_relative(taken, all.damping_j, 1e-14);
         assert_eq!((all.harvested_j, b.harvest), (None, None));
     }

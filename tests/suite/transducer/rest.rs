@@ -28,8 +28,8 @@ fn at_rest_the_state_decays_in_closed_form() {
         ("Piezoelectric(coupling_n_per_v: 0.5, capacitance_nf: 3000, load_kohm: 100)", 3e-6),
     ] {
         let times = [0.0, 0.1, 0.3, 1.0, 2.5];
-        let own = pressed(2.0, 0.5, transducer, 0.25, 2.5);
-        let run = run_at(&own, &times);
+        let model = pressed(2.0, 0.5, transducer, 0.25, 2.5);
+        let run = run_at(&model, &times);
         assert_eq!(run.summary.rests, 1);
         for (sample, t) in run.samples.iter().zip(times) {
             near_relative(sample.electrical, 0.25 * (-t / 0.3_f64).exp(), 3e-14);
@@ -66,19 +66,19 @@ fn the_release_is_the_root_of_the_net_force_with_the_electrical_one() {
                 );
                 let model = pressed(1.0, amplitude, &transducer, -push, 3.0);
                 let run = run(&model);
-                let own = of_kind(&run, EventKind::Release).first().map(|event| event.t);
+                let found = of_kind(&run, EventKind::Release).first().map(|event| event.t);
                 let case = format!("tau {tau}, push {push}, amplitude {amplitude}");
-                match (own, release(1.0, push, tau, amplitude, 3.0)) {
-                    (Some(own), Some(exact)) => {
+                match (found, release(1.0, push, tau, amplitude, 3.0)) {
+                    (Some(time), Some(exact)) => {
                         released += 1;
                         // (as a root of the closed form allows)
                         let fall = |t: f64| {
                             (-push / tau * (-t / tau).exp() - amplitude * TAU * (TAU * t).cos()).abs()
                         };
                         let bound = 1e-13 + 1e-14 * (1.0 + push.abs() + amplitude) / fall(exact);
-                        assert!((own - exact).abs() < bound, "{case}: {own} {exact}, {bound:e}");
+                        assert!((time - exact).abs() < bound, "{case}: {time} {exact}, {bound:e}");
                     }
-                    (own, exact) => assert_eq!(own, exact, "{case}"),
+                    (time, exact) => assert_eq!(time, exact, "{case}"),
                 }
             }
         }

@@ -41,8 +41,8 @@ fn restitution() {
         (0.93, "at 0.93 the motion was still irregular after 300 s"),
         (1.0, "At a restitution of 1 the stops take nothing, but then we have seen no rhythm"),
     ] {
-        let own = told.run(&[&bouncing(e), long[0], long[1], long[2]]);
-        assert_eq!(own.regime, Regime::Irregular, "{e}");
+        let summary = told.run(&[&bouncing(e), long[0], long[1], long[2]]);
+        assert_eq!(summary.regime, Regime::Irregular, "{e}");
         told.says(claim);
     }
 }
@@ -64,21 +64,21 @@ fn basins() {
     for tolerance in ["run.tolerance=1e-9", "run.tolerance=1e-10", "run.tolerance=1e-11"] {
         let ends: Vec<bool> = flicks(&[tolerance]).iter().map(crosses).collect();
         assert!(ends.windows(2).filter(|pair| pair[0] != pair[1]).count() >= 6, "{ends:?}");
-        let count = ends.iter().filter(|own| **own).count();
+        let count = ends.iter().filter(|crossed| **crossed).count();
         assert!((11..=16).contains(&count), "{count} with {tolerance}");
     }
     told.says("Of the 31 flicks some 12 to 15 cross, which of them depends on the last digits");
     told.says("along the list the answer changes again and again");
     let stops = flicks(&[&stopped(2.0), "run.duration_s=20", "run.settle_s=10"]);
     let speeds: Vec<f64> = stops.iter().map(rms).collect();
-    assert!(stops.iter().all(|own| crosses(own) && own.releases == 2 * own.periods));
-    speeds.iter().for_each(|own| near_relative(*own, speeds[0], 1e-9));
+    assert!(stops.iter().all(|summary| crosses(summary) && summary.releases == 2 * summary.periods));
+    speeds.iter().for_each(|speed| near_relative(*speed, speeds[0], 1e-9));
     told.says(&format!("all 31 end in the same motion, at {:.0} mm/s", speeds[0]));
     told.says("On these stops the mass comes to rest twice a period");
     let line = "basins first-look --set excitation.amplitude_g=1.14 --set \
                 stops=Rigid(travel_limit_mm:2,restitution:0.36) --x-mm -2:2:15 --v -0.6:0.6:15 --quiet";
     let ends = column(&stdout(line), "attractor");
-    assert!(ends.len() == 225 && ends.iter().all(|own| own == "1"));
+    assert!(ends.len() == 225 && ends.iter().all(|end| end == "1"));
     told.says("With stops at 2 mm **Basins** has one colour");
 }
 
@@ -95,7 +95,7 @@ fn design() {
     told.says("With a preload of 2.7 mm and stops at 2 mm the mass rests");
     told.says(&format!("It crosses, at an RMS velocity of {:.0} mm/s", rms(&at(1.0, 2.0))));
     let widest = [1.8, 1.9, 2.0, 2.1, 2.15, 2.2, 2.3].map(|limit| rms(&at(1.0, limit)));
-    assert!(widest.iter().all(|own| *own < 53.9) && widest[4] > 53.0, "{widest:?}");
+    assert!(widest.iter().all(|speed| *speed < 53.9) && widest[4] > 53.0, "{widest:?}");
     told.says("With a preload of 1.0 mm no stop within the housing gives 54 mm/s");
     let others = [0.6, 0.8, 1.0, 1.5, 2.0, 2.7].map(|preload| rms(&at(preload, 2.0)));
     assert!(others.iter().rev().is_sorted() && others[0] < rms(&at(0.5, 2.0)), "{others:?}");
@@ -168,7 +168,7 @@ fn up_and_down() {
 fn mean(values: &[f64]) -> (f64, f64) {
     let count = values.len() as f64;
     let mean = values.iter().sum::<f64>() / count;
-    let squares: f64 = values.iter().map(|own| (own - mean).powi(2)).sum();
+    let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
     (mean, (squares / (count - 1.0) / count).sqrt())
 }
 
@@ -181,7 +181,7 @@ fn noise() {
         let models: Vec<Model> = (1..=20).map(model).collect();
         let runs = Model::run_together(&models, &Request::default());
         let of = |each: fn(&Summary) -> f64| runs.iter().map(|run| each(&run.summary)).collect::<Vec<_>>();
-        (of(|own| own.crossings as f64), of(rms))
+        (of(|summary| summary.crossings as f64), of(rms))
     };
     let (free, free_speeds) = minutes(&[]);
     assert!(free.iter().sum::<f64>() < 6.0, "{free:?}");
@@ -190,7 +190,8 @@ fn noise() {
     let (count, error) = mean(&counts);
     told.says(&format!("{count:.0} times a minute, give or take {error:.0}"));
     told.says(&format!("Its RMS velocity is {:.1} mm/s", mean(&speeds).0));
-    let (least, most) = counts.iter().fold((f64::MAX, 0.0_f64), |(a, b), own| (a.min(*own), b.max(*own)));
+    let (least, most) =
+        counts.iter().fold((f64::MAX, 0.0_f64), |(a, b), number| (a.min(*number), b.max(*number)));
     told.says(&format!("A single minute has {least} to {most} crossings"));
     told.says(&format!("which is larger ({least} to {most})"));
     let at = |limit: f64| {

@@ -26,28 +26,28 @@ fn agree(geometry: &Geometry, all: &[Held], start: &Held, bounds: &Bounds) {
     let barrier = landscape.barrier.unwrap().from_right_j;
     let slope = curve.stiffness(0.0).abs();
     let largest = start.bump[0].abs().max(start.bump[1].abs());
-    for own in all {
-        let state = flexures.state(own.x).unwrap();
-        let scale = pull.max(own.force.abs());
-        near(state.force, own.force, bounds.force * scale);
-        near(curve.force(own.x), own.force, 1e-8 * scale);
-        let bump = own.bump[0].abs().max(own.bump[1].abs());
+    for held in all {
+        let state = flexures.state(held.x).unwrap();
+        let scale = pull.max(held.force.abs());
+        near(state.force, held.force, bounds.force * scale);
+        near(curve.force(held.x), held.force, 1e-8 * scale);
+        let bump = held.bump[0].abs().max(held.bump[1].abs());
         // Beside the kink the strong form's own stiffness has an error that grows with the cube of 1/bump.
         let loss = if bump > 0.0 && bump < 0.01 * largest { 1e4 } else { 1.0 };
-        near(state.stiffness, own.stiffness, loss * bounds.stiffness * slope.max(own.stiffness.abs()));
-        let potential = own.energy - start.energy;
+        near(state.stiffness, held.stiffness, loss * bounds.stiffness * slope.max(held.stiffness.abs()));
+        let potential = held.energy - start.energy;
         near(state.potential, potential, bounds.energy * barrier.max(potential));
-        near(curve.potential(own.x), potential, 1e-8 * barrier.max(potential));
-        near_relative(state.axial, own.axial, 1e-9);
+        near(curve.potential(held.x), potential, 1e-8 * barrier.max(potential));
+        near_relative(state.axial, held.axial, 1e-9);
         // The square of the bump is what the equations know.
         near(state.bump * state.bump, bump * bump, 1e-10 * geometry.buckling.length.powi(2));
-        shapes_agree(geometry, &state, own);
+        shapes_agree(geometry, &state, held);
     }
 }
 
 /// The ends of the centre lines, and the largest stress.
 #[track_caller]
-fn shapes_agree(geometry: &Geometry, state: &State, own: &Held) {
+fn shapes_agree(geometry: &Geometry, state: &State, held: &Held) {
     let lengths = [geometry.parallel.length, geometry.buckling.length];
     let clamp = lengths[0] + lengths[1] - geometry.preload;
     for (g, name) in [(0, "parallel"), (1, "buckling")] {
@@ -55,12 +55,12 @@ fn shapes_agree(geometry: &Geometry, state: &State, own: &Held) {
         assert_eq!(line.flexure, name);
         let [arc, along, across] = *line.points.last().unwrap();
         near_relative(arc, lengths[g], 1e-14);
-        let shuttle = lengths[g] - own.shortening[g];
+        let shuttle = lengths[g] - held.shortening[g];
         near(along, if g == 0 { shuttle } else { clamp - shuttle }, 1e-10 * lengths[g]);
         near(across, state.x, 1e-10 * lengths[g]);
     }
     let modulus = geometry.young / if geometry.plane_strain { 1.0 - geometry.poisson.powi(2) } else { 1.0 };
-    let stress = 0.5 * modulus * geometry.thickness * own.curvature[0].max(own.curvature[1]);
+    let stress = 0.5 * modulus * geometry.thickness * held.curvature[0].max(held.curvature[1]);
     // The moment has its maximum at a clamp or between two ends of cells.
     assert!(state.max_stress >= stress * (1.0 - 1e-3), "{} {stress}", state.max_stress);
     near_relative(state.max_stress, stress, 0.01);
@@ -99,49 +99,49 @@ fn wide_strips() {
 
 #[test]
 fn thick_flexures_stretch_and_shear() {
-    let mut own = Geometry { thickness: 2e-3, preload: 4e-3, ..prototype() };
-    own.parallel.width = 5e-3;
-    agree_across_the_kink(&own, 1, &TIGHT);
+    let mut geometry = Geometry { thickness: 2e-3, preload: 4e-3, ..prototype() };
+    geometry.parallel.width = 5e-3;
+    agree_across_the_kink(&geometry, 1, &TIGHT);
 }
 
 #[test]
 fn short_and_long_ones() {
-    let mut own = Geometry { preload: 1e-3, thickness: 5e-5, ..prototype() };
-    own.parallel.length = 60e-3;
-    own.buckling.length = 8e-3;
-    own.buckling.width = 2e-3;
-    agree_across_the_kink(&own, 0, &TIGHT);
-    own.parallel.width = 80e-3;
-    agree_across_the_kink(&own, 1, &TIGHT);
+    let mut geometry = Geometry { preload: 1e-3, thickness: 5e-5, ..prototype() };
+    geometry.parallel.length = 60e-3;
+    geometry.buckling.length = 8e-3;
+    geometry.buckling.width = 2e-3;
+    agree_across_the_kink(&geometry, 0, &TIGHT);
+    geometry.parallel.width = 80e-3;
+    agree_across_the_kink(&geometry, 1, &TIGHT);
 }
 
 /// The pair is so much softer than the two others that it is the one that buckles.
 #[test]
 fn a_soft_pair_buckles_itself() {
-    let mut own = prototype();
-    own.parallel = Group { count: 2, length: 30e-3, width: 4e-3 };
-    own.buckling = Group { count: 2, length: 24e-3, width: 9e-3 };
-    agree_across_the_kink(&own, 0, &TIGHT);
+    let mut geometry = prototype();
+    geometry.parallel = Group { count: 2, length: 30e-3, width: 4e-3 };
+    geometry.buckling = Group { count: 2, length: 24e-3, width: 9e-3 };
+    agree_across_the_kink(&geometry, 0, &TIGHT);
 }
 
 #[test]
 fn two_buckling_flexures_and_a_soft_pair() {
-    let mut own = prototype();
-    own.parallel.width = 9e-3;
-    own.buckling.count = 2;
-    agree_across_the_kink(&own, 1, &TIGHT);
+    let mut geometry = prototype();
+    geometry.parallel.width = 9e-3;
+    geometry.buckling.count = 2;
+    agree_across_the_kink(&geometry, 1, &TIGHT);
 }
 
 /// With a bow there is no kink, and one branch from the bulge to the wall.
 #[test]
 fn a_bowed_flexure() {
-    let own = Geometry { initial_bow: 1e-4, ..prototype() };
-    let end = solve(&own).0.domain().1;
+    let geometry = Geometry { initial_bow: 1e-4, ..prototype() };
+    let end = solve(&geometry).0.domain().1;
     let kink = Mechanism::new(solve(&prototype()).0).landscape.kinks[1].x;
     let mut positions: Vec<f64> = (0..12).map(|i| end * f64::from(i) / 12.0).collect();
     positions.extend([1.0 - 1e-3, 1.0 - 1e-6, 1.0, 1.0 + 1e-6, 1.0 + 1e-3].map(|part| part * kink));
     positions.push(end);
     positions.sort_by(f64::total_cmp);
-    let all = StrongForm::new(&own, 48).buckled(&positions, 1);
-    agree(&own, &all, &all[0], &TIGHT);
+    let all = StrongForm::new(&geometry, 48).buckled(&positions, 1);
+    agree(&geometry, &all, &all[0], &TIGHT);
 }

@@ -6,11 +6,11 @@ use super::*;
 use interwell::mechanics::FlexureError;
 
 /// Solves and verifies; an error must be one that names a place on the way.
-fn holds_or_says(own: &Geometry) -> Option<FlexureError> {
-    match Flexures::solve(own, 1e-8) {
+fn holds_or_says(geometry: &Geometry) -> Option<FlexureError> {
+    match Flexures::solve(geometry, 1e-8) {
         Ok(solved) => {
-            let verdict = Verdict::of(own, 1e-8, &solved, &[0.03, 0.2, 0.41, 0.63, 0.77, 0.99]);
-            assert!(verdict.faults.is_empty(), "{own:?}\n{:#?}", verdict.faults);
+            let verdict = Verdict::of(geometry, 1e-8, &solved, &[0.03, 0.2, 0.41, 0.63, 0.77, 0.99]);
+            assert!(verdict.faults.is_empty(), "{geometry:?}\n{:#?}", verdict.faults);
             None
         }
         Err(e) => {
@@ -18,7 +18,7 @@ fn holds_or_says(own: &Geometry) -> Option<FlexureError> {
             | FlexureError::Unstable { x, .. }
             | FlexureError::TooMuchWork { x, .. }) = e;
             assert!(x.is_finite() && x >= 0.0, "{e:?}");
-            let preloaded = own.preload > 0.0;
+            let preloaded = geometry.preload > 0.0;
             assert_eq!(e.to_string().contains("try a smaller preload or other proportions"), preloaded);
             assert_eq!(e.to_string().contains("try other proportions"), !preloaded);
             Some(e)
@@ -27,8 +27,8 @@ fn holds_or_says(own: &Geometry) -> Option<FlexureError> {
 }
 
 #[track_caller]
-fn holds(own: &Geometry) {
-    assert_eq!(holds_or_says(own), None, "{own:?}");
+fn holds(geometry: &Geometry) {
+    assert_eq!(holds_or_says(geometry), None, "{geometry:?}");
 }
 
 #[test]
@@ -50,28 +50,28 @@ fn thick() {
 #[test]
 fn many_flexures() {
     for (parallel, buckling) in [(50, 1), (1, 50), (50, 50)] {
-        let mut own = prototype();
-        (own.parallel.count, own.buckling.count) = (parallel, buckling);
-        holds(&own);
+        let mut geometry = prototype();
+        (geometry.parallel.count, geometry.buckling.count) = (parallel, buckling);
+        holds(&geometry);
     }
 }
 
 #[test]
 fn widths_far_apart_and_nearly_equal() {
     for (parallel, buckling) in [(1e-3, 1.0), (1.0, 1e-3), (20e-3, 20e-3 * (1.0 + 1e-3)), (1.0, 1.0)] {
-        let mut own = prototype();
-        own.parallel = Group { count: 1, length: 27.7e-3, width: parallel };
-        own.buckling = Group { count: 1, length: 27.7e-3, width: buckling };
-        holds(&own);
+        let mut geometry = prototype();
+        geometry.parallel = Group { count: 1, length: 27.7e-3, width: parallel };
+        geometry.buckling = Group { count: 1, length: 27.7e-3, width: buckling };
+        holds(&geometry);
     }
 }
 
 #[test]
 fn lengths_far_apart() {
     for (parallel, buckling) in [(5e-3, 0.1), (0.1, 5e-3)] {
-        let mut own = Geometry { preload: 1.25e-3, ..prototype() };
-        (own.parallel.length, own.buckling.length) = (parallel, buckling);
-        holds(&own);
+        let mut geometry = Geometry { preload: 1.25e-3, ..prototype() };
+        (geometry.parallel.length, geometry.buckling.length) = (parallel, buckling);
+        holds(&geometry);
     }
 }
 
@@ -117,11 +117,12 @@ fn equal_groups() {
     for part in [1e-3, 0.01, 0.1, 0.25] {
         for apart in [0.0, 1e-13, 1e-11, 1e-9, 1e-7, 1e-5, 1e-4, 1e-3, 1e-2, -1e-12, -1e-6, -1e-3] {
             for length in [27.7e-3, 20e-3] {
-                let mut own = prototype();
-                own.buckling = Group { count: 1, length: 27.7e-3, width: 10e-3 };
-                let width = own.buckling.width * (length / own.buckling.length).powi(2) * (1.0 + apart);
-                own.parallel = Group { count: 1, length, width };
-                holds(&Geometry { preload: part * length, ..own });
+                let mut geometry = prototype();
+                geometry.buckling = Group { count: 1, length: 27.7e-3, width: 10e-3 };
+                let width =
+                    geometry.buckling.width * (length / geometry.buckling.length).powi(2) * (1.0 + apart);
+                geometry.parallel = Group { count: 1, length, width };
+                holds(&Geometry { preload: part * length, ..geometry });
             }
         }
     }

@@ -5,10 +5,10 @@ use super::super::integral;
 use super::*;
 
 fn soft_pair() -> Geometry {
-    let mut own = prototype();
-    own.parallel = Group { count: 2, length: 30e-3, width: 4e-3 };
-    own.buckling = Group { count: 2, length: 24e-3, width: 9e-3 };
-    own
+    let mut geometry = prototype();
+    geometry.parallel = Group { count: 2, length: 30e-3, width: 4e-3 };
+    geometry.buckling = Group { count: 2, length: 24e-3, width: 9e-3 };
+    geometry
 }
 
 fn some() -> [Geometry; 4] {
@@ -32,8 +32,8 @@ fn pull(curve: &ForceCurve) -> f64 {
 
 #[test]
 fn curve_and_states_are_odd_bit_for_bit() {
-    for own in some() {
-        let (curve, flexures) = solve(&own);
+    for geometry in some() {
+        let (curve, flexures) = solve(&geometry);
         super::super::mirrors_bit_for_bit(&curve);
         for x in places(curve.domain().1, 9) {
             let (right, left) = (flexures.state(x).unwrap(), flexures.state(-x).unwrap());
@@ -47,7 +47,7 @@ fn curve_and_states_are_odd_bit_for_bit() {
                 near(ends.0[2], -ends.1[2], 1e-15);
             }
         }
-        near(flexures.state(0.0).unwrap().potential, 0.0, 1e-15 * own.preload * 100.0);
+        near(flexures.state(0.0).unwrap().potential, 0.0, 1e-15 * geometry.preload * 100.0);
     }
 }
 
@@ -55,9 +55,9 @@ fn curve_and_states_are_odd_bit_for_bit() {
 /// of.
 #[test]
 fn there_is_no_hysteresis() {
-    for own in some() {
-        let (curve, flexures) = solve(&own);
-        let (_, other) = Flexures::solve(&own, 1e-6).unwrap();
+    for geometry in some() {
+        let (curve, flexures) = solve(&geometry);
+        let (_, other) = Flexures::solve(&geometry, 1e-6).unwrap();
         let end = curve.domain().1;
         let out: Vec<State> = places(end, 15).map(|x| flexures.state(x).unwrap()).collect();
         let mut back: Vec<State> = places(end, 15)
@@ -113,9 +113,9 @@ fn size_does_not_matter() {
     let (curve, flexures) = solve(&prototype());
     let middle = flexures.state(4e-3).unwrap();
     for scale in [1e-9, 1e-3, 1e9] {
-        let own = scaled(scale);
-        let (other, others) = solve(&own);
-        let unit = own.young / prototype().young * scale * scale;
+        let geometry = scaled(scale);
+        let (other, others) = solve(&geometry);
+        let unit = geometry.young / prototype().young * scale * scale;
         near_relative(other.domain().1, scale * curve.domain().1, 1e-12);
         assert_eq!(other.pieces().len(), curve.pieces().len());
         for x in places(curve.domain().1, 20) {
@@ -130,8 +130,8 @@ fn size_does_not_matter() {
 
 #[test]
 fn energy_is_the_integral_of_the_force() {
-    for own in some() {
-        let (curve, flexures) = solve(&own);
+    for geometry in some() {
+        let (curve, flexures) = solve(&geometry);
         let force = |x: f64| flexures.state(x).unwrap().force;
         let ends: Vec<f64> = [0.0]
             .into_iter()
@@ -155,8 +155,8 @@ fn energy_is_the_integral_of_the_force() {
 
 #[test]
 fn stiffness_is_the_derivative_of_the_force() {
-    for own in some() {
-        let (curve, flexures) = solve(&own);
+    for geometry in some() {
+        let (curve, flexures) = solve(&geometry);
         let force = |x: f64| flexures.state(x).unwrap().force;
         let (end, slope) = (curve.domain().1, curve.stiffness(0.0).abs());
         let kink = Mechanism::new(curve.clone()).landscape.kinks.last().map_or(7.18e-3, |kink| kink.x);
@@ -166,9 +166,9 @@ fn stiffness_is_the_derivative_of_the_force() {
             let sum = 45.0 * (force(x + h) - force(x - h)) - 9.0 * (force(x + 2.0 * h) - force(x - 2.0 * h))
                 + force(x + 3.0 * h)
                 - force(x - 3.0 * h);
-            let (expected, own) = (sum / (60.0 * h), flexures.state(x).unwrap().stiffness);
-            near(own, expected, 1e-7 * slope.max(own.abs()));
-            near(curve.stiffness(x), own, 1e-6 * slope.max(own.abs()));
+            let (expected, stiffness) = (sum / (60.0 * h), flexures.state(x).unwrap().stiffness);
+            near(stiffness, expected, 1e-7 * slope.max(stiffness.abs()));
+            near(curve.stiffness(x), stiffness, 1e-6 * slope.max(stiffness.abs()));
         }
     }
 }

@@ -9,10 +9,10 @@ fn places(count: usize) -> Vec<f64> {
 }
 
 #[track_caller]
-fn holds(own: &Geometry, tolerance: f64, count: usize) {
-    let solved = Flexures::solve(own, tolerance).unwrap_or_else(|e| panic!("{e}\n{own:?}"));
-    let verdict = Verdict::of(own, tolerance, &solved, &places(count));
-    assert!(verdict.faults.is_empty(), "tolerance {tolerance:e}, {own:?}\n{:#?}", verdict.faults);
+fn holds(geometry: &Geometry, tolerance: f64, count: usize) {
+    let solved = Flexures::solve(geometry, tolerance).unwrap_or_else(|e| panic!("{e}\n{geometry:?}"));
+    let verdict = Verdict::of(geometry, tolerance, &solved, &places(count));
+    assert!(verdict.faults.is_empty(), "tolerance {tolerance:e}, {geometry:?}\n{:#?}", verdict.faults);
 }
 
 #[test]
@@ -38,37 +38,37 @@ fn one_well_and_bows() {
 #[test]
 fn hard_ones() {
     let group = |count, length, width| Group { count, length, width };
-    let own = |preload, thickness, parallel, buckling| Geometry {
+    let shaped = |preload, thickness, parallel, buckling| Geometry {
         preload,
         thickness,
         parallel,
         buckling,
         ..prototype()
     };
-    let thick = own(0.35e-3, 0.31e-3, group(1, 8.84e-3, 9.15e-3), group(1, 5.88e-3, 1.78e-3));
-    let soft_pair = own(1e-3, 5e-5, group(2, 60e-3, 20e-3), group(1, 8e-3, 2e-3));
-    let shallow = own(3.7058e-3, 48.65e-6, group(2, 30.28e-3, 2.302e-3), group(1, 30.06e-3, 37.05e-3));
+    let thick = shaped(0.35e-3, 0.31e-3, group(1, 8.84e-3, 9.15e-3), group(1, 5.88e-3, 1.78e-3));
+    let soft_pair = shaped(1e-3, 5e-5, group(2, 60e-3, 20e-3), group(1, 8e-3, 2e-3));
+    let shallow = shaped(3.7058e-3, 48.65e-6, group(2, 30.28e-3, 2.302e-3), group(1, 30.06e-3, 37.05e-3));
     let bowed = Geometry {
         initial_bow: 0.2e-3,
-        ..own(11.2e-3, 75e-6, group(4, 97e-3, 1.44e-3), group(1, 87.5e-3, 1.31e-3))
+        ..shaped(11.2e-3, 75e-6, group(4, 97e-3, 1.44e-3), group(1, 87.5e-3, 1.31e-3))
     };
-    for own in [thick, soft_pair, shallow, bowed] {
-        holds(&own, 1e-6, 60);
-        holds(&own, 1e-8, 60);
+    for geometry in [thick, soft_pair, shallow, bowed] {
+        holds(&geometry, 1e-6, 60);
+        holds(&geometry, 1e-8, 60);
     }
 }
 
 /// Wells beyond the kink are on the curve, with room behind them.
 #[test]
 fn the_curve_reaches_its_wells() {
-    let own = Geometry {
+    let geometry = Geometry {
         preload: 0.35e-3,
         thickness: 0.31e-3,
         parallel: Group { count: 1, length: 8.84e-3, width: 9.15e-3 },
         buckling: Group { count: 1, length: 5.88e-3, width: 1.78e-3 },
         ..prototype()
     };
-    let (curve, _) = solve(&own);
+    let (curve, _) = solve(&geometry);
     let landscape = Mechanism::new(curve.clone()).landscape;
     let well = landscape.right_stable().expect("two wells").x;
     assert!(well > 1.15 * landscape.kinks[1].x && curve.domain().1 > 1.09 * well);
@@ -78,10 +78,10 @@ fn the_curve_reaches_its_wells() {
 #[test]
 fn a_state_at_the_kink_is_the_inner_one() {
     for i in 0..200 {
-        let mut own = prototype();
-        own.preload = (1.0 + 0.01 * f64::from(i)) * 1e-3;
-        own.buckling.length = 27.7e-3 + 1e-5 * f64::from(i % 17);
-        let (curve, flexures) = solve(&own);
+        let mut geometry = prototype();
+        geometry.preload = (1.0 + 0.01 * f64::from(i)) * 1e-3;
+        geometry.buckling.length = 27.7e-3 + 1e-5 * f64::from(i % 17);
+        let (curve, flexures) = solve(&geometry);
         let kink = Mechanism::new(curve).landscape.kinks[1];
         let state = flexures.state(kink.x).unwrap();
         near_relative(state.stiffness, kink.stiffness_left, 1e-4);
@@ -92,13 +92,13 @@ fn a_state_at_the_kink_is_the_inner_one() {
 /// What is reported is not better than what is found at other places by more than a small factor.
 #[test]
 fn reported_errors_are_the_errors() {
-    for (own, tolerance) in [
+    for (geometry, tolerance) in [
         (prototype(), 1e-6),
         (prototype(), 1e-8),
         (Geometry { initial_bow: 1e-4, ..prototype() }, 1e-8),
         (Geometry { preload: 0.5e-3, ..prototype() }, 1e-7),
     ] {
-        let (curve, flexures) = Flexures::solve(&own, tolerance).unwrap();
+        let (curve, flexures) = Flexures::solve(&geometry, tolerance).unwrap();
         let landscape = Mechanism::new(curve.clone()).landscape;
         let inside = landscape.kinks.last().map_or(landscape.right_stable().unwrap().x, |kink| kink.x);
         let pull = landscape.extrema.last().unwrap().force.abs();

@@ -5,34 +5,34 @@ use interwell::mechanics::{ForceTable, Landscape, fit};
 
 use super::*;
 
-fn landscape(own: &Geometry) -> (ForceCurve, Landscape) {
-    let (curve, _) = solve(own);
+fn landscape(geometry: &Geometry) -> (ForceCurve, Landscape) {
+    let (curve, _) = solve(geometry);
     let landscape = Landscape::of(&curve);
     (curve, landscape)
 }
 
-fn pull(own: &Geometry) -> f64 {
-    -landscape(own).1.extrema.last().unwrap().force
+fn pull(geometry: &Geometry) -> f64 {
+    -landscape(geometry).1.extrema.last().unwrap().force
 }
 
 #[test]
 fn its_curve() {
-    let (curve, own) = landscape(&prototype());
+    let (curve, landscape) = landscape(&prototype());
     near(curve.stiffness(0.0), -71.6, 0.05);
-    let most = own.extrema.last().unwrap();
+    let most = landscape.extrema.last().unwrap();
     near(most.force, -0.197, 5e-4);
     near(most.x, 4.15e-3, 5e-6);
-    let [left, right] = own.kinks[..] else { panic!("{:?}", own.kinks) };
+    let [left, right] = landscape.kinks[..] else { panic!("{:?}", landscape.kinks) };
     assert_eq!(left.x, -right.x);
     near(right.x, 7.18e-3, 5e-6);
     near(right.stiffness_left, 137.0, 0.5);
     near(right.stiffness_right, 4000.0, 50.0);
-    near(own.barrier.unwrap().from_right_j, 0.925e-3, 5e-7);
-    let well = own.right_stable().unwrap();
+    near(landscape.barrier.unwrap().from_right_j, 0.925e-3, 5e-7);
+    let well = landscape.right_stable().unwrap();
     near(well.x - right.x, 2e-6, 0.5e-6);
-    assert_eq!(own.damping_stiffness(), Some(right.stiffness_left));
+    assert_eq!(landscape.damping_stiffness(), Some(right.stiffness_left));
     near(curve.force(8e-3), 25.0, 2.5);
-    assert_eq!(own.equilibria.len(), 3);
+    assert_eq!(landscape.equilibria.len(), 3);
     // Not the S-shaped branch.
     near(curve.force(4e-3), -0.1965, 5e-4);
     // One odd polynomial between the kinks.
@@ -50,9 +50,9 @@ fn its_axial_force() {
 
 #[test]
 fn without_preload_it_has_one_well() {
-    let (curve, own) = landscape(&Geometry { preload: 0.0, ..prototype() });
+    let (curve, landscape) = landscape(&Geometry { preload: 0.0, ..prototype() });
     near(curve.stiffness(0.0), 493.0, 0.5);
-    assert_eq!((own.equilibria.len(), own.kinks.len(), own.barrier), (1, 0, None));
+    assert_eq!((landscape.equilibria.len(), landscape.kinks.len(), landscape.barrier), (1, 0, None));
     near_relative(curve.domain().1, 2.6e-3, 1e-12);
 }
 
@@ -61,9 +61,9 @@ fn without_preload_it_has_one_well() {
 fn two_wells_before_a_bump() {
     let at = |um: f64| landscape(&Geometry { preload: um * 1e-6, ..prototype() }).1;
     for (um, wells, kinks) in [(1.30, 1, 0), (1.313, 1, 0), (1.317, 2, 0), (1.374, 2, 0), (1.38, 2, 2)] {
-        let own = at(um);
-        let stable = own.equilibria.iter().filter(|e| e.stable).count();
-        assert_eq!((stable, own.kinks.len()), (wells, kinks), "{um} um: {own:?}");
+        let landscape = at(um);
+        let stable = landscape.equilibria.iter().filter(|e| e.stable).count();
+        assert_eq!((stable, landscape.kinks.len()), (wells, kinks), "{um} um: {landscape:?}");
     }
 }
 
@@ -101,13 +101,13 @@ fn a_vanishing_bow_changes_nothing_but_the_corner() {
 fn a_solid_model_is_near() {
     let table = ForceTable::parse(super::super::PROTOTYPE).unwrap();
     let solid = fit(&table, 1e-4).unwrap();
-    let (curve, own) = landscape(&prototype());
+    let (curve, landscape) = landscape(&prototype());
     for i in 0..=50 {
         let x = 1e-4 * f64::from(i);
         near(curve.force(x), solid.force(x), 0.07 * 0.203);
     }
     near_relative(pull(&prototype()), 0.203, 0.04);
-    near_relative(own.right_stable().unwrap().x, 6.88e-3, 0.05);
+    near_relative(landscape.right_stable().unwrap().x, 6.88e-3, 0.05);
 }
 
 /// The stiffness that a damping ratio means is that inside the kink wherever the well lies, so that it
@@ -115,8 +115,8 @@ fn a_solid_model_is_near() {
 #[test]
 fn the_damping_stiffness_follows_the_preload() {
     let stiffness = |mm: f64| {
-        let own = landscape(&Geometry { preload: mm * 1e-3, ..prototype() }).1;
-        own.damping_stiffness().unwrap()
+        let landscape = landscape(&Geometry { preload: mm * 1e-3, ..prototype() }).1;
+        landscape.damping_stiffness().unwrap()
     };
     let all: Vec<f64> = (0..=40).map(|i| stiffness(1.0 + 0.05 * f64::from(i))).collect();
     for (i, three) in all.windows(3).enumerate() {

@@ -57,12 +57,12 @@ proptest! {
 
     #[test]
     fn any_geometry_is_solved_and_its_curve_holds(
-        own in geometry(),
+        drawn in geometry(),
         places in prop::collection::vec(0.0..1.0_f64, 8),
     ) {
-        let solved = Flexures::solve(&own, 1e-8);
+        let solved = Flexures::solve(&drawn, 1e-8);
         prop_assert!(solved.is_ok(), "{:?}", solved.err());
-        let verdict = Verdict::of(&own, 1e-8, &solved.unwrap(), &places);
+        let verdict = Verdict::of(&drawn, 1e-8, &solved.unwrap(), &places);
         prop_assert!(verdict.faults.is_empty(), "{:#?}", verdict.faults);
     }
 }

@@ -51,30 +51,33 @@ pub struct Held {
 
 impl StrongForm {
     /// `cells`, an even number, for each flexure.
-    pub fn new(own: &Geometry, cells: usize) -> Self {
-        let shear_modulus = own.young / (2.0 * (1.0 + own.poisson));
-        let modulus =
-            if own.plane_strain { own.young / (1.0 - own.poisson * own.poisson) } else { own.young };
-        let inertia = |width: f64| width * own.thickness.powi(3) / 12.0;
-        let length = own.buckling.length;
-        let force = modulus * inertia(own.buckling.width) / (length * length);
+    pub fn new(geometry: &Geometry, cells: usize) -> Self {
+        let shear_modulus = geometry.young / (2.0 * (1.0 + geometry.poisson));
+        let modulus = if geometry.plane_strain {
+            geometry.young / (1.0 - geometry.poisson * geometry.poisson)
+        } else {
+            geometry.young
+        };
+        let inertia = |width: f64| width * geometry.thickness.powi(3) / 12.0;
+        let length = geometry.buckling.length;
+        let force = modulus * inertia(geometry.buckling.width) / (length * length);
         let strip = |g: usize| {
-            let group = [&own.parallel, &own.buckling][g];
-            let area = group.width * own.thickness;
+            let group = [&geometry.parallel, &geometry.buckling][g];
+            let area = group.width * geometry.thickness;
             Strip {
                 count: group.count as f64,
                 length: group.length / length,
                 bending: modulus * inertia(group.width) / (force * length * length),
                 stretch: force / (modulus * area),
                 shear: force / (5.0 / 6.0 * shear_modulus * area),
-                bow: if g == 1 { PI * own.initial_bow / length } else { 0.0 },
+                bow: if g == 1 { PI * geometry.initial_bow / length } else { 0.0 },
             }
         };
         let strips = [strip(0), strip(1)];
         // The trapezium rule of a periodic function is exact to rounding.
         let versine = |i: usize| 2.0 * (0.5 * strips[1].natural(i as f64 / 64.0).0).sin().powi(2) / 64.0;
         let natural_shortening = (0..64).map(versine).sum();
-        Self { strips, preload: own.preload / length, natural_shortening, cells, length, force }
+        Self { strips, preload: geometry.preload / length, natural_shortening, cells, length, force }
     }
 
     /// A guess for x = 0: the `bumped` group takes up what compression alone does not.

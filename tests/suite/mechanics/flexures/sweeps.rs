@@ -39,9 +39,9 @@ fn preload_from_none_to_much() {
     no_jump(&preloads[20..], &curves[20..], &[1e-4, 5e-4, 1e-3, 2e-3], 6e-3);
     let mut last = 0.0;
     for (preload, curve) in preloads.iter().zip(&curves).skip(1) {
-        let own = Mechanism::new(curve.clone()).landscape;
-        let kink = own.kinks.last().unwrap_or_else(|| panic!("{preload:e}")).x;
-        assert!(kink > last && own.barrier.is_some(), "{preload:e}");
+        let landscape = Mechanism::new(curve.clone()).landscape;
+        let kink = landscape.kinks.last().unwrap_or_else(|| panic!("{preload:e}")).x;
+        assert!(kink > last && landscape.barrier.is_some(), "{preload:e}");
         last = kink;
     }
 }
@@ -64,8 +64,8 @@ fn preload_through_the_thresholds() {
         curves.iter().map(|curve| of(&Mechanism::new(curve.clone()))).collect()
     };
     let (wells, kinks) = (
-        count(|own| own.landscape.equilibria.iter().filter(|e| e.stable).count()),
-        count(|own| own.landscape.kinks.len()),
+        count(|mechanism| mechanism.landscape.equilibria.iter().filter(|e| e.stable).count()),
+        count(|mechanism| mechanism.landscape.kinks.len()),
     );
     for (all, most) in [(wells, 2), (kinks, 2)] {
         assert!(all.windows(2).all(|pair| pair[0] <= pair[1]), "{all:?}");
@@ -91,14 +91,14 @@ fn other_sizes() {
     for name in ["thickness", "length", "bow"] {
         let forces: Vec<f64> = (0..=40)
             .map(|i| {
-                let mut own = prototype();
+                let mut geometry = prototype();
                 let part = f64::from(i) / 40.0;
                 match name {
-                    "thickness" => own.thickness *= 1.0 + 0.5 * part,
-                    "length" => own.parallel.length *= 1.0 + 0.1 * part,
-                    _ => own.initial_bow = 3e-4 * part,
+                    "thickness" => geometry.thickness *= 1.0 + 0.5 * part,
+                    "length" => geometry.parallel.length *= 1.0 + 0.1 * part,
+                    _ => geometry.initial_bow = 3e-4 * part,
                 }
-                solve(&own).0.force(3e-3)
+                solve(&geometry).0.force(3e-3)
             })
             .collect();
         let bends = forces.windows(3).map(|f| (f[0] - 2.0 * f[1] + f[2]).abs());

@@ -64,10 +64,10 @@ impl Verdict {
         (curve, flexures): &(ForceCurve, Flexures),
         places: &[f64],
     ) -> Self {
-        let mut own = Self { faults: Vec::new() };
+        let mut verdict = Self { faults: Vec::new() };
         let landscape = Landscape::of(curve);
         let scales = Scales::of(geometry, curve, flexures, &landscape);
-        own.shape(geometry, curve, &landscape);
+        verdict.shape(geometry, curve, &landscape);
         let accuracy = flexures.accuracy();
         // without a kink there is no inside, and with one well no barrier to relate an error to
         let may_be_missing = landscape.kinks.is_empty() || landscape.barrier.is_none();
@@ -82,7 +82,7 @@ impl Verdict {
             ("reported stiffness", inside(accuracy.stiffness), 100.0 * tolerance),
             ("reported outer force", accuracy.outer_force, tolerance),
         ] {
-            own.at_most(name, f64::NAN, value, bound);
+            verdict.at_most(name, f64::NAN, value, bound);
         }
         let end = curve.domain().1;
         let mut positions: Vec<f64> = places.iter().map(|place| place * end).collect();
@@ -94,27 +94,27 @@ impl Verdict {
         positions.sort_by(f64::total_cmp);
         for x in positions {
             match flexures.state(x) {
-                Err(e) => own.faults.push(format!("no state at {x:e}: {e}")),
+                Err(e) => verdict.faults.push(format!("no state at {x:e}: {e}")),
                 Ok(state) => {
-                    own.state(curve, &scales, tolerance, &state);
-                    own.bump(geometry, kink, &state);
-                    own.mirrored(flexures, &state);
+                    verdict.state(curve, &scales, tolerance, &state);
+                    verdict.bump(geometry, kink, &state);
+                    verdict.mirrored(flexures, &state);
                     last = Some((x, state));
                 }
             }
         }
-        own.holds("no state at all", 0.0, last.is_some());
+        verdict.holds("no state at all", 0.0, last.is_some());
         if let Some(kink) = landscape.kinks.last() {
             let at = flexures.state(kink.x);
             let inner = at.map_or(f64::NAN, |s| (s.stiffness - kink.stiffness_left).abs());
-            own.at_most(
+            verdict.at_most(
                 "stiffness inside the kink",
                 kink.x,
                 inner,
                 1e-4 * kink.stiffness_left.abs().max(scales.stiffness),
             );
         }
-        own
+        verdict
     }
 
     /// What the curve alone shows.

@@ -16,10 +16,10 @@ impl Dual {
     const ZERO: Self = Self([0.0; 5]);
 
     fn variable(value: f64, place: usize) -> Self {
-        let mut own = Self::ZERO;
-        own.0[0] = value;
-        own.0[place] = 1.0;
-        own
+        let mut dual = Self::ZERO;
+        dual.0[0] = value;
+        dual.0[place] = 1.0;
+        dual
     }
 
     fn times(self, factor: f64) -> Self {
