@@ -73,7 +73,7 @@ pub fn refused(mut command: Command, words: &[&str]) {
 
 pub fn column(csv: &str, name: &str) -> Vec<String> {
     let mut lines = csv.lines();
-    let place = lines.next().unwrap().split(',').position(|own| own == name).unwrap();
+    let place = lines.next().unwrap().split(',').position(|cell| cell == name).unwrap();
     lines.map(|line| line.split(',').nth(place).unwrap().to_owned()).collect()
 }
 
@@ -116,8 +116,8 @@ fn help_and_version() {
 fn presets_are_listed_a_line_each() {
     let text = stdout("presets");
     for name in ["paper", "paper-ramp", "nominal-cubic", "bouncing-ball", "elastic-box", "duffing"] {
-        let own = text.lines().filter(|line| line.split_whitespace().next() == Some(name));
-        assert_eq!(own.count(), 1, "{name}");
+        let lines = text.lines().filter(|line| line.split_whitespace().next() == Some(name));
+        assert_eq!(lines.count(), 1, "{name}");
     }
 }
 

@@ -65,24 +65,24 @@ fn a_smooth_record_takes_the_steps_of_its_curve_and_moves_the_mass_as_its_lines_
         if stops == "stops=None" {
             assert!(a.summary.steps * 20 < b.summary.steps, "{} steps", a.summary.steps);
         }
-        for (own, exact) in a.samples.iter().zip(&b.samples) {
-            near(own.x, exact.x, 7e-3 * tolerance);
-            near(own.v, exact.v, m.scales().speed * 1.5 * tolerance);
-            near(own.base_accel, exact.base_accel, 1e-12); // what is told is the record
+        for (sample, exact) in a.samples.iter().zip(&b.samples) {
+            near(sample.x, exact.x, 7e-3 * tolerance);
+            near(sample.v, exact.v, m.scales().speed * 1.5 * tolerance);
+            near(sample.base_accel, exact.base_accel, 1e-12); // what is told is the record
         }
         let told = |run: &interwell::dynamics::Run| -> Vec<interwell::dynamics::Event> {
-            let fast = |own: &&interwell::dynamics::Event| match own.kind {
-                EventKind::Impact => own.v_out.abs() > 1e-3,
+            let fast = |event: &&interwell::dynamics::Event| match event.kind {
+                EventKind::Impact => event.v_out.abs() > 1e-3,
                 kind => kind == EventKind::Release,
             };
             run.events.iter().filter(fast).copied().collect()
         };
         let (a, b) = (told(&a), told(&b));
-        assert_eq!(a.iter().any(|own| own.kind == EventKind::Release), stops != "stops=None");
+        assert_eq!(a.iter().any(|event| event.kind == EventKind::Release), stops != "stops=None");
         assert_eq!(a.len(), b.len());
-        for (own, exact) in a.iter().zip(&b) {
-            assert_eq!(own.kind, exact.kind);
-            near(own.t, exact.t, tolerance / 3.0);
+        for (event, exact) in a.iter().zip(&b) {
+            assert_eq!(event.kind, exact.kind);
+            near(event.t, exact.t, tolerance / 3.0);
         }
     }
 }
@@ -109,9 +109,9 @@ fn a_record_with_noise_releases_the_mass_at_any_tolerance() {
     };
     let fine = run(1e-9);
     for tolerance in [1e-3, 1e-4, 1e-5, 1e-6] {
-        let own = run(tolerance);
-        assert_eq!(own.outcome, interwell::dynamics::Outcome::Done, "{tolerance}");
-        let (rms, exact) = (own.rms_velocity.unwrap(), fine.rms_velocity.unwrap());
+        let summary = run(tolerance);
+        assert_eq!(summary.outcome, interwell::dynamics::Outcome::Done, "{tolerance}");
+        let (rms, exact) = (summary.rms_velocity.unwrap(), fine.rms_velocity.unwrap());
         assert!((rms / exact - 1.0).abs() < 10.0 * tolerance, "{tolerance}: {rms} {exact}");
     }
 }
@@ -165,7 +165,7 @@ fn noise_has_its_root_mean_square_and_its_band() {
     let dt = 0.01;
     let times: Vec<f64> = (0..40_000).map(|i| dt * f64::from(i)).collect();
     let a: Vec<f64> =
-        run_at(&m, &times).samples.iter().map(|own| own.base_accel / STANDARD_GRAVITY).collect();
+        run_at(&m, &times).samples.iter().map(|sample| sample.base_accel / STANDARD_GRAVITY).collect();
     let n = a.len() as f64;
     let rms = (a.iter().map(|a| a * a).sum::<f64>() / n).sqrt();
     near(rms, 0.5, 0.015);
@@ -252,7 +252,7 @@ fn the_last_sample_of_a_record_is_within_it_where_the_run_ends_with_it_and_where
                      run: (duration_s: {duration}, settle_s: 0, tolerance: 1e-6)"
                 ));
                 let run = run_at(&m, &[0.5, 1.0, duration]);
-                let told: Vec<f64> = run.samples.iter().map(|own| own.base_accel).collect();
+                let told: Vec<f64> = run.samples.iter().map(|sample| sample.base_accel).collect();
                 let last = if duration > 1.0 { 0.0 } else { 2.5 };
                 for (told, known) in told.iter().zip([2.75, 2.5, last]) {
                     near(*told, known, 1e-14);

@@ -123,8 +123,8 @@ fn a_motion_that_was_changed_on_its_way_is_reproduced() {
             while session.player.goal().is_some() {
                 session.player.tick(0.0);
             }
-            let (own, theirs) = (session.player.state().x, number(row[x]));
-            assert!((own - theirs).abs() < 1e-7, "{here}: {own} {theirs} at {}", row[0]);
+            let (ours, theirs) = (session.player.state().x, number(row[x]));
+            assert!((ours - theirs).abs() < 1e-7, "{here}: {ours} {theirs} at {}", row[0]);
         }
     }
 }

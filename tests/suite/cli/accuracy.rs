@@ -33,7 +33,10 @@ fn every_quantity_is_a_row_of_the_csv() {
     );
     assert!(column(&csv, "case").iter().all(|case| case == "grazing"));
     assert!(column(&csv, "verdict").iter().all(|verdict| verdict == "pass"));
-    assert_eq!(column(&csv, "quantity").iter().filter(|own| *own == "displacement at 3 s").count(), 3);
+    assert_eq!(
+        column(&csv, "quantity").iter().filter(|quantity| *quantity == "displacement at 3 s").count(),
+        3
+    );
     let numbers = |name: &str| -> Vec<Option<f64>> {
         column(&csv, name).iter().map(|text| text.parse().ok()).collect()
     };
@@ -58,7 +61,7 @@ fn speed_against_error_comes_with_a_picture() {
     }
     let csv = std::fs::read_to_string(data).unwrap();
     let methods = column(&csv, "method");
-    let rows = |name: &str| methods.iter().filter(|own| *own == name).count();
+    let rows = |name: &str| methods.iter().filter(|method| *method == name).count();
     assert_eq!((rows("Taylor series"), rows("Dormand-Prince 5(4)"), rows("RK4")), (12, 12, 8));
     assert_eq!(column(&csv, "tolerance")[0], "1e-3");
 }
@@ -71,8 +74,8 @@ fn with_stops_no_fixed_step_comes_below_what_is_said_of_them() {
     let csv = stdout("accuracy --case p2 --out - --quiet");
     let (methods, errors) = (column(&csv, "method"), column(&csv, "error"));
     let of = |name: &str| -> Vec<f64> {
-        let own = methods.iter().zip(&errors).filter(|(method, error)| *method == name && !error.is_empty());
-        own.map(|(_, error)| error.parse().unwrap()).collect()
+        let rows = methods.iter().zip(&errors).filter(|(method, error)| *method == name && !error.is_empty());
+        rows.map(|(_, error)| error.parse().unwrap()).collect()
     };
     for scheme in ["semi-implicit Euler", "velocity Verlet", "RK4"] {
         assert!(

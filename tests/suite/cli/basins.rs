@@ -14,7 +14,7 @@ fn rows_number_the_attractors_by_the_first_start_and_are_the_same_for_any_number
     assert_eq!(column(&text, "x_mm")[..6], ["-1500", "-1500", "-1500", "-1500", "-1500", "-1125"]);
     assert_eq!(column(&text, "v_m_per_s")[..5], ["-1", "-0.5", "0", "0.5", "1"]);
     let mut seen = 0;
-    for number in column(&text, "attractor").iter().map(|own| own.parse::<u64>().unwrap()) {
+    for number in column(&text, "attractor").iter().map(|cell| cell.parse::<u64>().unwrap()) {
         assert!(number >= 1 && number <= seen + 1);
         seen = seen.max(number);
     }
@@ -27,7 +27,8 @@ fn rows_number_the_attractors_by_the_first_start_and_are_the_same_for_any_number
         attractors.lines().next().unwrap(),
         "attractor,regime,period,side,rms_velocity_m_per_s,x_m,v_m_per_s,starts,share,share_low,share_high"
     );
-    let counts = column(&attractors, "starts").iter().map(|own| own.parse::<usize>().unwrap()).sum::<usize>();
+    let counts =
+        column(&attractors, "starts").iter().map(|cell| cell.parse::<usize>().unwrap()).sum::<usize>();
     assert_eq!(counts, 45);
     assert_eq!(column(&attractors, "attractor").len() as u64, seen);
 }
@@ -41,7 +42,7 @@ fn starts_beyond_the_stops_have_no_attractor_and_no_part_in_the_shares() {
     assert_eq!(column(&text, "periods")[4], "");
     let shares = column(&stdout(&format!("{line} --out /dev/null --attractors -")), "share");
     // of three starts inside; the one on the top of the barrier goes nowhere
-    assert!(shares.iter().all(|own| own.starts_with("0.3333")), "{shares:?}");
+    assert!(shares.iter().all(|share| share.starts_with("0.3333")), "{shares:?}");
     let loud = line.replace("--quiet", "--out /dev/null");
     let told = headless(&loud).assert().success().get_output().stderr.clone();
     let told = String::from_utf8(told).unwrap();
@@ -60,11 +61,11 @@ fn a_start_that_leaves_the_table_has_no_attractor() {
 #[test]
 fn random_starts_come_from_their_seed() {
     let line = |seed: &str| stdout(&format!("{PAPER} --x-mm -1.5:1.5 --v -0.2:0.2 --random 40 {seed}"));
-    let own = line("--seed 3");
-    assert_eq!(own.lines().count(), 41);
-    assert!(column(&own, "x_mm").iter().all(|x| x.parse::<f64>().unwrap().abs() <= 1.5));
-    assert_eq!(own, line("--seed 3 --jobs 3"));
-    assert_ne!(own, line("--seed 4"));
+    let rows = line("--seed 3");
+    assert_eq!(rows.lines().count(), 41);
+    assert!(column(&rows, "x_mm").iter().all(|x| x.parse::<f64>().unwrap().abs() <= 1.5));
+    assert_eq!(rows, line("--seed 3 --jobs 3"));
+    assert_ne!(rows, line("--seed 4"));
     assert_eq!(line(""), line("--seed 0"));
 }
 

@@ -25,18 +25,18 @@ impl Unfinished {
     #[track_caller]
     fn new(line: &str, kb: u32) -> Self {
         let folder = tempfile::tempdir().unwrap();
-        let own = Self { folder, line: format!("{line} --out") };
+        let sweep = Self { folder, line: format!("{line} --out") };
         let program = assert_cmd::cargo::cargo_bin!("interwell");
         let mut limited = Process::new("bash");
         limited.args(["-c", &format!("trap '' XFSZ; ulimit -f {kb}; exec \"$0\" \"$@\"")]);
-        limited.arg(program).arg("--headless").args(own.line.split_whitespace()).arg(own.path("map.csv"));
+        limited.arg(program).arg("--headless").args(sweep.line.split_whitespace()).arg(sweep.path("map.csv"));
         let end = limited.output().unwrap();
         let said = String::from_utf8_lossy(&end.stderr).into_owned();
         assert_eq!(end.status.code(), Some(1), "{said}");
         assert!(said.contains("map.csv.part") && said.contains("rows are kept"), "{said}");
         assert!(said.contains("--resume") && said.lines().count() == 1, "{said}");
-        assert!(own.path("map.csv.part").exists() && !own.path("map.csv").exists());
-        own
+        assert!(sweep.path("map.csv.part").exists() && !sweep.path("map.csv").exists());
+        sweep
     }
 
     fn path(&self, name: &str) -> PathBuf {
@@ -101,7 +101,8 @@ impl Unfinished {
 }
 
 fn names(folder: &Path) -> Vec<String> {
-    let entries = fs::read_dir(folder).unwrap().map(|own| own.unwrap().file_name().into_string().unwrap());
+    let entries =
+        fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
     // what a kill leaves of an output that appears whole
     let mut names: Vec<String> = entries.filter(|name| !name.starts_with(".interwell-")).collect();
     names.sort();
@@ -110,71 +111,71 @@ fn names(folder: &Path) -> Vec<String> {
 
 #[test]
 fn a_file_that_cannot_grow_is_gone_on_with() {
-    let own = Unfinished::new(MAP, 400);
-    assert!(own.blocks() >= 2, "a block and the header");
-    own.refuses("", 2, &["map.csv.part", "of 12006 rows", "--resume", "--force"]);
+    let sweep = Unfinished::new(MAP, 400);
+    assert!(sweep.blocks() >= 2, "a block and the header");
+    sweep.refuses("", 2, &["map.csv.part", "of 12006 rows", "--resume", "--force"]);
     // what was not whole is dropped, and so is a line that was being written
     for name in ["map.csv.part", "map.csv.part.journal"] {
-        fs::write(own.path(name), own.read(name) + "0.5,1,torn").unwrap();
+        fs::write(sweep.path(name), sweep.read(name) + "0.5,1,torn").unwrap();
     }
-    own.ends("--resume --jobs 3");
-    own.again("--resume").assert().success();
-    let said = String::from_utf8(own.again("--resume").output().unwrap().stderr).unwrap();
+    sweep.ends("--resume --jobs 3");
+    sweep.again("--resume").assert().success();
+    let said = String::from_utf8(sweep.again("--resume").output().unwrap().stderr).unwrap();
     assert_eq!(said, "", "all rows are there");
-    fs::remove_file(own.path("map.csv.json")).unwrap();
-    own.ends("--resume");
+    fs::remove_file(sweep.path("map.csv.json")).unwrap();
+    sweep.ends("--resume");
     // A walk is gone on with at its beginning.
     let walks = "sweep nominal-cubic --quiet --set run.duration_s=0.4 --set run.settle_s=0 --tolerance 1e-3 \
         --over stops.travel_limit_mm=1:6:0.04 --over excitation.amplitude_g=0:2:0.05 --carry both --jobs 1";
-    let own = Unfinished::new(walks, 300);
-    assert!(own.blocks() >= 2);
-    own.ends("--resume");
+    let sweep = Unfinished::new(walks, 300);
+    assert!(sweep.blocks() >= 2);
+    sweep.ends("--resume");
     // One of more cells than leave at once too.
     let long = walks.replace("1:6:0.04", "1:6:0.1").replace("0:2:0.05", "0:2.99:0.01");
-    let own = Unfinished::new(&long, 600);
-    assert!(own.blocks() >= 2);
-    own.ends("--resume");
+    let sweep = Unfinished::new(&long, 600);
+    assert!(sweep.blocks() >= 2);
+    sweep.ends("--resume");
 }
 
 #[test]
 fn force_begins_anew() {
-    let own = Unfinished::new(MAP, 400);
-    own.ends("--force");
+    let sweep = Unfinished::new(MAP, 400);
+    sweep.ends("--force");
 }
 
 #[test]
 fn a_changed_byte_is_found_and_nothing_is_lost() {
-    let own = Unfinished::new(MAP, 500);
-    assert!(own.blocks() >= 3, "two blocks and the header");
+    let sweep = Unfinished::new(MAP, 500);
+    assert!(sweep.blocks() >= 3, "two blocks and the header");
     let flip = |name: &str, share: f64| {
-        let mut bytes = fs::read(own.path(name)).unwrap();
+        let mut bytes = fs::read(sweep.path(name)).unwrap();
         let at = (bytes.len() as f64 * share) as usize;
         bytes[at] ^= 1;
-        fs::write(own.path(name), bytes).unwrap();
+        fs::write(sweep.path(name), bytes).unwrap();
     };
     flip("map.csv.part", 0.1);
-    own.refuses("--resume", 1, &["rows 1 to ", "changed", "nothing was changed", "--force"]);
+    sweep.refuses("--resume", 1, &["rows 1 to ", "changed", "nothing was changed", "--force"]);
     flip("map.csv.part", 0.1);
     flip("map.csv.part", 0.5);
-    own.refuses("--resume", 1, &["changed", "--resume --force keeps the "]);
+    sweep.refuses("--resume", 1, &["changed", "--resume --force keeps the "]);
     // a line of the journal that is not the last one: that one might be torn
-    let journal = own.read("map.csv.part.journal");
+    let journal = sweep.read("map.csv.part.journal");
     let third = journal.match_indices('\n').nth(1).unwrap().0 + 40;
     flip("map.csv.part.journal", third as f64 / journal.len() as f64);
-    own.refuses("--resume", 1, &["what its journal says after row 0 is changed"]);
-    own.ends("--resume --force");
+    sweep.refuses("--resume", 1, &["what its journal says after row 0 is changed"]);
+    sweep.ends("--resume --force");
 
-    let own = Unfinished::new(MAP, 400);
-    fs::write(own.path("map.csv.part"), &own.bytes()[0][..1000]).unwrap();
-    own.refuses("--resume", 1, &["rows 1 to ", "missing"]);
-    fs::write(own.path("map.csv.part.journal"), "no journal").unwrap();
-    own.refuses("--resume", 2, &["journal", "--force"]);
-    own.ends("--force");
+    let sweep = Unfinished::new(MAP, 400);
+    fs::write(sweep.path("map.csv.part"), &sweep.bytes()[0][..1000]).unwrap();
+    sweep.refuses("--resume", 1, &["rows 1 to ", "missing"]);
+    fs::write(sweep.path("map.csv.part.journal"), "no journal").unwrap();
+    sweep.refuses("--resume", 2, &["journal", "--force"]);
+    sweep.ends("--force");
 }
 
 #[test]
 fn rows_of_another_sweep_are_refused_with_what_differs() {
-    let own = Unfinished::new(MAP, 400);
+    let sweep = Unfinished::new(MAP, 400);
     for (options, words) in [
         ("--set mass_g=16", &["scene.mass_g is 15.2 there and 16"][..]),
         ("--set damping=None", &["scene.damping", "none here"]),
@@ -185,20 +186,20 @@ fn rows_of_another_sweep_are_refused_with_what_differs() {
     ] {
         let mut all = vec!["--resume"];
         all.extend(words);
-        own.refuses(&format!("{options} --resume"), 2, &all);
+        sweep.refuses(&format!("{options} --resume"), 2, &all);
     }
     // other values of the same number on an axis
-    let other = Unfinished { folder: own.folder, line: own.line.replace("1:3.5:0.5", "1.5:4:0.5") };
+    let other = Unfinished { folder: sweep.folder, line: sweep.line.replace("1:3.5:0.5", "1.5:4:0.5") };
     other.refuses("--resume", 2, &["grid.1", "6 values from 1 to 3.5", "6 values from 1.5 to 4"]);
-    let own = Unfinished { line: other.line.replace("1.5:4:0.5", "1:3.5:0.5"), ..other };
+    let sweep = Unfinished { line: other.line.replace("1.5:4:0.5", "1:3.5:0.5"), ..other };
     // another version of the program
-    let journal = own.read("map.csv.part.journal");
+    let journal = sweep.read("map.csv.part.journal");
     let (head, blocks) = journal.split_once('\n').unwrap();
     let version = format!("\"version\":\"{}\"", env!("CARGO_PKG_VERSION"));
     let json = head.split_once(' ').unwrap().1.replace(&version, "\"version\":\"0.0.9\"");
     let head = format!("{} {json}", &checksum(json.as_bytes())[..16]);
-    fs::write(own.path("map.csv.part.journal"), format!("{head}\n{blocks}")).unwrap();
-    own.refuses("--resume", 2, &["version is 0.0.9 there and", env!("CARGO_PKG_VERSION")]);
+    fs::write(sweep.path("map.csv.part.journal"), format!("{head}\n{blocks}")).unwrap();
+    sweep.refuses("--resume", 2, &["version is 0.0.9 there and", env!("CARGO_PKG_VERSION")]);
 }
 
 #[test]
@@ -209,24 +210,24 @@ fn a_table_that_changed_meanwhile_is_another_sweep() {
     let over =
         "--over excitation.amplitude_g=0:2:0.0002 --set run.duration_s=0.2 --set run.settle_s=0 --quiet";
     let line = format!("sweep {} --tolerance 1e-3 {over}", scene.display());
-    let own = Unfinished::new(&line, 300);
+    let sweep = Unfinished::new(&line, 300);
     let text = fs::read_to_string(&scene).unwrap();
     let table = text.split("path: \"").nth(1).unwrap().split('"').next().unwrap();
     let table = folder.path().join(table);
     fs::write(&table, fs::read_to_string(&table).unwrap() + "# a comment\n").unwrap();
-    own.refuses("--resume", 2, &["files.", " there and "]);
+    sweep.refuses("--resume", 2, &["files.", " there and "]);
 }
 
 #[test]
 fn one_process_alone_writes_a_file() {
-    let own = Unfinished::new(MAP, 400);
-    let lock = fs::File::open(own.path("map.csv.part.journal")).unwrap();
+    let sweep = Unfinished::new(MAP, 400);
+    let lock = fs::File::open(sweep.path("map.csv.part.journal")).unwrap();
     lock.lock().unwrap();
     for options in ["--resume", "--force", ""] {
-        own.refuses(options, 2, &["another process is writing", "map.csv"]);
+        sweep.refuses(options, 2, &["another process is writing", "map.csv"]);
     }
     drop(lock);
-    own.ends("--resume");
+    sweep.ends("--resume");
 }
 
 #[test]
@@ -240,16 +241,16 @@ fn killed_before_its_header_is_in_the_journal_it_begins_anew() {
 
 /// Starts the sweep with these options and waits until its journal has so many lines, or it has ended.
 #[cfg(unix)]
-fn started(own: &Unfinished, options: &str, lines: usize) -> std::process::Child {
+fn started(sweep: &Unfinished, options: &str, lines: usize) -> std::process::Child {
     let mut child = Process::new(assert_cmd::cargo::cargo_bin!("interwell"))
         .arg("--headless")
-        .args(own.line.split_whitespace())
-        .arg(own.path("map.csv"))
+        .args(sweep.line.split_whitespace())
+        .arg(sweep.path("map.csv"))
         .args(options.split_whitespace())
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
-    let journal = || fs::read_to_string(own.path("map.csv.part.journal")).unwrap_or_default();
+    let journal = || fs::read_to_string(sweep.path("map.csv.part.journal")).unwrap_or_default();
     while journal().matches('\n').count() < lines && child.try_wait().unwrap().is_none() {
         std::thread::yield_now();
     }
@@ -259,24 +260,24 @@ fn started(own: &Unfinished, options: &str, lines: usize) -> std::process::Child
 #[cfg(unix)]
 #[test]
 fn killed_again_and_again_it_ends_with_the_same_bytes() {
-    let own = Unfinished {
+    let sweep = Unfinished {
         folder: tempfile::tempdir().unwrap(),
         line: format!("{} --out", MAP.replace("0.001", "0.0002")),
     };
     let (mut kills, mut lines) = (0, 0);
     while kills < 10 {
-        let mut child = started(&own, "--resume --jobs 2", lines + 1);
+        let mut child = started(&sweep, "--resume --jobs 2", lines + 1);
         let _ = child.kill();
         let end = child.wait().unwrap();
         if end.success() {
             break;
         }
         kills += 1;
-        let journal = fs::read_to_string(own.path("map.csv.part.journal")).unwrap_or_default();
+        let journal = fs::read_to_string(sweep.path("map.csv.part.journal")).unwrap_or_default();
         lines = journal.matches('\n').count().max(lines);
     }
     assert!(kills >= 2, "it ended before it was killed");
-    own.ends("--resume");
+    sweep.ends("--resume");
 }
 
 #[cfg(unix)]
@@ -285,30 +286,34 @@ fn a_request_to_end_keeps_the_rows() {
     // more cells than can be run before the signal
     let over = "--over stops.travel_limit_mm=1:7:0.01 --over excitation.amplitude_g=0:2:0.01";
     let line = format!("sweep paper --quiet {over} --out");
-    let own = Unfinished { folder: tempfile::tempdir().unwrap(), line };
-    let child = started(&own, "", 2);
+    let sweep = Unfinished { folder: tempfile::tempdir().unwrap(), line };
+    let child = started(&sweep, "", 2);
     assert!(Process::new("kill").arg("-INT").arg(child.id().to_string()).status().unwrap().success());
     let end = child.wait_with_output().unwrap();
     assert_eq!(end.status.code(), Some(1));
     let said = String::from_utf8_lossy(&end.stderr).into_owned();
     assert!(said.contains("interrupted"), "{said}");
-    match names(own.folder.path())[..] {
+    match names(sweep.folder.path())[..] {
         // before the first row
         [] => assert!(said.contains("no output file was made"), "{said}"),
         _ => {
-            assert_eq!(names(own.folder.path()), ["map.csv.part", "map.csv.part.journal"]);
+            assert_eq!(names(sweep.folder.path()), ["map.csv.part", "map.csv.part.journal"]);
             assert!(said.contains("of 120801 rows") && said.contains("--resume"), "{said}");
-            own.refuses("", 2, &["of 120801 rows"]);
+            sweep.refuses("", 2, &["of 120801 rows"]);
         }
     }
 }
 
 #[test]
 fn a_picture_of_rows_that_were_there_is_the_same() {
-    let own = Unfinished::new(MAP, 400);
-    let [a, b] = ["a.png", "b.png"].map(|name| own.path(name));
-    own.refuses(&format!("--resume --quantity travel_m --plot {}", a.display()), 2, &["travel_m", "--plot"]);
-    own.again("--resume --plot").arg(&a).assert().success();
+    let sweep = Unfinished::new(MAP, 400);
+    let [a, b] = ["a.png", "b.png"].map(|name| sweep.path(name));
+    sweep.refuses(
+        &format!("--resume --quantity travel_m --plot {}", a.display()),
+        2,
+        &["travel_m", "--plot"],
+    );
+    sweep.again("--resume --plot").arg(&a).assert().success();
     headless(MAP).args(["--out", "/dev/null", "--plot"]).arg(&b).assert().success();
     assert_eq!(fs::read(a).unwrap(), fs::read(b).unwrap());
 }

@@ -49,8 +49,8 @@ fn number(cell: &str) -> f64 {
 }
 
 #[track_caller]
-fn near(own: f64, known: f64, share: f64) {
-    assert!((own - known).abs() <= share * known.abs(), "{own:e} is not {known:e}");
+fn near(value: f64, known: f64, share: f64) {
+    assert!((value - known).abs() <= share * known.abs(), "{value:e} is not {known:e}");
 }
 
 #[test]
@@ -135,11 +135,11 @@ fn the_sensitivity_is_that_of_scenes_with_a_size_changed() {
              Magnet(strength_n_mm4: 300.0, gap_mm: {gap})])"
         )
     };
-    let [own, less, more] = [10.0, 9.9, 10.1].map(magnet);
-    let paths = scenes(folder.path(), &[("own.ron", &own), ("less.ron", &less), ("more.ron", &more)]);
+    let [unchanged, less, more] = [10.0, 9.9, 10.1].map(magnet);
+    let paths = scenes(folder.path(), &[("own.ron", &unchanged), ("less.ron", &less), ("more.ron", &more)]);
     let csv = compared(&paths, "--quiet");
-    let least: Vec<f64> = column(&csv, "crossing_g").iter().map(|own| number(own)).collect();
-    let change = least[1..].iter().map(|own| (own / least[0] - 1.0).abs()).fold(0.0, f64::max);
+    let least: Vec<f64> = column(&csv, "crossing_g").iter().map(|cell| number(cell)).collect();
+    let change = least[1..].iter().map(|crossing| (crossing / least[0] - 1.0).abs()).fold(0.0, f64::max);
     assert!(change > 0.01, "{least:?}");
     near(number(&column(&csv, "threshold_sensitivity")[0]), change, 1e-12);
     assert_eq!(column(&csv, "most_sensitive_to")[0], "mechanism.1.gap_mm");
@@ -167,21 +167,21 @@ fn rows_picture_and_data_do_not_depend_on_the_threads() {
     let words = texts(&one[1]);
     assert_eq!(words, texts(&three[1]));
     for word in ["free.ron", "still.ron", "crosses from", "reach", "fastest impact", "leaves its stop from"] {
-        assert!(words.iter().any(|own| own == word), "`{word}` is not in {words:?}");
+        assert!(words.iter().any(|text| text == word), "`{word}` is not in {words:?}");
     }
     // what is not there is not drawn
     for word in ["power", "sensitivity"] {
-        assert!(words.iter().all(|own| own != word), "`{word}` is in {words:?}");
+        assert!(words.iter().all(|text| text != word), "`{word}` is in {words:?}");
     }
     // the data are the cells that have a value, in the same digits
     let (rows, data) = (fs::read_to_string(&one[0]).unwrap(), fs::read_to_string(&one[2]).unwrap());
     assert_eq!(data.lines().next(), Some("series,scene,value"));
     let names =
-        rows.lines().next().unwrap().split(',').filter(|own| !["scene", "most_sensitive_to"].contains(own));
+        rows.lines().next().unwrap().split(',').filter(|name| !["scene", "most_sensitive_to"].contains(name));
     let mut count = 0;
     for name in names {
         for (scene, value) in
-            column(&rows, "scene").iter().zip(column(&rows, name)).filter(|own| !own.1.is_empty())
+            column(&rows, "scene").iter().zip(column(&rows, name)).filter(|pair| !pair.1.is_empty())
         {
             let value = match value.as_str() {
                 "true" => "1",
@@ -229,7 +229,7 @@ fn every_empty_cell_is_explained() {
                 let explains = |line: &str| {
                     let columns = line.split_once(": no ").and_then(|(_, rest)| rest.split_once(": "));
                     line.contains(row[0])
-                        && columns.is_some_and(|(names, _)| names.split(", ").any(|own| own == *name))
+                        && columns.is_some_and(|(names, _)| names.split(", ").any(|heading| heading == *name))
                 };
                 assert!(said.lines().any(explains), "{name} of {} {more}:\n{csv}{said}", row[0]);
             }
@@ -252,7 +252,7 @@ fn what_a_row_cannot_say_is_said() {
     assert!(both.contains("still.ron: 0.6 g does not move it"), "{both}");
     assert!(!both.contains("only scene") && !both.contains("with the run of"), "{both}");
     // every empty cell of a row has a reason, one line for all that it is the same of
-    let [first, second] = [&paths[0], &paths[1]].map(|own| own.display().to_string());
+    let [first, second] = [&paths[0], &paths[1]].map(|path| path.display().to_string());
     for line in [
         format!("{first}, {second}: no mean_load_power_w: it has no transducer\n"),
         format!("{first}: no impact_speed_max_m_per_s: it strikes no stop\n"),
@@ -287,7 +287,7 @@ fn what_a_row_cannot_say_is_said() {
     // a settled window that is left out begins in the middle: the runs are the same
     let weak = text("weak.ron", "run: (duration_s: 4.0)");
     let lent = said(&[paths[1].clone(), weak], "");
-    let own = paths[1].display();
-    assert!(lent.contains(&format!("weak.ron: under the excitation of {own}\n")), "{lent}");
+    let lender = paths[1].display();
+    assert!(lent.contains(&format!("weak.ron: under the excitation of {lender}\n")), "{lent}");
     assert_eq!(said(&paths, "--quiet"), "");
 }

@@ -39,11 +39,11 @@ fn the_landscape_in_json() {
     let mut command = headless("curve --quiet --points 3 --out /dev/null --landscape");
     command.arg(&file).arg(&path).assert().success();
     let text = fs::read_to_string(&file).unwrap();
-    let own: serde_json::Value = serde_json::from_str(&text).unwrap();
-    assert_eq!(own["kinks"].as_array().unwrap().len(), 2, "{text}");
-    assert_eq!(own["equilibria"].as_array().unwrap().len(), 3, "{text}");
-    near(own["kinks"][1]["x_m"].as_f64().unwrap(), 7.18e-3, 5e-6);
-    near(own["equilibria"][2]["x_m"].as_f64().unwrap(), 7.1807e-3, 5e-7);
+    let landscape: serde_json::Value = serde_json::from_str(&text).unwrap();
+    assert_eq!(landscape["kinks"].as_array().unwrap().len(), 2, "{text}");
+    assert_eq!(landscape["equilibria"].as_array().unwrap().len(), 3, "{text}");
+    near(landscape["kinks"][1]["x_m"].as_f64().unwrap(), 7.18e-3, 5e-6);
+    near(landscape["equilibria"][2]["x_m"].as_f64().unwrap(), 7.1807e-3, 5e-7);
 }
 
 #[test]
@@ -70,9 +70,9 @@ fn a_mass_that_is_too_fast_leaves_the_range() {
     let mut command = headless("simulate --set stops=None --out /dev/null --summary");
     command.arg(&summary).arg(&path).args(["--set", "start=At(x_mm: 7.2, v_m_per_s: 8)"]);
     command.assert().success().stderr(contains("left_table"));
-    let own: serde_json::Value = serde_json::from_str(&fs::read_to_string(&summary).unwrap()).unwrap();
-    assert_eq!(own["outcome"], "left_table");
-    near(own["final_x_m"].as_f64().unwrap(), 1.15 * 7.179e-3, 1e-6);
+    let json: serde_json::Value = serde_json::from_str(&fs::read_to_string(&summary).unwrap()).unwrap();
+    assert_eq!(json["outcome"], "left_table");
+    near(json["final_x_m"].as_f64().unwrap(), 1.15 * 7.179e-3, 1e-6);
 }
 
 #[test]

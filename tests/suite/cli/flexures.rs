@@ -25,9 +25,9 @@ pub(super) fn scene() -> (tempfile::TempDir, PathBuf) {
 
 /// What `COMMAND scene OPTIONS` writes to standard output.
 pub(super) fn stdout(command: &str, path: &std::path::Path, options: &str) -> String {
-    let mut own = headless(command);
-    own.arg(path).args(options.split_whitespace());
-    String::from_utf8(own.assert().success().get_output().stdout.clone()).unwrap()
+    let mut program = headless(command);
+    program.arg(path).args(options.split_whitespace());
+    String::from_utf8(program.assert().success().get_output().stdout.clone()).unwrap()
 }
 
 pub(super) fn numbers(csv: &str, name: &str) -> Vec<f64> {

@@ -80,7 +80,7 @@ fn what_does_not_fit_together_is_refused() {
     let folder = folder.path();
     shards(folder, MAP, &[1, 2], 2);
     shards(other.path(), &format!("{MAP} --set mass_g=16"), &[2], 2);
-    let own = |name: &str| folder.join(name).display().to_string();
+    let path = |name: &str| folder.join(name).display().to_string();
     let foreign = other.path().join("p2.csv").display().to_string();
     let refuse = |parts: &[&str], words: &[&str]| refused(merge(folder, parts, "map.csv"), words);
     refuse(&["p1.csv", &foreign], &[&foreign, "p1.csv", "scene.mass_g is 16.0 there and 15.2 here"]);
@@ -91,24 +91,24 @@ fn what_does_not_fit_together_is_refused() {
     shards(other.path(), MAP, &[3], 3);
     let third = other.path().join("p3.csv").display().to_string();
     refuse(&["p1.csv", &third], &["shard 3/3", "1/2"]);
-    let manifest = fs::read_to_string(own("p2.csv.json")).unwrap();
+    let manifest = fs::read_to_string(path("p2.csv.json")).unwrap();
     let version = format!("\"version\": \"{}\"", env!("CARGO_PKG_VERSION"));
-    fs::write(own("p2.csv.json"), manifest.replace(&version, "\"version\": \"0.0.9\"")).unwrap();
+    fs::write(path("p2.csv.json"), manifest.replace(&version, "\"version\": \"0.0.9\"")).unwrap();
     refuse(&["p1.csv", "p2.csv"], &["version is 0.0.9 there and"]);
-    fs::write(own("p2.csv.json"), "{}").unwrap();
+    fs::write(path("p2.csv.json"), "{}").unwrap();
     refuse(&["p1.csv", "p2.csv"], &["p2.csv.json", "no manifest"]);
-    fs::write(own("p2.csv.json"), &manifest).unwrap();
+    fs::write(path("p2.csv.json"), &manifest).unwrap();
 
-    let rows = fs::read(own("p2.csv")).unwrap();
+    let rows = fs::read(path("p2.csv")).unwrap();
     let mut flipped = rows.clone();
     flipped[rows.len() / 2] ^= 1;
     for wrong in [&flipped[..], &rows[..rows.len() / 2], &[&rows[..], b"1,2\n"].concat()] {
-        fs::write(own("p2.csv"), wrong).unwrap();
+        fs::write(path("p2.csv"), wrong).unwrap();
         let words = contains("p2.csv is changed");
         merge(folder, &["p1.csv", "p2.csv"], "map.csv").assert().code(2).stderr(words);
         assert!(!folder.join("map.csv").exists() && !folder.join("map.csv.json").exists());
     }
-    fs::write(own("p2.csv"), &rows).unwrap();
+    fs::write(path("p2.csv"), &rows).unwrap();
     refused(merge(folder, &["p1.csv", "p2.csv"], "p1.csv"), &["overwrite"]);
     refused(headless("merge p1.csv --set mass_g=1"), &["--set"]);
     merge(folder, &["p1.csv", "p2.csv"], "map.csv").assert().success();

@@ -78,15 +78,15 @@ fn thresholds_are_tables() {
     let csv = stdout("threshold paper --over stops.travel_limit_mm=1,1.5,4 --resolution 0.001");
     assert_eq!(column(&csv, "of"), ["crossing"; 3]);
     let least: Vec<f64> = column(&csv, "value").iter().map(|value| value.parse().unwrap()).collect();
-    for (mm, own) in [1.0, 1.5, 4.0].into_iter().zip(&least) {
+    for (mm, g) in [1.0, 1.5, 4.0].into_iter().zip(&least) {
         let runs = format!(
             "sweep paper --set stops.travel_limit_mm={mm} --over excitation.amplitude_g={},{} \
              --until-settled 100 --quiet",
-            own - 0.001,
-            own
+            g - 0.001,
+            g
         );
         let crossings = column(&stdout(&runs), "crossings");
-        assert!(crossings[0] == "0" && crossings[1] != "0", "{mm} mm, {own} g: {crossings:?}");
+        assert!(crossings[0] == "0" && crossings[1] != "0", "{mm} mm, {g} g: {crossings:?}");
     }
     // whatever the scene's own amplitude is
     assert_eq!(stdout("threshold paper --set excitation.amplitude_g=0.1"), stdout("threshold paper"));

@@ -145,8 +145,8 @@ fn every_relation_between_fields_is_checked() {
 
 #[test]
 fn a_settle_time_moves_with_a_duration_that_is_set() {
-    let settle = |own: &str, arguments: &[&str]| {
-        let mut document = document(&[("run", own)]);
+    let settle = |run: &str, arguments: &[&str]| {
+        let mut document = document(&[("run", run)]);
         arguments.iter().for_each(|argument| document.set(argument).unwrap());
         let said = document.settle_within();
         (document.check().is_ok(), document.scene.run.settle_s, said)
@@ -159,15 +159,15 @@ fn a_settle_time_moves_with_a_duration_that_is_set() {
         "{said}"
     );
     // It lies within; it was itself set; nothing was.
-    for (own, arguments, valid) in [
+    for (run, arguments, valid) in [
         ("(duration_s: 10, settle_s: 5)", &["run.duration_s=6"][..], true),
         ("(duration_s: 10, settle_s: 5)", &["run.duration_s=4", "run.settle_s=5"][..], false),
         ("(duration_s: 10)", &["run=(duration_s: 4, settle_s: 5)"][..], false),
         ("(duration_s: 4, settle_s: 5)", &[][..], false),
         ("(duration_s: 10, settle_s: 5)", &["run.duration_s=-1"][..], false),
     ] {
-        let found = settle(own, arguments);
-        assert_eq!((found.0, found.2), (valid, None), "{own} {arguments:?}");
+        let found = settle(run, arguments);
+        assert_eq!((found.0, found.2), (valid, None), "{run} {arguments:?}");
     }
 }
 

@@ -68,11 +68,14 @@ fn every_path_is_there() {
         assert!(numeric.contains(&path), "{path}");
         let document = with(&[&format!("{path}=1")]);
         assert_eq!(FieldPath::new(&path).get(&document.scene), Some(1.0));
-        let own = FieldPath::new(&path).get(&scene).unwrap();
-        assert_eq!(prototype().axes(&[format!("{path}={own}")]).unwrap()[0].values, [own]);
+        let value = FieldPath::new(&path).get(&scene).unwrap();
+        assert_eq!(prototype().axes(&[format!("{path}={value}")]).unwrap()[0].values, [value]);
     }
     for path in ["mechanism.parallel", "mechanism.buckling", "mechanism.plane_strain"] {
-        assert!(all.iter().any(|own| own == path) && !numeric.iter().any(|own| own == path), "{path}");
+        assert!(
+            all.iter().any(|field| field == path) && !numeric.iter().any(|field| field == path),
+            "{path}"
+        );
     }
     let changed = with(&[
         "mechanism.plane_strain=true",

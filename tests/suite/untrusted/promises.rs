@@ -76,13 +76,16 @@ pub fn table(bytes: &[u8]) {
         assert!(curve.breaks().is_sorted() && curve.breaks().iter().all(|at| low < *at && *at < high));
         let allowed = 1.001 * tolerance * force_scale(&table) + 1e-13 * largest;
         for (x, force) in table.x.iter().zip(&table.force) {
-            let own = curve.force(x.clamp(low, high));
-            assert!((own - force).abs() <= allowed, "{own:e} for {force:e} at {x:e}, allowed {allowed:e}");
+            let fitted = curve.force(x.clamp(low, high));
+            assert!(
+                (fitted - force).abs() <= allowed,
+                "{fitted:e} for {force:e} at {x:e}, allowed {allowed:e}"
+            );
         }
         let mechanism = Mechanism::new(curve);
         let equilibria = &mechanism.landscape.equilibria;
         assert!(equilibria.is_sorted_by(|a, b| a.x < b.x), "{equilibria:?}");
-        assert!(equilibria.iter().all(|own| low <= own.x && own.x <= high), "{equilibria:?}");
+        assert!(equilibria.iter().all(|point| low <= point.x && point.x <= high), "{equilibria:?}");
         let mut document = small();
         document.scene.start =
             Start::At { x_mm: 0.5e3 * low + 0.5e3 * high, v_m_per_s: 0.0, electrical: 0.0 };
@@ -130,10 +133,10 @@ pub fn set(bytes: &[u8]) {
             in_words(error, "--set ");
             assert_eq!(write(&document.scene).unwrap(), before, "changed by a refused `{argument}`");
         } else if let Some((field, value)) = argument.split_once('=')
-            && let (Some(own), Ok(value)) =
+            && let (Some(held), Ok(value)) =
                 (FieldPath::new(field.trim()).get(&document.scene), value.trim().parse::<f64>())
         {
-            assert!(own == value || value.is_nan(), "{own:?} after `{argument}`");
+            assert!(held == value || value.is_nan(), "{held:?} after `{argument}`");
         }
     }
     reads_back(&document.scene);
@@ -179,7 +182,7 @@ pub fn over(bytes: &[u8]) {
             let listed: Vec<String> = axis.values.iter().map(|value| format!("{value:?}")).collect();
             let listed = format!("{}={}", axis.field, listed.join(","));
             let again = scene::Axis::parse(&listed, &document.scene);
-            assert_eq!(again.as_ref().map(|own| &own.values), Ok(&axis.values), "{listed}");
+            assert_eq!(again.as_ref().map(|parsed| &parsed.values), Ok(&axis.values), "{listed}");
         }
     }
     last_cell.check().unwrap();
@@ -206,7 +209,7 @@ fn preset_and_arguments(bytes: &[u8]) -> Option<(Document, Vec<&str>)> {
     let text = std::str::from_utf8(bytes).ok().filter(|text| !text.contains(['/', '\\']))?;
     let mut lines = text.lines();
     let name = lines.next()?;
-    let preset = scene::PRESETS.iter().find(|own| own.name == name)?;
+    let preset = scene::PRESETS.iter().find(|preset| preset.name == name)?;
     Some((Document::load(preset.name).unwrap(), lines.collect()))
 }
 
@@ -230,7 +233,7 @@ fn rows_stand_on_lines(text: &str, names: [&'static str; 2]) {
     for (row, line) in columns.rows.iter().zip(&columns.lines) {
         let values: Vec<f64> =
             lines[line - 1].split(',').filter_map(|v| v.replace('"', "").trim().parse().ok()).collect();
-        assert!(row.iter().all(|own| values.contains(own)), "{row:?} is not on line {line}");
+        assert!(row.iter().all(|value| values.contains(value)), "{row:?} is not on line {line}");
     }
 }
 
@@ -246,27 +249,27 @@ fn in_words(message: impl Display, about: &str) {
 
 /// What was read is written as a text that reads as the same.
 #[track_caller]
-fn reads_back(own: &scene::Scene) {
-    let written = write(own).unwrap();
+fn reads_back(scene: &scene::Scene) {
+    let written = write(scene).unwrap();
     let again = match Document::from_text("written", &written, Files::default()) {
         Ok(again) => again.scene,
         Err(error) => panic!("{error}\n{written}"),
     };
     // NaN is read, and refused by the check; it is unequal to itself.
     assert_eq!(write(&again).unwrap(), written);
-    if *own == own.clone() {
-        assert_eq!(again, *own, "{written}");
+    if *scene == scene.clone() {
+        assert_eq!(again, *scene, "{written}");
     }
 }
 
 /// The arguments that the program offers for a scene make it from another one.
 #[track_caller]
-fn can_be_set(own: &scene::Scene) {
+fn can_be_set(scene: &scene::Scene) {
     let mut made = Document::load("nominal-cubic").unwrap();
-    for argument in arguments(&made.scene, own) {
+    for argument in arguments(&made.scene, scene) {
         made.set(&argument).unwrap_or_else(|error| panic!("{error}"));
     }
-    let left = arguments(&made.scene, own);
+    let left = arguments(&made.scene, scene);
     assert!(left.is_empty(), "{left:?}");
 }
 
@@ -314,7 +317,11 @@ fn runs(document: &Document, mechanism: Mechanism) -> Option<Model> {
     assert!(run.samples.len() <= times.len());
     if run.summary.outcome == Outcome::Done {
         assert_eq!(run.samples.len(), times.len());
-        assert!(run.samples.iter().all(|own| own.x.is_finite() && own.v.is_finite()), "{:?}", run.samples);
+        assert!(
+            run.samples.iter().all(|sample| sample.x.is_finite() && sample.v.is_finite()),
+            "{:?}",
+            run.samples
+        );
     }
     Some(model)
 }
