@@ -1,5 +1,5 @@
-//! Tells the binary where git keeps the log whose last line names the commit. The binary alone reads that file, so
-//! that a commit does not make cargo build the library again.
+//! Tells the binary where git keeps the log whose last line names the commit. The binary alone reads that
+//! file, so that a commit does not make cargo build the library again.
 
 use std::path::{Path, PathBuf};
 use std::{env, fs};

@@ -1,3 +1,4 @@
+# shellcheck shell=bash
 # What the scripts of this folder share; sourced by them.
 
 fail() { echo "error: $*" >&2; exit 1; }
@@ -72,7 +73,7 @@ scenes() {
 # documents FOLDER: they lie beside each other as in the source, so that their links lead somewhere.
 documents() {
     mkdir -p "$1/docs" "$1/assets" "$1/python"
-    cp README.md CHANGELOG.md CONTRIBUTING.md CITATION.cff LICENSE-APACHE LICENSE-MIT "$1"
+    cp README.md CHANGELOG.md CONTRIBUTING.md SECURITY.md CITATION.cff LICENSE-APACHE LICENSE-MIT "$1"
     cp python/README.md "$1/python"
     cp docs/*.md "$1/docs"
     cp assets/*.png "$1/assets"

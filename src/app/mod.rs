@@ -4,8 +4,8 @@
 //! to background questions, and works without a window; the other modules draw it. A view is a function of
 //! a [`views::ViewContext`].
 //!
-//! `docs/architecture.md` says what each module holds. They come in an order, `start`, `task`, `words`, `session`,
-//! `export`, `ui`, `panels`, `views`, `window`, and each uses only those before it, which
+//! `docs/architecture.md` says what each module holds. They come in an order, `start`, `task`, `words`,
+//! `session`, `export`, `ui`, `panels`, `views`, `window`, and each uses only those before it, which
 //! `tests/suite/layers.rs` checks.
 
 pub mod export;
@@ -93,4 +93,12 @@ fn has_display() -> bool {
     let unix = cfg!(all(unix, not(target_os = "macos")));
     let set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
     !unix || ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"].into_iter().any(set)
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn the_icon_is_a_picture() {
+        assert_eq!((super::icon().width, super::icon().height), (128, 128));
+    }
 }

@@ -32,11 +32,11 @@ const REMEDIES: &[(&str, &str)] = &[
     ("egui_glow", NO_OPENGL),
 ];
 
-const NO_OPENGL: &str = "there is no usable OpenGL: install the driver of the graphics card, or Mesa, which needs \
-                         no card (on Debian libgl1)";
+const NO_OPENGL: &str = "there is no usable OpenGL: install the driver of the graphics card, or Mesa, which \
+                         needs no card (on Debian libgl1)";
 
-/// Whether the window has come up: from then on a panic is a fault of this program and is shown as such. The crates
-/// below panic where a library is missing.
+/// Whether the window has come up: from then on a panic is a fault of this program and is shown as such. The
+/// crates below panic where a library is missing.
 #[derive(Clone, Default)]
 pub struct Started(Arc<AtomicBool>);
 

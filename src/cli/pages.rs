@@ -73,7 +73,7 @@ pub static VERSION: LazyLock<String> = LazyLock::new(|| {
     if commit.is_empty() { version.to_owned() } else { format!("{version} ({commit})") }
 });
 
-/// The first digits of the commit, of the last line of git's log; the log itself does not get into the binary.
+/// The first digits of the commit, of the last line of git's log; the log itself is not in the binary.
 const COMMIT: [u8; 8] = {
     let log = include_bytes!(env!("INTERWELL_LOG"));
     let mut begin = log.len().saturating_sub(1);
