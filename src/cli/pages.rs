@@ -59,7 +59,7 @@ fn documented(name: Option<&str>) -> Result<clap::Command, Failure> {
     let Some(name) = name else { return Ok(all) };
     let own = all.get_subcommands().find(|own| own.get_name() == name && !own.is_hide_set());
     let Some(own) = own else {
-        refuse!("`{name}` is no command that has a page: {}", command_names());
+        refuse!("there is no page of `{name}`: name {}", command_names());
     };
     let own = own.clone().display_name(format!("interwell-{name}")).disable_help_flag(true);
     Ok(own.bin_name(format!("interwell --headless {name}")))
