@@ -64,7 +64,7 @@ pub struct Options {
 #[derive(Debug, Subcommand)]
 pub enum Word {
     #[command(flatten)]
-    Command(Command),
+    Command(Box<Command>),
     #[command(flatten)]
     Page(Page),
 }
