@@ -24,8 +24,11 @@ export SOURCE_DATE_EPOCH
 binary() {
     binary=${1:-}
     if [ -z "$binary" ]; then
+        # where rust-lld links, equal functions are kept once; elsewhere the linker may not know how
+        local fold=()
+        [ "$(uname -sm)" != "Linux x86_64" ] || fold=(-C link-arg=-Wl,--icf=all)
         RUSTFLAGS="--remap-path-prefix=$root=. --remap-path-prefix=${CARGO_HOME:-$HOME/.cargo}=cargo" \
-            cargo build --locked --profile dist --bin interwell
+            cargo rustc --locked --profile dist --bin interwell -- -C strip=symbols ${fold[@]+"${fold[@]}"}
         binary=$target/dist/interwell${2:-}
     fi
     [ -x "$binary" ] || fail "$binary is no program"
