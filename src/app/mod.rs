@@ -4,13 +4,14 @@
 //! to background questions, and works without a window; the other modules draw it. A view is a function of
 //! a [`views::ViewContext`].
 //!
-//! `docs/architecture.md` says what each module holds. They come in an order, `task`, `words`, `session`,
-//! `export`, `ui`, `panels`, `views`, `window`, and each uses only those before it, which
+//! `docs/architecture.md` says what each module holds. They come in an order, `start`, `task`, `words`,
+//! `session`, `export`, `ui`, `panels`, `views`, `window`, and each uses only those before it, which
 //! `tests/suite/layers.rs` checks.
 
 pub mod export;
 pub mod panels;
 pub mod session;
+mod start;
 pub mod task;
 pub mod ui;
 pub mod views;
@@ -31,9 +32,9 @@ pub enum AppError {
     /// The scene cannot be run.
     #[error(transparent)]
     Scene(#[from] CannotRun),
-    /// The machine has no display or no usable graphics.
+    /// The machine has no display, or lacks a library or usable graphics.
     #[error(
-        "no window can be opened ({0}); without a display use interwell --headless, see interwell --help"
+        "no window can be opened: {0}; or work without one by interwell --headless, see interwell --help"
     )]
     NoWindow(String),
 }
@@ -44,19 +45,23 @@ pub fn run(spec: Option<&str>, refused: impl FnOnce(CannotRun)) -> Result<(), Ap
     let opened = Window::open(spec, Settings::default(), Arc::new(|| ())).map(drop);
     if !has_display() {
         opened?;
-        return Err(AppError::NoWindow("neither DISPLAY nor WAYLAND_DISPLAY is set".to_owned()));
+        return Err(AppError::NoWindow(start::NO_DISPLAY.to_owned()));
     }
     opened.unwrap_or_else(refused);
     let viewport = egui::ViewportBuilder::default()
         .with_title("interwell")
         .with_app_id("interwell")
+        .with_icon(icon())
         .with_inner_size([1280.0, 720.0])
         .with_min_inner_size([640.0, 400.0]);
     // no gradients are drawn that would need it, and it costs a processor that paints much of its time
     let dithering = false;
     let options = eframe::NativeOptions { viewport, dithering, ..eframe::NativeOptions::default() };
     let spec = spec.map(str::to_owned);
+    let started = start::Started::default();
+    let begun = started.clone();
     let start = move |creation: &eframe::CreationContext<'_>| -> Result<Box<dyn eframe::App>, _> {
+        begun.now();
         window::prepare(&creation.egui_ctx);
         let settings = creation
             .storage
@@ -71,10 +76,16 @@ pub fn run(spec: Option<&str>, refused: impl FnOnce(CannotRun)) -> Result<(), Ap
         window.remember_file();
         Ok(Box::new(window))
     };
-    eframe::run_native("interwell", options, Box::new(start)).map_err(|error| {
-        let text = error.to_string();
-        AppError::NoWindow(text.lines().next().unwrap_or_default().to_owned())
-    })
+    started
+        .guard(|| {
+            eframe::run_native("interwell", options, Box::new(start)).map_err(|error| error.to_string())
+        })
+        .map_err(|reason| AppError::NoWindow(start::remedy(&reason)))
+}
+
+/// The drawing of `packaging/icon.svg`.
+fn icon() -> egui::IconData {
+    eframe::icon_data::from_png_bytes(include_bytes!("../../assets/icon.png")).unwrap_or_default()
 }
 
 /// Whether there is a display; assumed where the environment does not tell (outside Unix, and on macOS).
@@ -82,4 +93,12 @@ fn has_display() -> bool {
     let unix = cfg!(all(unix, not(target_os = "macos")));
     let set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
     !unix || ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"].into_iter().any(set)
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn the_icon_is_a_picture() {
+        assert_eq!((super::icon().width, super::icon().height), (128, 128));
+    }
 }

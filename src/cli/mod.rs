@@ -17,6 +17,7 @@ mod merge;
 mod options;
 mod orbit;
 mod outputs;
+mod pages;
 mod picture;
 mod presets;
 mod progress;
@@ -39,7 +40,7 @@ pub use options::{Options, command_names};
 
 // what most commands use
 use failure::refuse;
-use options::{ChartOptions, Common, PlotOptions, whole};
+use options::{ChartOptions, Common, PlotOptions, Word, whole};
 use outputs::{Output, Outputs, write_alone};
 use picture::{Picture, caption};
 use progress::{bar, with_bar};
@@ -84,11 +85,17 @@ pub fn run(
     let commands = command_names();
     match (command, headless, scene) {
         (Some(_), _, Some(scene)) => refuse!("`{scene}` stands before the command: put the scene after it"),
-        (Some(command), false, None) => {
+        (Some(Word::Page(page)), _, None) => {
+            if let Some(option) = common.given(&["set", "tolerance", "jobs", "out", "quiet"]) {
+                refuse!("--{option} changes nothing in `{}`: leave it out", page.name());
+            }
+            page.run()
+        }
+        (Some(Word::Command(command)), false, None) => {
             let name = command.name();
             refuse!("`{name}` works without a window: write interwell --headless {name}")
         }
-        (Some(mut command), true, None) => {
+        (Some(Word::Command(mut command)), true, None) => {
             if let Err(option) = command.common().put_before(common) {
                 refuse!("{option} is given before and after the command: give it once");
             }

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{ArgGroup, Args, CommandFactory, Parser, Subcommand};
 
+use super::pages::{Page, VERSION};
 use super::{Failure, say};
 
 const USAGE: &str = "interwell [SCENE]
@@ -40,7 +41,7 @@ Exit status: 0 done; 1 the run or the writing failed, a case of `accuracy` falls
 
 /// Bistable mechanisms with hard travel limits: see and compute how stops start interwell motion.
 #[derive(Debug, Parser)]
-#[command(name = "interwell", version, override_usage = USAGE, after_help = EXAMPLES)]
+#[command(name = "interwell", version = VERSION.as_str(), override_usage = USAGE, after_help = EXAMPLES)]
 #[command(disable_help_subcommand = true)]
 pub struct Options {
     /// Work without a window; every command needs it, before or after its name
@@ -53,10 +54,19 @@ pub struct Options {
 
     /// What to compute
     #[command(subcommand)]
-    pub command: Option<Command>,
+    pub command: Option<Word>,
 
     #[command(flatten)]
     pub common: Common,
+}
+
+/// What stands in the place of a command.
+#[derive(Debug, Subcommand)]
+pub enum Word {
+    #[command(flatten)]
+    Command(Box<Command>),
+    #[command(flatten)]
+    Page(Page),
 }
 
 /// Defines the commands: help, name, variant, positional argument in the usage line, the common options that

@@ -10,6 +10,7 @@ mod flexure_numbers;
 mod flexures;
 mod options;
 mod outputs;
+mod pages;
 mod section;
 mod shards;
 mod simulate;
@@ -102,8 +103,7 @@ fn without_headless_it_says_what_to_write() {
 }
 
 #[test]
-fn help_and_version() {
-    plain("--version").assert().success().stdout(format!("interwell {}\n", env!("CARGO_PKG_VERSION")));
+fn help_names_commands_and_options() {
     for word in COMMANDS.into_iter().chain(["Examples", "Exit status"]) {
         plain("--help").assert().success().stdout(contains(word));
     }

@@ -290,7 +290,8 @@ fn the_reading_of_the_damping_ratio_is_the_same_everywhere() {
 #[test]
 fn links_and_pictures_lead_somewhere() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let mut pages = vec![root.join("README.md"), root.join("CONTRIBUTING.md"), root.join("CHANGELOG.md")];
+    let pages = ["README.md", "CONTRIBUTING.md", "CHANGELOG.md", "SECURITY.md"];
+    let mut pages = pages.map(|page| root.join(page)).to_vec();
     pages.extend(fs::read_dir(root.join("docs")).unwrap().map(|entry| entry.unwrap().path()));
     let mut links = 0;
     for page in pages.iter().filter(|page| page.extension().is_some_and(|ending| ending == "md")) {
@@ -304,4 +305,16 @@ fn links_and_pictures_lead_somewhere() {
         }
     }
     assert!(links > 8, "{links}");
+}
+
+#[test]
+fn the_version_is_the_same_everywhere() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let version = env!("CARGO_PKG_VERSION");
+    let citation = fs::read_to_string(root.join("CITATION.cff")).unwrap();
+    assert!(citation.lines().any(|line| line == format!("version: {version}")), "CITATION.cff");
+    for name in [format!("interwell_{version}_amd64.deb"), format!("interwell-{version}-x86_64-linux.tar.gz")]
+    {
+        assert!(README.contains(&name), "README.md does not name {name}");
+    }
 }
