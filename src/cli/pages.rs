@@ -57,12 +57,12 @@ impl Page {
 fn documented(name: Option<&str>) -> Result<clap::Command, Failure> {
     let all = command_line().disable_help_flag(true).disable_version_flag(true);
     let Some(name) = name else { return Ok(all) };
-    let own = all.get_subcommands().find(|own| own.get_name() == name && !own.is_hide_set());
-    let Some(own) = own else {
+    let named = |command: &&clap::Command| command.get_name() == name && !command.is_hide_set();
+    let Some(command) = all.get_subcommands().find(named) else {
         refuse!("there is no page of `{name}`: name {}", command_names());
     };
-    let own = own.clone().display_name(format!("interwell-{name}")).disable_help_flag(true);
-    Ok(own.bin_name(format!("interwell --headless {name}")))
+    let command = command.clone().display_name(format!("interwell-{name}")).disable_help_flag(true);
+    Ok(command.bin_name(format!("interwell --headless {name}")))
 }
 
 /// The version, and in brackets the commit where it is known.

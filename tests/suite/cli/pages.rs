@@ -31,8 +31,8 @@ fn the_manual_has_a_page_for_each_command_with_its_options() {
     let all = page("manual");
     for word in COMMANDS {
         assert!(all.contains(&format!("interwell-{word}(1)")), "{word} is not in: {all}");
-        let own = page(&format!("manual {word}"));
-        assert!(own.contains(&format!("interwell --headless {word}")), "{own}");
+        let command = page(&format!("manual {word}"));
+        assert!(command.contains(&format!("interwell --headless {word}")), "{command}");
         // the options of its help, no more and no less
         let help = stdout(&format!("{word} --help"));
         let of = |text: &str| -> Vec<String> {
@@ -43,8 +43,8 @@ fn the_manual_has_a_page_for_each_command_with_its_options() {
             names.sort();
             names
         };
-        assert_eq!(of(&own), of(&help), "{word}");
-        assert!(!of(&own).is_empty(), "{word}");
+        assert_eq!(of(&command), of(&help), "{word}");
+        assert!(!of(&command).is_empty(), "{word}");
     }
     refused(plain("manual swep"), &["`swep`", "sweep"]);
     refused(headless("manual completions"), &["`completions`", "sweep"]);
@@ -61,8 +61,8 @@ fn the_first_page_of_the_help_leaves_them_out() {
 fn the_version_names_the_commit_of_a_clone() {
     let output = plain("--version").assert().success().get_output().stdout.clone();
     let text = String::from_utf8(output).unwrap();
-    let own = format!("interwell {}", env!("CARGO_PKG_VERSION"));
-    let rest = text.strip_prefix(&own).unwrap_or_else(|| panic!("{text}")).trim_end();
+    let version = format!("interwell {}", env!("CARGO_PKG_VERSION"));
+    let rest = text.strip_prefix(&version).unwrap_or_else(|| panic!("{text}")).trim_end();
     let commit = rest.strip_prefix(" (").and_then(|rest| rest.strip_suffix(')'));
     let is_commit = |commit: &str| commit.len() == 8 && commit.bytes().all(|digit| digit.is_ascii_hexdigit());
     assert!(rest.is_empty() || commit.is_some_and(is_commit), "{text}");
