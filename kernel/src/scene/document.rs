@@ -92,8 +92,8 @@ impl Document {
         }
     }
 
-    /// Reads a scene file, the built-in scene of that name, or the scene of a link. A path such as `./paper` is
-    /// always a file.
+    /// Reads a scene file, the built-in scene of that name, or the scene of a link. A path such as `./paper`
+    /// is always a file.
     pub fn load(spec: &str) -> Result<Self, SceneError> {
         if is_link(spec) {
             return Self::from_link(spec);
