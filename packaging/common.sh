@@ -24,11 +24,13 @@ export SOURCE_DATE_EPOCH
 binary() {
     binary=${1:-}
     if [ -z "$binary" ]; then
-        # where rust-lld links, equal functions are kept once; elsewhere the linker may not know how
-        local fold=()
-        [ "$(uname -sm)" != "Linux x86_64" ] || fold=(-C link-arg=-Wl,--icf=all)
+        # where rust-lld links, equal functions are kept once and relocations are packed, which glibc reads from 2.36 on;
+        # elsewhere the linker may not know how
+        local small=()
+        [ "$(uname -sm)" != "Linux x86_64" ] ||
+            small=(-C link-arg=-Wl,--icf=all -C link-arg=-Wl,-z,pack-relative-relocs)
         RUSTFLAGS="--remap-path-prefix=$root=. --remap-path-prefix=${CARGO_HOME:-$HOME/.cargo}=cargo" \
-            cargo rustc --locked --profile dist --bin interwell -- -C strip=symbols ${fold[@]+"${fold[@]}"}
+            cargo rustc --locked --profile dist --bin interwell -- -C strip=symbols ${small[@]+"${small[@]}"}
         binary=$target/dist/interwell${2:-}
     fi
     [ -x "$binary" ] || fail "$binary is no program"
