@@ -2,6 +2,7 @@
 
 use eframe::egui::{Event, OutputCommand};
 use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable as _;
 use interwell::app::window::Command;
 use interwell::app::window::Window;
 use interwell::scene::Layout;
@@ -55,6 +56,7 @@ fn a_link_opens_the_scene_with_its_changes() {
         let line = interwell::app::export::command_line(there).unwrap().0;
         assert_eq!(line, "interwell --headless simulate first-look --set mass_g=16");
     }
+    linked.get_by_label("The scene before changes");
     let mut lesson = window("?lesson=03-a-stop-that-helps", WIDE);
     lesson.run_steps(2);
     assert!(lesson.state().lesson().is_some());

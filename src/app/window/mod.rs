@@ -237,7 +237,9 @@ impl Window {
             let bottom = ui.max_rect().bottom();
             let contents = egui::ScrollArea::vertical().show(ui, |ui| {
                 controls::column_ui(ui, &mut self.session, &mut self.more);
-                let (scene, is_changed) = (self.session.scene(), self.session.editor.is_dirty());
+                let (scene, editor) = (self.session.scene(), &self.session.editor);
+                // a link may have changed the scene that the notes describe
+                let is_changed = editor.is_dirty() || editor.saved() != editor.named();
                 !self.covered && notes::notes_ui(ui, scene, is_changed, bottom)
             });
             contents.inner
