@@ -406,6 +406,19 @@ proptest! {
 }
 
 #[test]
+fn no_harmonic_passes_for_another_one() {
+    for k in (1..=1000).chain([1024, 1536, 2000]) {
+        let wave = |t: f64| 7.0 * (TAU * (f64::from(k) * 2.0 * t).fract()).cos();
+        let drive = Excitation::from_fn(wave, 2.0, 1e-3).unwrap();
+        let Excitation::Sine { frequency_hz, amplitude_g, .. } = drive.excitation else {
+            panic!("{k}: {:?}", drive.excitation)
+        };
+        near(frequency_hz, 2.0 * f64::from(k), 1e-9 * frequency_hz);
+        near(amplitude_g, 7.0 / STANDARD_GRAVITY, 1e-3 * amplitude_g);
+    }
+}
+
+#[test]
 fn a_drive_of_a_function_works_in_the_studies() {
     // sin^3 is two sines, which a scene can also write; the orbit has the period of the drive
     let simulation = Simulation::preset("nominal-cubic").unwrap();

@@ -22,8 +22,12 @@ const MAX_SAMPLES: usize = 4096;
 /// Samples of a function at first.
 const FIRST_SAMPLES: usize = 32;
 
-/// Places at which the harmonics are compared with a function, in each interval between samples.
+/// Places at which the harmonics are compared with a function, in each interval between samples. They are not
+/// evenly spaced: at even places a harmonic of a high multiple of the frequency looks like a constant.
 const CHECKS: usize = 3;
+
+/// Steps between those places, as shares of an interval without its whole part: the golden ratio.
+const UNEVEN: f64 = 0.618_033_988_749_894_8;
 
 /// Share of the tolerance up to which the smallest harmonics may be left out.
 const LEFT_OUT: f64 = 0.25;
@@ -116,8 +120,8 @@ impl Excitation {
             let peak = values.iter().fold(0.0_f64, |peak, value| peak.max(value.abs()));
             let sum = Harmonics::of(&values, LEFT_OUT * tolerance * peak);
             let (mut worst, mut worst_at) = (0.0_f64, 0.0);
-            for i in 0..samples * (CHECKS + 1) {
-                let place = i as f64 / (samples * (CHECKS + 1)) as f64;
+            for i in 0..samples * CHECKS {
+                let place = ((i / CHECKS) as f64 + (i as f64 * UNEVEN).fract()) / samples as f64;
                 let error = (sum.value(place) - at(place)?).abs();
                 if error > worst {
                     (worst, worst_at) = (error, place / frequency_hz);
@@ -182,20 +186,21 @@ struct Harmonics {
 }
 
 impl Harmonics {
-    /// The harmonics through values of one period, without the smallest ones, whose amplitudes add up to at
-    /// most `left_out`.
+    /// The mean and the harmonics through values of one period, without the smallest of them, whose
+    /// amplitudes add up to at most `left_out`.
     fn of(values: &[f64], left_out: f64) -> Self {
         let polynomial = TrigonometricPolynomial::through(values);
         let term = |(k, (cosine, sine)): (usize, &(f64, f64))| (k, cosine.hypot(*sine), cosine.atan2(*sine));
         let mut terms: Vec<_> = (1..).zip(&polynomial.harmonics).map(term).collect();
         terms.sort_by(|a, b| a.1.total_cmp(&b.1));
-        let mut sum = 0.0;
+        let is_left_out = polynomial.mean.abs() <= left_out;
+        let (mean, mut sum) = if is_left_out { (0.0, polynomial.mean.abs()) } else { (polynomial.mean, 0.0) };
         terms.retain(|(_, amplitude, _)| {
             sum += amplitude;
             sum > left_out
         });
         terms.sort_by_key(|(k, ..)| *k);
-        Self { mean: polynomial.mean, terms }
+        Self { mean, terms }
     }
 
     fn value(&self, t: f64) -> f64 {
