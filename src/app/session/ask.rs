@@ -1,15 +1,41 @@
 //! Background questions about the open scene: settled motion, thresholds, accuracy.
 
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 use crate::app::task::Identity;
 use crate::app::words::status;
+use crate::mechanics::Mechanism;
 use crate::scene::{Excitation, Scene, Start};
-use crate::study::{self, Task};
+use crate::study::{self, Task, Thresholds};
 
 use super::Session;
 use super::accuracy::LiveRun;
+
+/// Number of thresholds that are kept.
+const KEPT: usize = 64;
+
+/// Thresholds found so far, oldest first: a scene that comes back, by an undo or in a lesson, has its own at once.
+static FOUND: Mutex<Vec<(Scene, Arc<Mechanism>, Thresholds)>> = Mutex::new(Vec::new());
+
+fn found() -> MutexGuard<'static, Vec<(Scene, Arc<Mechanism>, Thresholds)>> {
+    FOUND.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// The thresholds of an unshaken scene, from [`FOUND`] or searched.
+fn thresholds(scene: &Scene, mechanism: &Arc<Mechanism>, task: &Task) -> Option<Thresholds> {
+    let is_same = |kept: &&(Scene, Arc<Mechanism>, Thresholds)| kept.0 == *scene && kept.1 == *mechanism;
+    let known = found().iter().find(is_same).map(|kept| kept.2);
+    known.or_else(|| {
+        let thresholds = study::thresholds(scene, mechanism, task)?;
+        let mut all = found();
+        if all.len() == KEPT {
+            all.remove(0);
+        }
+        all.push((scene.clone(), Arc::clone(mechanism), thresholds));
+        Some(thresholds)
+    })
+}
 
 impl Session {
     pub(super) fn ask_settled(&mut self) {
@@ -27,9 +53,9 @@ impl Session {
         if !self.can_search() {
             return;
         }
-        let (scene, mechanism) = (self.built.clone(), Arc::clone(&self.mechanism));
-        self.thresholds.want(unshaken(&scene), true, &self.wake, move |_, cancel, _| {
-            study::thresholds(&scene, &mechanism, &Task { tick: &|| (), cancel })
+        let mechanism = Arc::clone(&self.mechanism);
+        self.thresholds.want(unshaken(&self.built), true, &self.wake, move |scene, cancel, _| {
+            thresholds(scene, &mechanism, &Task { tick: &|| (), cancel })
         });
     }
 
