@@ -82,7 +82,7 @@ documents() {
     cp python/README.md "$1/python"
     cp docs/*.md "$1/docs"
     cp assets/*.png "$1/assets"
-    { cat studies/assets/fonts/LICENSE-Inter.txt; echo; "${python:-python3}" packaging/licences; } >"$1/LICENCES-OF-PARTS.txt"
+    { cat studies/assets/fonts/LICENSE-*.txt; echo; "${python:-python3}" packaging/licences; } >"$1/LICENCES-OF-PARTS.txt"
 }
 
 # papers BINARY FOLDER: scenes and documents beside a program that is not installed.

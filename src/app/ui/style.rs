@@ -9,7 +9,7 @@ use std::sync::Arc;
 use eframe::egui::{self, Color32, FontData, FontDefinitions, FontFamily, FontId, Stroke, TextStyle};
 
 use crate::app::words::kind::Kind;
-use crate::output::{INTER, Ink, Role, Theme};
+use crate::output::{HACK, INTER, Ink, Role, Theme};
 
 /// Zoom of the projector in a window of 1280x720, which has room for this many points.
 pub const PROJECTOR_ZOOM: f32 = 1.5;
@@ -318,15 +318,17 @@ const fn rgb(red: u8, green: u8, blue: u8) -> Color32 {
 
 /// Installs fonts, text sizes and spacing of the window; to be called once.
 pub fn install(ctx: &egui::Context) {
-    let mut fonts = FontDefinitions::default();
-    let [inter, strong] = INTER.map(FontData::from_static);
-    fonts.font_data.insert("inter".into(), Arc::new(inter));
-    fonts.font_data.insert("inter-strong".into(), Arc::new(strong));
-    let proportional = fonts.families.entry(FontFamily::Proportional).or_default();
-    proportional.insert(0, "inter".into());
-    let mut heavy = proportional.clone();
-    heavy.insert(0, "inter-strong".into());
-    fonts.families.insert(strong_family(), heavy);
+    let mut fonts = FontDefinitions::empty();
+    for (name, bytes) in [("inter", INTER[0]), ("inter-strong", INTER[1]), ("hack", HACK)] {
+        fonts.font_data.insert(name.into(), Arc::new(FontData::from_static(bytes)));
+    }
+    for (family, names) in [
+        (FontFamily::Proportional, ["inter", "hack"]),
+        (strong_family(), ["inter-strong", "hack"]),
+        (FontFamily::Monospace, ["hack", "inter"]),
+    ] {
+        fonts.families.insert(family, names.map(String::from).to_vec());
+    }
     ctx.set_fonts(fonts);
     ctx.all_styles_mut(|style| {
         let dark = style.visuals.dark_mode;

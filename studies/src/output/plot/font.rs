@@ -48,6 +48,9 @@ pub static INTER: [&[u8]; 2] = [
     include_bytes!("../../../assets/fonts/Inter-SemiBold.ttf"),
 ];
 
+/// The font file of code in the window, and of letters that [`INTER`] lacks.
+pub static HACK: &[u8] = include_bytes!("../../../assets/fonts/Hack-Regular.ttf");
+
 impl Face {
     /// The regular or the heavier weight.
     pub fn of(bold: bool) -> &'static Self {

@@ -59,7 +59,7 @@ pub use contact::contact_chart;
 pub use curve::{curve_chart, force_panel};
 pub use exponents::{ExponentPicture, can_show_exponents, exponents_chart};
 pub use figure::{Area, Figure, Shape, Text};
-pub use font::INTER;
+pub use font::{HACK, INTER};
 pub use frame::Frame;
 pub use mark::Caption;
 pub use measured::measured_chart;
