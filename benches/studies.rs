@@ -140,7 +140,7 @@ fn branches() {
 fn growth() {
     let never = AtomicBool::new(false);
     let chaos = shared::preset("duffing-chaos", &[]);
-    let options = ExponentOptions { periods: ExponentOptions::PERIODS, until_settled: None };
+    let options = ExponentOptions::default();
     row("exponents", "`duffing-chaos`, 1000 periods", "the sum of both", || {
         let found = exponents(&chaos, &options, &never).unwrap();
         (found.sum / found.exact_sum.unwrap() - 1.0).abs()

@@ -918,7 +918,8 @@ class Scene(Mapping[str, Any]):
         Table
             ``period``, ``x_m``, ``v_m_per_s``, ``multiplier_1_re``, ``multiplier_1_im``, ``multiplier_2_re``,
             ``multiplier_2_im`` (Floquet multipliers, the larger magnitude first), ``stable``, ``impacts``,
-            ``rests``, ``gentlest_impact_m_per_s``, ``nearest_miss_m``.
+            ``rests``, ``gentlest_impact_m_per_s``, ``nearest_miss_m``; beside a circuit also ``current_a`` or
+            ``voltage_v`` and ``multiplier_3_re``, ``multiplier_3_im``.
 
         Raises
         ------
@@ -1024,13 +1025,13 @@ class Scene(Mapping[str, Any]):
         Table or Grid
             ``exponent_1_per_s``, ``exponent_1_se``, ``exponent_2_per_s``, ``exponent_2_se`` (standard
             errors), ``sum_per_s``, ``exact_sum_per_s``, ``dimension``, each float64; a :class:`Grid` with
-            ``over``. Both exponents are ``-inf`` where the mass rests on a stop.
+            ``over``. Where there may be a circuit also ``exponent_3_per_s``, ``exponent_3_se``. The exponents
+            are ``-inf`` where the mass rests on a stop, but for one of a circuit.
 
         Raises
         ------
         SceneError
-            If an argument is wrong, the drive changes and does not repeat, or a transducer has a state of its
-            own.
+            If an argument is wrong, or the drive changes and does not repeat.
         ComputationError
             If the motion ends early or touches a stop without speed; in a grid that cell has NaN.
 

@@ -363,7 +363,8 @@ impl Simulation {
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Answer> {
         let periods = periods.unwrap_or(ExponentOptions::PERIODS);
-        let question = Exponents { over, options: ExponentOptions { periods, until_settled } };
+        let question =
+            Exponents { over, options: ExponentOptions { periods, until_settled, circuits: false } };
         let table = work(py, &Way { threads, progress }, |progress| question.run(&self.inner, progress))?;
         let answer = Answer::new(py, table, self.caption());
         if question.over.is_empty() {

@@ -3,7 +3,7 @@
 use clap::Args;
 use interwell::dynamics::Model;
 use interwell::output::{ExponentPicture, can_show_exponents, exponents_chart};
-use interwell::questions::{Error, refuse_electrical_state};
+use interwell::questions::{Error, may_have_circuit};
 use interwell::scene::Document;
 use interwell::study::{
     ExponentCells, ExponentOptions, Exponents, Grid, NoExponents, Table, Tally, drive_fault, exponents,
@@ -21,7 +21,7 @@ Examples:
   interwell --headless exponents duffing --over excitation.amplitude_g=0.02:0.068:0.0005 --plot e.png
   interwell --headless exponents paper --over stops.travel_limit_mm=3:7:1 --over stops.restitution=0.3,0.9
 
-A motion that rests on a stop forgets where it came from: both exponents are then minus infinity, -inf.";
+A motion that rests on a stop forgets where it came from: all exponents are then minus infinity, -inf.";
 
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
@@ -45,7 +45,7 @@ pub struct Arguments {
     #[arg(long, value_name = "MAX_S", allow_hyphen_values = true)]
     pub until_settled: Option<String>,
 
-    /// The picture, with --over one field: both exponents, each with its standard error.
+    /// The picture, with --over one field: the exponents, each with its standard error.
     #[command(flatten)]
     pub chart: ChartOptions,
 }
@@ -63,7 +63,6 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     if let Some(fault) = drive_fault(&model, &document.scene) {
         return Err(document.error_from(vec![fault]).into());
     }
-    refuse_electrical_state(&document, &[], "exponents")?;
     let settings = settings(options, &document, Some(&model))?;
     let mut outputs = outputs(&options.scene, &document, common)?;
     let found = exponents(&model, &settings, interrupt::listen()).map_err(|problem| match problem {
@@ -84,7 +83,8 @@ fn settings(
 ) -> Result<ExponentOptions, Failure> {
     let text = options.until_settled.as_deref();
     let until_settled = until_settled_on_grid(text, document, model)?;
-    Ok(ExponentOptions { periods: options.periods.unwrap_or(ExponentOptions::PERIODS), until_settled })
+    let periods = options.periods.unwrap_or(ExponentOptions::PERIODS);
+    Ok(ExponentOptions { periods, until_settled, circuits: false })
 }
 
 /// Explains the exponents of one motion in a sentence.
@@ -96,7 +96,7 @@ fn about(found: &Exponents, forced: bool) -> String {
     let multipliers = "the exponents are those of its multipliers";
     let over = format!("averages over {} {units}", found.span.0);
     match found.period {
-        _ if found.rests() => "the mass rests on a stop, after which nothing is left of a change: both \
+        _ if found.rests() => "the mass rests on a stop, after which nothing is left of a change: all \
                                exponents are minus infinity, written -inf"
             .to_owned(),
         Some(1) => format!("the motion repeats in every {unit}; {multipliers}"),
@@ -112,7 +112,7 @@ fn about(found: &Exponents, forced: bool) -> String {
 fn over(options: &Arguments, common: &Common, picture: Option<Picture>) -> Result<(), Failure> {
     let (document, warnings) = load_held(&options.scene, common, Some(&options.over))?;
     let grid = Grid::new(document.axes(&options.over)?)?;
-    refuse_electrical_state(&document, grid.axes(), "exponents")?;
+    let circuits = may_have_circuit(&document, grid.axes());
     if picture.is_some() {
         can_show_exponents(&grid)?;
     }
@@ -121,7 +121,7 @@ fn over(options: &Arguments, common: &Common, picture: Option<Picture>) -> Resul
     let pool = pool(common)?;
     cells.validate(&pool, &task).map_err(|cell| Error::cells_of(&document, vec![cell]))?;
     let settings = settings(options, &document, cells.first_model(&task).as_ref())?;
-    let cells = cells.with(settings);
+    let cells = cells.with(ExponentOptions { circuits, ..settings });
     warn(&document, common, &warnings, cells.first_mechanism().ok().as_deref());
     let outputs = outputs(&options.scene, &document, common)?;
     let grid = cells.grid();
@@ -141,7 +141,7 @@ fn over(options: &Arguments, common: &Common, picture: Option<Picture>) -> Resul
 fn summary(tally: &Tally, seconds: f64) -> String {
     let mut text = format!("{} in {seconds:.2} s", counted(tally.cells, "cell"));
     if tally.resting > 0 {
-        text += &format!(", {} with a rest on a stop, so that both exponents are -inf", tally.resting);
+        text += &format!(", {} with a rest on a stop, so that all exponents are -inf", tally.resting);
     }
     if tally.without_exponents > 0 {
         text += &format!(

@@ -2,7 +2,6 @@
 
 use clap::Args;
 use interwell::output::{SectionPicture, section_chart};
-use interwell::questions::refuse_electrical_state;
 use interwell::study::{
     Carry, Grid, IMPACTS, MAX_SECTION, SectionAt, SectionOptions, Sections, Table, Tally, section,
 };
@@ -115,9 +114,6 @@ fn diagram(options: &Arguments, common: &Common, settings: SectionOptions) -> Re
     let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
     let (document, warnings) = load_held(&options.scene, common, Some(&options.over))?;
     let grid = Grid::new(document.axes(&options.over)?)?;
-    if settings.carry.is_some() {
-        refuse_electrical_state(&document, grid.axes(), "--carry")?;
-    }
     let fields = grid.axes().len();
     if picture.is_some() && fields > 1 {
         refuse!(

@@ -1,9 +1,10 @@
 //! Basins of attraction: borders, attractors and mirror images that are known, the same answer for any batch.
 
+use std::f64::consts::TAU;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use interwell::dynamics::{Arrival, EventKind, Model, Outcome, Pursued, Pursuit, Request};
+use interwell::dynamics::{Arrival, EventKind, MapState, Model, Outcome, Pursued, Pursuit, Request};
 use interwell::scene::{Document, Files};
 use interwell::study::*;
 use interwell::system::threads::Pool;
@@ -234,7 +235,7 @@ fn a_pursuit_has_the_same_bits_in_any_number_of_lanes() {
         let limit = model.stop_positions().1.unwrap_or(x);
         let pursuits: Vec<Pursuit> = (0..40)
             .map(|number| Pursuit {
-                start: (limit * (f64::from(number) / 20.0 - 1.0), v * f64::from(number % 7 - 3) / 7.0),
+                start: (limit * (f64::from(number) / 20.0 - 1.0), v * f64::from(number % 7 - 3) / 7.0).into(),
                 known: &[],
                 regions: &[],
                 repeats_from: 0,
@@ -276,6 +277,7 @@ fn a_pursuit_comes_to_the_first_release_of_the_run() {
             let start = (1.5e-3 * (f64::from(number) / 30.0 - 1.0), f64::from(number % 11) / 10.0 - 0.5);
             let (known, regions, repeats_from, releases) = (&[], &[], u64::MAX, number % 2);
             let max_work = u64::MAX;
+            let start = MapState::from(start);
             let pursuit =
                 Pursuit { start, known, regions, repeats_from, max_periods: 60, releases, max_work };
             let run = model.with_start(start).with_duration(10.0 * period, 0.0);
@@ -297,7 +299,7 @@ fn a_pursuit_comes_to_the_first_release_of_the_run() {
 fn a_pursuit_ends_where_its_work_is_done() {
     let model = preset("paper-unconstrained", &[]);
     let pursuit = Pursuit {
-        start: (1e-3, 0.1),
+        start: (1e-3, 0.1).into(),
         known: &[],
         regions: &[],
         repeats_from: u64::MAX,
@@ -358,4 +360,51 @@ fn a_model_with_another_start_is_the_same_otherwise() {
     let other = model.with_start((1e-3, 0.1));
     assert_eq!((other.start(), other.scales()), ((1e-3, 0.1), model.scales()));
     assert!(Arc::ptr_eq(other.mechanism(), model.mechanism()));
+}
+
+/// The piezoelectric double well of Erturk, Hoffmann and Inman (2009): every start goes to the attractor to
+/// which its own run comes, and a state of the circuit at the start decides too.
+#[test]
+fn basins_beside_a_circuit_are_those_of_single_runs() {
+    let period = TAU / 0.8;
+    let scene = |electrical: f64| {
+        let text = format!(
+            "(title: \"test\", mass_g: 1000, mechanism: Cubic(linear_n_per_m: -0.5, cubic_n_per_m3: 0.5), \
+             damping: Coefficient(c_n_s_per_m: 0.02), \
+             transducer: Piezoelectric(coupling_n_per_v: 0.05, capacitance_nf: 1e8, load_kohm: 0.2), \
+             excitation: Sine(frequency_hz: {}, amplitude_g: {}, phase_deg: -90), \
+             start: At(x_mm: 0, v_m_per_s: 0, electrical: {electrical}), run: (duration_s: 100))",
+            0.8 / TAU,
+            0.05 / 9.80665,
+        );
+        Document::from_text("test", &text, Files::default()).unwrap()
+    };
+    let mut rows = Vec::new();
+    for electrical in [0.0, 3.0] {
+        let document = scene(electrical);
+        let starts = Starts::random((-1500.0, 1500.0), (-1.0, 1.0), 30, 5).unwrap();
+        let mut basins = Basins::new(&document.scene, mechanism(&document), starts).unwrap();
+        let answer = whole(&mut basins);
+        assert!(answer.attractors.len() >= 2, "{:?}", answer.words());
+        for (row, found) in answer.rows.iter().enumerate() {
+            let (x_mm, v) = basins.starts().at(row);
+            let start = MapState { x: x_mm / 1e3, v, electrical };
+            let model = basins.model().with_start(start).with_duration(700.0 * period, 600.0 * period);
+            let summary = model.run(&Request::default()).summary;
+            let Some((number, _)) = found else { continue };
+            let attractor = &answer.attractors[*number as usize - 1];
+            if summary.period.is_none() || attractor.period.is_none() {
+                continue;
+            }
+            assert_eq!(
+                (attractor.regime, attractor.period, attractor.side),
+                (summary.regime, summary.period, summary.side),
+                "{row}"
+            );
+            near_relative(attractor.rms_velocity.unwrap(), summary.rms_velocity.unwrap(), 1e-4);
+        }
+        assert!(answer.rows.iter().flatten().count() >= 25, "{:?}", answer.rows);
+        rows.push(answer.rows);
+    }
+    assert_ne!(rows[0], rows[1], "a charged layer changes where some starts go");
 }

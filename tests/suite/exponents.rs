@@ -17,7 +17,7 @@ fn of(model: &Model) -> Exponents {
 }
 
 fn over(model: &Model, periods: u32) -> Exponents {
-    exponents(model, &ExponentOptions { periods, until_settled: None }, &NEVER).unwrap()
+    exponents(model, &ExponentOptions { periods, ..ExponentOptions::default() }, &NEVER).unwrap()
 }
 
 /// Asserts both exponents of a periodic motion, and their sum, relatively.
@@ -112,20 +112,19 @@ fn both_exponents_of_a_motion_with_an_impact_in_every_period() {
         let period = 1.0 / frequency;
         let w = (1.0 - ratio * ratio).sqrt();
         let (decay, (sine, cosine)) = ((-ratio * period).exp(), (w * period).sin_cos());
-        let free = Jacobian {
-            rows: [
-                [decay * (cosine + ratio / w * sine), decay * sine / w],
-                [-decay * sine / w, decay * (cosine - ratio / w * sine)],
-            ],
-        };
+        let free = Jacobian::mechanical([
+            [decay * (cosine + ratio / w * sine), decay * sine / w],
+            [-decay * sine / w, decay * (cosine - ratio / w * sine)],
+        ]);
         let base = amplitude * STANDARD_GRAVITY * (TAU * frequency * impact.t).sin();
         let acceleration = |v: f64| d_mm * 1e-3 - 2.0 * ratio * v - base;
         let (before, after) = (acceleration(impact.v_in), acceleration(impact.v_out));
         let turned = (after + restitution * before) / impact.v_in;
-        let saltation = Jacobian { rows: [[-restitution, 0.0], [turned, -restitution]] };
+        let saltation = Jacobian::mechanical([[-restitution, 0.0], [turned, -restitution]]);
         let determinant = (-2.0 * ratio * period).exp() * restitution * restitution;
         let multipliers = saltation.after(&free).multipliers(determinant);
-        let [first, second] = multipliers.map(|multiplier| multiplier.magnitude().ln() / period);
+        let rate = |place: usize| multipliers[place].magnitude().ln() / period;
+        let [first, second] = [rate(0), rate(1)];
         both(&found, first, second, 1e-9);
         near_relative(found.exact_sum.unwrap(), -2.0 * ratio + 2.0 * restitution.ln() * frequency, 1e-14);
         near_relative(found.sum, found.exact_sum.unwrap(), 1e-10);

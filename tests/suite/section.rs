@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 use std::sync::atomic::AtomicBool;
 
-use interwell::dynamics::{Model, Request, STANDARD_GRAVITY, SectionPoint};
+use interwell::dynamics::{MapState, Model, Request, STANDARD_GRAVITY, SectionPoint};
 use interwell::scene::{Document, Files};
 use interwell::study::*;
 use interwell::system::threads::Pool;
@@ -170,7 +170,7 @@ fn a_batch_has_the_sections_and_carried_states_of_its_runs() {
             let t = (alone.summary.window.1.max(model.duration()) * 3.0 + 1e-9).floor() / 3.0;
             let until = Request { sample_times: &[t], until_settled, ..Request::default() };
             if let Some(sample) = model.run(&until).samples.first() {
-                let (x, v) = alone.carried.unwrap();
+                let MapState { x, v, .. } = alone.carried.unwrap();
                 near(x, sample.x, 1e-11 * model.scales().length);
                 near(v, sample.v, 1e-10 * model.scales().speed);
             }

@@ -15,7 +15,7 @@ fn oscillator(rest: &str) -> interwell::dynamics::Model {
 }
 
 #[track_caller]
-fn pair(multipliers: [Multiplier; 2], re: f64, im: f64, bound: f64) {
+fn pair(multipliers: Vec<Multiplier>, re: f64, im: f64, bound: f64) {
     near(multipliers[0].re, re, bound);
     near(multipliers[0].im.abs(), im.abs(), bound);
     near(multipliers[1].re, re, bound);
@@ -90,7 +90,7 @@ fn a_pressed_rest_makes_both_multipliers_zero() {
     let (passage, jacobian) = map.pass_with_jacobian((1e-3, 0.05), 1);
     assert!(passage.rests() > 0 && passage.events.iter().any(|event| event.kind == EventKind::Release));
     assert_eq!(passage.determinant, Some(0.0));
-    assert_eq!(jacobian.multipliers(0.0).map(Multiplier::magnitude), [0.0, 0.0]);
+    assert!(jacobian.multipliers(0.0).into_iter().all(|multiplier| multiplier.magnitude() == 0.0));
     // every start gives the same strobe to the last bit after the first rest
     let other = map.pass((-0.4e-3, 0.02), 1);
     assert_eq!(map.pass(passage.state, 1).state, map.pass(other.state, 1).state);
@@ -102,7 +102,7 @@ fn a_mass_that_rests_throughout_has_no_derivatives_left() {
     let map = model.stroboscopic_map(0.0).unwrap();
     let (passage, jacobian) = map.pass_with_jacobian((1.5e-3, 0.0), 2);
     assert_eq!((passage.state, passage.events.len()), ((1.5e-3, 0.0), 0));
-    assert_eq!((passage.determinant, jacobian.rows), (Some(0.0), [[0.0; 2]; 2]));
+    assert!(passage.determinant == Some(0.0) && jacobian.is_zero());
 }
 
 #[test]

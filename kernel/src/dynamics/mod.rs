@@ -78,5 +78,5 @@ pub use model::Model;
 pub use model::excitation::{ChirpPart, ExcitationParts, NoisePart, STANDARD_GRAVITY, TonePart};
 pub use model::scales::Scales;
 pub use model::stops::{StopAt, StopPair};
-pub use model::transducer::Output;
+pub use model::transducer::{CircuitState, Output};
 pub use result::*;

@@ -100,11 +100,12 @@ impl<'a, T: Scalar, D: Drive<T>> Motion<'a, T, D> {
         self
     }
 
-    /// Puts the mass, in free flight, at a displacement and a velocity at this instant.
-    pub fn put(&mut self, (x, v): (T, T), at: Instant<T>) {
+    /// Puts the mass, in free flight, at a displacement and a velocity at this instant, with this state of the
+    /// circuit.
+    pub fn put(&mut self, [x, v, circuit]: [T; 3], at: Instant<T>) {
         let piece = self.record.model.mechanism.curve.piece_index(x.to_f64());
         let mode = self.stepper.equation.mode_at(x, piece);
-        self.state = MotionState { at, ..MotionState::new((x, v), mode, Contact::Free) };
+        self.state = MotionState { at, circuit, ..MotionState::new((x, v), mode, Contact::Free) };
         self.record.barrier_side = self.record.barrier.map_or(0, |barrier| side_of(x, barrier));
     }
 

@@ -1,6 +1,6 @@
-//! Dual numbers: a value with its derivatives with respect to two quantities.
+//! Dual numbers: a value with its derivatives with respect to a few quantities.
 //!
-//! A number x + x1 e1 + x2 e2 with e1^2 = e1 e2 = e2^2 = 0 (Clifford 1873). Every result comes with its
+//! A number x + x1 e1 + .. + xn en in which every product of two of the e is 0 (Clifford 1873). Every result comes with its
 //! derivatives, exact to rounding. The value has the same bits as in plain double arithmetic and
 //! decides every comparison.
 
@@ -11,37 +11,37 @@ use super::double_double::DoubleDouble;
 use super::quadrature::{GaussLegendre, Rules};
 use super::scalar::{Number, Scalar, assign_operators};
 
-/// A value and its derivatives with respect to two quantities.
+/// A value and its derivatives with respect to `N` quantities. It is a [`Scalar`] for two and three of them.
 #[derive(Debug, Clone, Copy)]
-pub struct Dual {
+pub struct Dual<const N: usize = 2> {
     /// The value.
     pub value: f64,
     /// Its derivatives.
-    pub slopes: [f64; 2],
+    pub slopes: [f64; N],
 }
 
-impl Dual {
+impl<const N: usize> Dual<N> {
     /// The derivatives of `a self + b other` for constant `a` and `b`.
     #[inline(always)]
-    fn slopes_of(self, a: f64, other: Self, b: f64) -> [f64; 2] {
+    fn slopes_of(self, a: f64, other: Self, b: f64) -> [f64; N] {
         std::array::from_fn(|i| a * self.slopes[i] + b * other.slopes[i])
     }
 }
 
-impl PartialEq for Dual {
+impl<const N: usize> PartialEq for Dual<N> {
     fn eq(&self, other: &Self) -> bool {
         self.value == other.value
     }
 }
 
-impl PartialOrd for Dual {
+impl<const N: usize> PartialOrd for Dual<N> {
     #[inline(always)]
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         self.value.partial_cmp(&other.value)
     }
 }
 
-impl Add for Dual {
+impl<const N: usize> Add for Dual<N> {
     type Output = Self;
     #[inline(always)]
     fn add(self, o: Self) -> Self {
@@ -49,7 +49,7 @@ impl Add for Dual {
     }
 }
 
-impl Sub for Dual {
+impl<const N: usize> Sub for Dual<N> {
     type Output = Self;
     #[inline(always)]
     fn sub(self, o: Self) -> Self {
@@ -57,7 +57,7 @@ impl Sub for Dual {
     }
 }
 
-impl Mul for Dual {
+impl<const N: usize> Mul for Dual<N> {
     type Output = Self;
     #[inline(always)]
     fn mul(self, o: Self) -> Self {
@@ -65,7 +65,7 @@ impl Mul for Dual {
     }
 }
 
-impl Div for Dual {
+impl<const N: usize> Div for Dual<N> {
     type Output = Self;
     #[inline(always)]
     fn div(self, o: Self) -> Self {
@@ -74,7 +74,7 @@ impl Div for Dual {
     }
 }
 
-impl Neg for Dual {
+impl<const N: usize> Neg for Dual<N> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
@@ -82,12 +82,12 @@ impl Neg for Dual {
     }
 }
 
-assign_operators!([] Dual);
+assign_operators!([const N: usize] Dual<N>);
 
-impl Number for Dual {
+impl<const N: usize> Number for Dual<N> {
     #[inline(always)]
     fn of(value: f64) -> Self {
-        Self { value, slopes: [0.0; 2] }
+        Self { value, slopes: [0.0; N] }
     }
     #[inline(always)]
     fn ratio(over: f64, under: f64) -> Self {
@@ -100,62 +100,71 @@ impl Number for Dual {
     }
 }
 
-impl Scalar for Dual {
-    const EPSILON: f64 = f64::EPSILON;
-    const ROUGH: f64 = f64::ROUGH;
+/// The functions of a dual number; a macro, since each number of derivatives has a table of its own.
+macro_rules! scalar {
+    ($n:literal) => {
+        impl Scalar for Dual<$n> {
+            const EPSILON: f64 = f64::EPSILON;
+            const ROUGH: f64 = f64::ROUGH;
 
-    fn tau() -> Self {
-        Self::of(f64::tau())
-    }
-    #[inline(always)]
-    fn to_f64(self) -> f64 {
-        self.value
-    }
-    /// The value alone.
-    fn to_pair(self) -> DoubleDouble {
-        DoubleDouble::of(self.value)
-    }
-    fn of_pair(pair: DoubleDouble) -> Self {
-        Self::of(pair.to_f64())
-    }
-    fn floor(self) -> Self {
-        Self::of(self.value.floor())
-    }
-    /// The derivatives at 0, which are infinite, are set to 0.
-    fn sqrt(self) -> Self {
-        let root = self.value.sqrt();
-        let by = if root > 0.0 { 0.5 / root } else { 0.0 };
-        Self { value: root, slopes: self.slopes.map(|slope| slope * by) }
-    }
-    #[inline(always)]
-    fn sin_cos_turns(u: Self) -> (Self, Self) {
-        let (s, c) = f64::sin_cos_turns(u.value);
-        let angle = u.slopes.map(|slope| slope * std::f64::consts::TAU);
-        let sine = Self { value: s, slopes: angle.map(|slope| c * slope) };
-        (sine, Self { value: c, slopes: angle.map(|slope| -s * slope) })
-    }
+            fn tau() -> Self {
+                Self::of(f64::tau())
+            }
+            #[inline(always)]
+            fn to_f64(self) -> f64 {
+                self.value
+            }
+            /// The value alone.
+            fn to_pair(self) -> DoubleDouble {
+                DoubleDouble::of(self.value)
+            }
+            fn of_pair(pair: DoubleDouble) -> Self {
+                Self::of(pair.to_f64())
+            }
+            fn floor(self) -> Self {
+                Self::of(self.value.floor())
+            }
+            /// The derivatives at 0, which are infinite, are set to 0.
+            fn sqrt(self) -> Self {
+                let root = self.value.sqrt();
+                let by = if root > 0.0 { 0.5 / root } else { 0.0 };
+                Self { value: root, slopes: self.slopes.map(|slope| slope * by) }
+            }
+            #[inline(always)]
+            fn sin_cos_turns(u: Self) -> (Self, Self) {
+                let (s, c) = f64::sin_cos_turns(u.value);
+                let angle = u.slopes.map(|slope| slope * std::f64::consts::TAU);
+                let sine = Self { value: s, slopes: angle.map(|slope| c * slope) };
+                (sine, Self { value: c, slopes: angle.map(|slope| -s * slope) })
+            }
 
-    /// The largest magnitude of the value and its derivatives, since the derivatives still change where the
-    /// value is near 0. The value alone counts if a derivative is infinite, as after a grazing impact.
-    #[inline(always)]
-    fn magnitude(self) -> f64 {
-        let all = self.slopes.iter().fold(self.value.abs(), |largest, slope| largest.max(slope.abs()));
-        if all.is_finite() { all } else { self.value.abs() }
-    }
+            /// The largest magnitude of the value and its derivatives, since the derivatives still change where the
+            /// value is near 0. The value alone counts if a derivative is infinite, as after a grazing impact.
+            #[inline(always)]
+            fn magnitude(self) -> f64 {
+                let all =
+                    self.slopes.iter().fold(self.value.abs(), |largest, slope| largest.max(slope.abs()));
+                if all.is_finite() { all } else { self.value.abs() }
+            }
 
-    fn gauss_legendre(points: usize) -> &'static GaussLegendre<Self> {
-        static RULES: Rules<Dual> = Rules::new();
-        RULES.of(points)
-    }
+            fn gauss_legendre(points: usize) -> &'static GaussLegendre<Self> {
+                static RULES: Rules<Dual<$n>> = Rules::new();
+                RULES.of(points)
+            }
 
-    /// An iteration stops when the value no longer changes; the derivatives may then lag by one step. One
-    /// more step of Newton's method at the root computes them.
-    #[inline(always)]
-    fn at_root(root: Self, value_and_slope: impl FnOnce(Self) -> (Self, Self)) -> Self {
-        let (value, slope) = value_and_slope(Self::of(root.value));
-        Self { value: root.value, slopes: (-(value / slope)).slopes }
-    }
+            /// An iteration stops when the value no longer changes; the derivatives may then lag by one step. One
+            /// more step of Newton's method at the root computes them.
+            #[inline(always)]
+            fn at_root(root: Self, value_and_slope: impl FnOnce(Self) -> (Self, Self)) -> Self {
+                let (value, slope) = value_and_slope(Self::of(root.value));
+                Self { value: root.value, slopes: (-(value / slope)).slopes }
+            }
+        }
+    };
 }
+
+scalar!(2);
+scalar!(3);
 
 #[cfg(test)]
 mod tests {
@@ -168,7 +177,7 @@ mod tests {
 
     #[test]
     fn derivatives_follow_the_rules_of_calculus() {
-        let x = Dual { value: 0.7, slopes: [1.0, 0.0] };
+        let x: Dual = Dual { value: 0.7, slopes: [1.0, 0.0] };
         let y = Dual { value: -1.3, slopes: [0.0, 1.0] };
         let check = |dual: Dual, value: f64, by_x: f64, by_y: f64| {
             assert_eq!(dual.value, value);

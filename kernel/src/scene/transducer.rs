@@ -33,6 +33,19 @@ pub enum Transducer {
 }
 
 impl Transducer {
+    /// Whether it takes energy from the motion.
+    pub fn dissipates(&self) -> bool {
+        match *self {
+            Self::None => false,
+            Self::Electromagnetic { coupling_v_s_per_m, coil_ohm, load_ohm, .. } => {
+                coupling_v_s_per_m != 0.0 && coil_ohm + load_ohm > 0.0 && load_ohm < f64::INFINITY
+            }
+            Self::Piezoelectric { coupling_n_per_v, load_kohm, .. } => {
+                coupling_n_per_v != 0.0 && load_kohm > 0.0 && load_kohm < f64::INFINITY
+            }
+        }
+    }
+
     /// Whether a current or a voltage is a state variable of the motion, because it is not 0 and does not
     /// follow from the velocity.
     pub fn has_state(&self) -> bool {

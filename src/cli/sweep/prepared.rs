@@ -6,7 +6,7 @@ use std::sync::Arc;
 use clap::Args;
 use interwell::mechanics::{BuildError, Mechanism};
 use interwell::output::{Cut, View, can_show, plan};
-use interwell::questions::{Error, column_names, refuse_electrical_state};
+use interwell::questions::{Error, column_names};
 use interwell::scene::{Document, is_manifest};
 use interwell::study::{Carry, Grid, Shard, Slice, SummaryField, Sweep, SweepOptions};
 use serde_json::{Value, json};
@@ -124,9 +124,6 @@ impl<'a> Prepared<'a> {
         let sweep = Sweep::new(&document.scene, &document.files, Grid::new(document.axes(&options.over)?)?);
         let mechanism = first_mechanism(&document, &sweep)?;
         let carry = options.carry.as_ref().or(swept.carry.as_ref()).and_then(|word| Carry::named(word));
-        if carry.is_some() {
-            refuse_electrical_state(&document, sweep.grid().axes(), "--carry")?;
-        }
         let chosen = if options.columns.is_empty() { &swept.columns } else { &options.columns };
         let columns = column_names(chosen, sweep.grid(), carry)?;
         // a fault of the first cell is reported when the cells are checked, with its place

@@ -3,7 +3,7 @@
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 
-use super::motion::{phase, refuse_electrical_state};
+use super::motion::{may_have_circuit, phase};
 use super::{Error, Progress, Simulation, check_until_settled};
 use crate::dynamics::Model;
 use crate::mechanics::{ForceCurve, Mechanism};
@@ -106,9 +106,6 @@ impl Sweep {
     /// Runs the cells.
     pub fn run(&self, simulation: &Simulation, progress: &Progress) -> Result<Table, Error> {
         let (document, grid) = (simulation.document(), simulation.grid(&self.over)?);
-        if self.carry.is_some() {
-            refuse_electrical_state(document, grid.axes(), "carry")?;
-        }
         let columns = column_names(&self.columns, &grid, self.carry)?;
         let study = study::Sweep::new(&document.scene, &document.files, grid);
         check_first(self.until_settled, &study, document, progress)?;
@@ -204,9 +201,6 @@ impl Section {
             return unless_stopped(progress, table.without(IMPACTS));
         }
         let grid = simulation.grid(&self.over)?;
-        if self.options.carry.is_some() {
-            refuse_electrical_state(document, grid.axes(), "carry")?;
-        }
         let study = Sections::new(&document.scene, &document.files, grid).with(self.options);
         check_first(self.options.until_settled, &study, document, progress)?;
         Ok(all_rows(&study, document, progress)?.without(IMPACTS))
@@ -216,15 +210,15 @@ impl Section {
 /// Lyapunov exponents of the settled motion: the rates in 1/s at which small perturbations grow or decay.
 ///
 /// Columns: the fields, `exponent_1_per_s`, `exponent_1_se`, `exponent_2_per_s`, `exponent_2_se` (standard
-/// errors), `sum_per_s`, `exact_sum_per_s` (from damping and impacts alone) and `dimension` (Kaplan and Yorke
-/// 1979). Both exponents are minus infinity where the mass rests on a stop.
+/// errors), `sum_per_s`, `exact_sum_per_s` (from damping, circuit and impacts alone) and `dimension` (Kaplan and
+/// Yorke 1979); where there may be a circuit also `exponent_3_per_s`, `exponent_3_se`. The exponents are minus
+/// infinity where the mass rests on a stop, but for one of a circuit.
 ///
 /// Method: of a motion that repeats, ln|multiplier| over its period; otherwise averages over
 /// `options.periods`, 1 to 1e7 (Benettin et al. 1980), through impacts by saltation (Müller 1995), with
 /// standard errors by batch means (Flegal and Jones 2010). More periods cost more and reduce these errors.
 ///
-/// Errors: [`Error::Scene`] or [`Error::Cells`] if the drive changes and does not repeat; [`Error::Unfit`]
-/// for a transducer with a state of its own; [`Error::Failed`] if the motion ends early or touches a stop
+/// Errors: [`Error::Scene`] or [`Error::Cells`] if the drive changes and does not repeat; [`Error::Failed`] if the motion ends early or touches a stop
 /// without speed (in a grid the values of that cell are missing).
 ///
 /// ```
@@ -261,7 +255,6 @@ impl Exponents {
             if let Some(fault) = drive_fault(simulation.model(), simulation.scene()) {
                 return Err(Error::faults_of(document, vec![fault]));
             }
-            refuse_electrical_state(document, &[], "exponents")?;
             simulation.check_until_settled(self.options.until_settled)?;
             let found = exponents(simulation.model(), &self.options, progress.stop());
             return match found {
@@ -271,8 +264,8 @@ impl Exponents {
             };
         }
         let grid = simulation.grid(&self.over)?;
-        refuse_electrical_state(document, grid.axes(), "exponents")?;
-        let study = ExponentCells::new(&document.scene, &document.files, grid).with(self.options);
+        let options = ExponentOptions { circuits: may_have_circuit(document, grid.axes()), ..self.options };
+        let study = ExponentCells::new(&document.scene, &document.files, grid).with(options);
         check_first(self.options.until_settled, &study, document, progress)?;
         all_rows(&study, document, progress)
     }

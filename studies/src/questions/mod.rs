@@ -68,7 +68,7 @@ pub use design::{Best, BestAnswer, Compare, in_environment, needs_a_sine};
 pub use error::{Error, FaultAt, check_until_settled};
 pub use grid::{Exponents, Section, Sweep, Threshold, column_names, drive_alone};
 pub use motion::{
-    Basins, BasinsAnswer, Branch, Curve, Orbit, Spectrum, can_have_orbits, no_orbit, refuse_electrical_state,
+    Basins, BasinsAnswer, Branch, Curve, Orbit, Spectrum, can_have_orbits, may_have_circuit, no_orbit,
 };
 pub use progress::Progress;
 pub use record::{Identify, IdentifyAnswer, WhatToIdentify, columns_read};

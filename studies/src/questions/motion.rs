@@ -5,9 +5,9 @@ use crate::dynamics::Model;
 use crate::numeric::{Taper, number_text};
 use crate::scene::{Axis, Document, Transducer, is_whole};
 use crate::study::{
-    self, Answer, BranchEnd, CURVE_POINTS, ELECTRICAL_STATE, EvenRange, Family, NoBasins, NoOrbit,
-    NoSpectrum, Signal, SpectrumOptions, Starts, StartsError, Table, Task, branch, curve, default_positions,
-    orbit, orbit_table, spectrum,
+    self, Answer, BranchEnd, CURVE_POINTS, EvenRange, Family, NoBasins, NoOrbit, NoSpectrum, Signal,
+    SpectrumOptions, Starts, StartsError, Table, Task, branch, curve, default_positions, orbit, orbit_table,
+    spectrum,
 };
 
 /// Force, potential and stiffness of the mechanism over displacement.
@@ -47,15 +47,16 @@ impl Curve {
 ///
 /// The table of the answer has one row: `period` (forcing periods), `x_m`, `v_m_per_s` (at `phase_deg`),
 /// `multiplier_1_re`, `multiplier_1_im`, `multiplier_2_re`, `multiplier_2_im`, `stable`, `impacts`, `rests`,
-/// `gentlest_impact_m_per_s`, `nearest_miss_m`.
+/// `gentlest_impact_m_per_s`, `nearest_miss_m`; beside a circuit also `current_a` or `voltage_v` and
+/// `multiplier_3_re`, `multiplier_3_im`.
 ///
 /// Method: a motion that repeats after n forcing periods is a fixed point of the stroboscopic map, found by
 /// Newton's method. The derivative of the map is carried through impacts and releases by saltation matrices
-/// (Müller 1995; Kong et al. 2024); its eigenvalues are the multipliers, both 0 where the mass rests on a
-/// stop. It takes the run of the scene and some further periods.
+/// (Müller 1995; Kong et al. 2024); its eigenvalues are the multipliers, which are 0 where the mass rests on a
+/// stop, but for one of a circuit. It takes the run of the scene and some further periods.
 ///
 /// Errors: [`Error::Argument`] for `period` or `phase_deg`; [`Error::Unfit`] if the drive does not repeat or
-/// is 0, or the transducer has a state of its own; [`Error::Failed`] if the run comes to no motion that
+/// is 0; [`Error::Failed`] if the run comes to no motion that
 /// repeats (name a period, start elsewhere, or lengthen the run), Newton's method does not converge, the
 /// motion touches a stop without speed or ends early, or there is only an orbit of a shorter period.
 ///
@@ -212,19 +213,18 @@ pub(super) fn phase(degrees: f64) -> Result<f64, Error> {
     }
 }
 
-/// Refuses a scene whose drive does not repeat, or whose transducer has an electrical state.
+/// Refuses a scene whose drive does not repeat.
 pub fn can_have_orbits(document: &Document, model: &Model) -> Result<(), Error> {
     if !model.repeats() || !model.is_shaken() {
         let problem = "excitation: a periodic motion needs a drive that repeats and is not 0; take a Sine, \
                        or a Sum of sines whose frequencies have a common period";
         return Err(Error::unfit(document, problem));
     }
-    refuse_electrical_state(document, &[], "orbit")
+    Ok(())
 }
 
-/// Refuses a transducer with an electrical state, in the scene or in a cell over `axes`, for studies whose
-/// state consists of displacement and velocity only. `what` names the study in the error.
-pub fn refuse_electrical_state(document: &Document, axes: &[Axis], what: &str) -> Result<(), Error> {
+/// Whether the transducer has an electrical state, in the scene or in a cell over `axes`.
+pub fn may_have_circuit(document: &Document, axes: &[Axis]) -> bool {
     let swept = |name: &str| axes.iter().any(|axis| axis.field == format!("transducer.{name}"));
     let cells_may_have = match document.scene.transducer {
         Transducer::None => false,
@@ -233,10 +233,7 @@ pub fn refuse_electrical_state(document: &Document, axes: &[Axis], what: &str) -
         }
         Transducer::Piezoelectric { .. } => swept("load_kohm"),
     };
-    match cells_may_have || document.scene.transducer.has_state() {
-        true => Err(Error::unfit(document, format!("{what}: {ELECTRICAL_STATE}"))),
-        false => Ok(()),
-    }
+    cells_may_have || document.scene.transducer.has_state()
 }
 
 /// The error for an orbit that was not found; `at` is a prefix that names the place, such as `at FIELD =

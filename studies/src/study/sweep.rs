@@ -76,7 +76,7 @@ pub struct Tally {
     pub ended_early: u64,
     /// Cells whose mechanism was not solved.
     pub not_converged: u64,
-    /// Cells whose motion rests on a stop, so that both exponents are minus infinity.
+    /// Cells whose motion rests on a stop, so that all exponents are minus infinity.
     #[serde(skip)]
     pub resting: u64,
     /// Cells without exponents: ended early, touched a stop without speed, or with flexures not solved.

@@ -3,8 +3,8 @@
 
 use std::sync::Arc;
 
-use super::{State, Task};
-use crate::dynamics::{Model, Request, Run, Summary};
+use super::Task;
+use crate::dynamics::{MapState, Model, Request, Run, Summary};
 use crate::mechanics::{BuildError, Mechanism};
 use crate::scene::{Fault, FieldPath, Files, Scene};
 use crate::system::threads::Pool;
@@ -102,7 +102,7 @@ pub(super) struct Walk {
 
 /// The model of the last run of a walk, and the state from which the next one continues.
 #[derive(Default)]
-pub(super) struct Carried(Option<(Model, State)>);
+pub(super) struct Carried(Option<(Model, MapState)>);
 
 impl Carried {
     /// The next model, which continues from the run before.
@@ -115,7 +115,7 @@ impl Carried {
 
     /// Stores the state from which the next run continues.
     pub fn keep(&mut self, model: &Model, run: &Run) {
-        if let Some(state) = run.carried.filter(|(x, v)| x.is_finite() && v.is_finite()) {
+        if let Some(state) = run.carried.filter(|state| state.x.is_finite() && state.v.is_finite()) {
             self.0 = Some((model.clone(), state));
         }
     }

@@ -5,14 +5,14 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
-use interwell::dynamics::{Model, STANDARD_GRAVITY, Side};
+use interwell::dynamics::{MapState, Model, STANDARD_GRAVITY, Side};
 use interwell::mechanics::Mechanism;
 use interwell::scene::{Document, Excitation, Files, Scene, Stops};
 use interwell::study::{Branch, BranchEnd, BranchEvent, Family, Orbit, Task, branch, orbit, settled};
 use proptest::prelude::*;
 
 use super::one_stop::OneStop;
-use super::{AMPLITUDE, Ball, at, document, over_amplitude, response};
+use super::{AMPLITUDE, Ball, at, document, over_amplitude, response, two};
 use crate::properties::harness::{Verdict, hold_for, text};
 use crate::properties::mechanisms::built;
 use crate::properties::scenes::{rigid_stops, scene_with, sine};
@@ -26,7 +26,7 @@ fn holds(found: &Branch, model: &Model, range: (f64, f64)) -> Verdict {
     let scales = model.scales();
     let unit = (range.1 - range.0).abs();
     let place = |i: usize| {
-        let (x, v) = found.orbits[i].state;
+        let MapState { x, v, .. } = found.orbits[i].state;
         [x / scales.length, v / scales.speed, found.values[i] / unit]
     };
     let far =
@@ -35,7 +35,7 @@ fn holds(found: &Branch, model: &Model, range: (f64, f64)) -> Verdict {
     for &i in &events {
         let orbit = &found.orbits[i];
         let to = |unit: f64| {
-            let far = orbit.multipliers().map(|one| (one.re - unit).hypot(one.im));
+            let far = two(orbit).map(|one| (one.re - unit).hypot(one.im));
             far[0].min(far[1])
         };
         let off = match found.events[i] {
@@ -249,7 +249,7 @@ fn turns_at_the_stop(scene: &Scene, found: &Branch) -> Verdict {
         let model = Model::build(&scene, built(&scene.mechanism)).unwrap().with_tolerance(1e-14);
         let passage = model.stroboscopic_map(0.0).unwrap().pass(orbit.state, orbit.period);
         let gap = passage.nearest_miss().unwrap_or(f64::INFINITY);
-        let off = [(gap - farther) / model.scales().length, (passage.state.0 - orbit.state.0) / farther];
+        let off = [(gap - farther) / model.scales().length, (passage.state.0 - orbit.state.x) / farther];
         let exact = off[0].abs() <= 1e-8 && off[1].abs() <= 1e-4;
         prop_assert!(exact && passage.impacts == 0, "at {}: {off:?}", found.values[i]);
     }
@@ -315,7 +315,7 @@ impl Swing {
             true => format!("Rigid(travel_limit_mm: {limit:?}, restitution: {e:?})"),
             false => format!("Uneven(right_mm: {limit:?}, restitution_right: {e:?})"),
         };
-        let document = self.document(&stops, motion.state);
+        let document = self.document(&stops, (motion.state.x, motion.state.v));
         let mechanism = built(&document.scene.mechanism);
         let family = Family::new(&document.scene, &document.files, &mechanism, AMPLITUDE);
         let task = Task { tick: &|| (), cancel: &cancel };

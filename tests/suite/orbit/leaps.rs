@@ -1,6 +1,6 @@
 //! Branches that end, turn or leap: none does unsaid.
 
-use interwell::dynamics::{EventKind, Side};
+use interwell::dynamics::{EventKind, MapState, Side};
 use interwell::study::{BranchEnd, BranchEvent, Orbit};
 
 use super::{at, over_amplitude};
@@ -51,7 +51,7 @@ fn consecutive_motions_are_near_each_other() {
     let place = found.events.iter().position(|event| *event == Some(BranchEvent::Fold)).unwrap();
     near(found.orbits[place].multipliers()[0].re, 1.0, 1e-6);
     for pair in found.orbits.windows(2) {
-        let [(x, _), (before, _)] = [pair[1].state, pair[0].state];
+        let [x, before] = [pair[1].state.x, pair[0].state.x];
         assert!((x - before).abs() < 7.2e-5, "{x} {before}");
     }
 }
@@ -68,7 +68,8 @@ fn a_branch_does_not_go_back_along_itself() {
         let down = over_amplitude(&scene, (from, 0.7), Some(1));
         let row = |i: usize| (down.values[i], down.orbits[i].state);
         let within = |i: usize, j: usize, far: f64| {
-            let ((value, (x, v)), (other, (y, w))) = (row(i), row(j));
+            let ((value, MapState { x, v, .. }), (other, next)) = (row(i), row(j));
+            let (y, w) = (next.x, next.v);
             (value - other).abs() < far && (x - y).abs() < 0.1 * far && (v - w).abs() < 10.0 * far
         };
         // to come again it must have gone away

@@ -7,7 +7,7 @@ use interwell::dynamics::STANDARD_GRAVITY;
 use interwell::scene::Document;
 use interwell::study::{BranchEnd, BranchEvent};
 
-use super::{at, over_amplitude, response};
+use super::{at, over_amplitude, response, two};
 use crate::support::{changed, near, near_relative};
 
 /// The damping of the built-in scene.
@@ -101,7 +101,7 @@ impl OneStop {
         for orbit in &found.orbits {
             let Some(speed) = orbit.gentlest_impact().filter(|speed| *speed > 0.05) else { continue };
             assert_eq!(orbit.passage.impacts, 1);
-            let [first, second] = orbit.multipliers();
+            let [first, second] = two(orbit);
             near_relative(first.re + second.re, self.sum(speed), 1e-9);
             near(orbit.determinant(), self.determinant(), 1e-15);
         }

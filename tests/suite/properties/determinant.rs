@@ -25,7 +25,7 @@ fn the_determinant_is_that_of_damping_and_impacts() {
         let Some(exact) = passage.determinant.filter(|_| passage.outcome == Outcome::Done) else {
             return Ok(false);
         };
-        let [[a, b], [c, d]] = jacobian.rows;
+        let [[a, b], [c, d]] = jacobian.of_motion();
         // The determinant is the difference of two products, whose digits it loses; where all has died away
         // the derivatives are roundings of what they were.
         let size = (a * d).abs() + (b * c).abs() + 1e-6;

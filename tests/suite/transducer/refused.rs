@@ -1,10 +1,8 @@
 //! What is refused of a transducer, with the field, its value and a remedy.
 
 use interwell::scene::Document;
-use interwell::study::{Basins, NoBasins, NoExponents, NoOrbit, Starts};
 
 use crate::shared::changed;
-use crate::support::*;
 
 fn refused(changes: &[&str]) -> String {
     let mut document = Document::load("paper").unwrap();
@@ -101,21 +99,4 @@ fn a_load_beyond_the_largest_number_is_no_open_circuit() {
     let with_unit = text.replacen("load_ohm:", "load_ohm: 60ohm, //", 1);
     let error = Document::from_text("s.ron", &with_unit, document.files.clone()).unwrap_err().to_string();
     assert!(error.contains("transducer.load_ohm: expected a comma before this; a unit stands in"), "{error}");
-}
-
-#[test]
-fn studies_of_displacement_and_velocity_alone_refuse_a_third_state() {
-    let model = preset("paper", &[COIL]);
-    let cancel = std::sync::atomic::AtomicBool::new(false);
-    assert_eq!(interwell::study::orbit(&model, 0.0, None, &cancel).unwrap_err(), NoOrbit::ElectricalState);
-    assert!(model.stroboscopic_map(0.0).is_none());
-    let asked = interwell::study::ExponentOptions { periods: 10, until_settled: None };
-    let found = interwell::study::exponents(&model, &asked, &cancel);
-    assert_eq!(found.unwrap_err(), NoExponents::ElectricalState);
-    let document = changed("paper", &[COIL]);
-    let starts = Starts::random((-1.0, 1.0), (-0.1, 0.1), 4, 1).unwrap();
-    let basins = Basins::new(&document.scene, crate::shared::mechanism(&document), starts);
-    assert_eq!(basins.err().unwrap(), NoBasins::ElectricalState);
-    // without inductance it is a damping, and they take it
-    assert!(preset("paper", &[COIL, "transducer.inductance_mh=0"]).stroboscopic_map(0.0).is_some());
 }

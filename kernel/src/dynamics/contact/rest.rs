@@ -49,8 +49,11 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
     pub fn stand(&mut self, until: Instant<T>, phase: Phase) {
         let MotionState { at, x, v, circuit: state, .. } = self.state;
         let samples = self.record.samples.len();
+        let drive = self.stepper.drive;
+        let circuit = drive.circuit();
+        self.record.standing_circuit = circuit.map(|circuit| (at, state, circuit.decay));
         self.report(Call::Stand { at, until, state: (x, v), phase });
-        if let Some(circuit) = self.stepper.drive.circuit() {
+        if let Some(circuit) = circuit {
             self.record.circuit_decays(circuit, (&at, &until), state, samples);
             let time = self.stepper.clock.between(&at, &until);
             self.state.circuit = state * decay(circuit.decay * time).0;

@@ -4,17 +4,21 @@
 //! end of a motion with respect to its beginning. Those of a step follow from the arithmetic of its series.
 //! The instant of an event is a root, and one step of Newton's method at the root gives its derivatives; at
 //! an impact this amounts to the saltation matrix (Müller 1995; Kong et al. 2024). After a rest on a stop all
-//! derivatives are 0, since the release depends on the drive alone.
+//! derivatives are 0, since the release depends on the drive alone; beside a circuit it depends on its state
+//! too, which then is all that the later motion remembers.
 
 #[cfg(test)]
 mod differences;
 mod jacobian;
 mod passage;
 
-use super::clock::Instant;
-use super::drive::form::{Kernel, with_drive};
+use super::clock::{Clock, Instant};
+use super::drive::form::{Kernel, clock, general, with_drive};
+use super::drive::general::General;
+use super::equation::Equation;
 use super::model::Model;
-use crate::numeric::{Dual, Scalar};
+use super::result::MapState;
+use crate::numeric::{Dual, Number, Scalar};
 
 pub use jacobian::{Jacobian, Multiplier};
 use passage::Traced;
@@ -29,12 +33,38 @@ enum Length {
     Seconds(f64),
 }
 
+impl From<&Passage> for MapState {
+    /// The state at the end of a passage.
+    fn from(passage: &Passage) -> Self {
+        Self { electrical: passage.electrical, ..passage.state.into() }
+    }
+}
+
+/// Equation, clock and drive in numbers with derivatives: with respect to displacement and velocity, or to the
+/// state of the circuit as well, which only scenes with one need.
+#[derive(Debug)]
+enum DualKernel {
+    Motion(Kernel<Dual<2>>),
+    WithCircuit { equation: Equation<Dual<3>>, clock: Clock<Dual<3>>, drive: General<Dual<3>> },
+}
+
+impl DualKernel {
+    fn new(model: &Model) -> Self {
+        if !model.has_electrical_state() {
+            return Self::Motion(Kernel::new(model));
+        }
+        let unit = model.scales.unit();
+        let clock = clock(model, unit);
+        Self::WithCircuit { equation: Equation::new(model, unit), drive: general(model, &clock), clock }
+    }
+}
+
 /// The map from a state to the state one forcing period later.
 #[derive(Debug)]
 pub struct StroboscopicMap {
     model: Model,
     plain: Kernel<f64>,
-    dual: Kernel<Dual>,
+    dual: DualKernel,
     /// Cycles of the clock up to the strobe: their whole number and the fraction.
     phase: (i64, f64),
     length: Length,
@@ -44,10 +74,9 @@ pub struct StroboscopicMap {
 
 impl Model {
     /// The map from the state at a phase of the drive, in forcing periods from 0 to 1, to the state one
-    /// forcing period later. `None` if the drive has no period, or if a transducer has an electrical state.
+    /// forcing period later. `None` if the drive has no period.
     pub fn stroboscopic_map(&self, phase: f64) -> Option<StroboscopicMap> {
-        let alone = self.repeats() && !self.has_electrical_state();
-        let period = self.forcing_period.filter(|_| alone)?;
+        let period = self.forcing_period.filter(|_| self.repeats())?;
         let cycles = self.cycles_per_period;
         let turns = (phase - self.start_phase).rem_euclid(1.0) * cycles as f64;
         Some(StroboscopicMap {
@@ -63,7 +92,7 @@ impl StroboscopicMap {
     pub fn over(model: &Model, seconds: f64) -> Self {
         Self {
             plain: Kernel::new(model),
-            dual: Kernel::new(model),
+            dual: DualKernel::new(model),
             // the settled window is empty, so nothing is classified
             model: model.with_duration(seconds, seconds),
             phase: (0, 0.0),
@@ -88,49 +117,98 @@ impl StroboscopicMap {
         self.period
     }
 
-    /// The motion from a displacement in m and a velocity in m/s over this many forcing periods.
+    /// The motion from a state over this many forcing periods.
     ///
     /// The displacement must not lie beyond a stop or the curve; this is not checked.
-    pub fn pass(&self, state: (f64, f64), periods: u32) -> Passage {
+    pub fn pass(&self, state: impl Into<MapState>, periods: u32) -> Passage {
         self.pass_between(state, (0.0, f64::from(periods)))
     }
 
     /// The same over a part of the forcing period, from 0 to 1.
-    pub fn pass_part(&self, state: (f64, f64), part: f64) -> Passage {
+    pub fn pass_part(&self, state: impl Into<MapState>, part: f64) -> Passage {
         self.pass_between(state, (0.0, part))
     }
 
     /// The same between two times after a strobe, in forcing periods.
-    pub fn pass_between(&self, (x, v): (f64, f64), span: (f64, f64)) -> Passage {
-        let unit = self.model.scales.unit();
-        self.trace(&self.plain, (x, v * unit), span).passage
+    pub fn pass_between(&self, state: impl Into<MapState>, span: (f64, f64)) -> Passage {
+        let MapState { x, v, electrical } = state.into();
+        let [_, by_v, by_electrical] = self.kernel_units();
+        let start = [x, v * by_v, electrical * by_electrical];
+        let Kernel { equation, clock, drive } = &self.plain;
+        let span = self.span(clock, span);
+        with_drive!(drive, drive => passage::trace(&self.model, equation, *clock, drive, start, span)).passage
     }
 
-    /// The same with the derivatives of the state at the end with respect to that at the start. All are 0 if
-    /// the mass has rested on a stop. Some are infinite or NaN if it has touched one without speed. Those of
-    /// a mass that stands on a stop or a break of the curve are one-sided.
-    pub fn pass_with_jacobian(&self, state: (f64, f64), periods: u32) -> (Passage, Jacobian) {
+    /// The same with the derivatives of the state at the end with respect to that at the start. Without a
+    /// circuit all are 0 if the mass has rested on a stop. Some are infinite or NaN if it has touched one
+    /// without speed. Those of a mass that stands on a stop or a break of the curve are one-sided.
+    pub fn pass_with_jacobian(&self, state: impl Into<MapState>, periods: u32) -> (Passage, Jacobian) {
         self.pass_part_with_jacobian(state, (0.0, f64::from(periods)))
     }
 
     /// The same between two times after a strobe, in forcing periods.
-    pub fn pass_part_with_jacobian(&self, (x, v): (f64, f64), span: (f64, f64)) -> (Passage, Jacobian) {
-        let unit = self.model.scales.unit();
-        // Derivatives in units of the scales, so that they affect the length of a step as the state does.
-        let scales = [self.model.scales.length, self.model.scales.speed * unit];
-        let start =
-            (Dual { value: x, slopes: [scales[0], 0.0] }, Dual { value: v * unit, slopes: [0.0, scales[1]] });
-        let Traced { passage, end, rested } = self.trace(&self.dual, start, span);
-        if rested {
-            return (passage, Jacobian { rows: [[0.0; 2]; 2] });
+    pub fn pass_part_with_jacobian(
+        &self,
+        state: impl Into<MapState>,
+        span: (f64, f64),
+    ) -> (Passage, Jacobian) {
+        let MapState { x, v, electrical } = state.into();
+        let model = &self.model;
+        match &self.dual {
+            DualKernel::Motion(Kernel { equation, clock, drive }) => {
+                let [x, v] = self.variables([x, v]);
+                let (start, span) = ([x, v, Dual::of(0.0)], self.span(clock, span));
+                let traced = with_drive!(drive, drive => {
+                    passage::trace(model, equation, *clock, drive, start, span)
+                });
+                let [x, v, _] = traced.end;
+                let [by_x, by_v] = self.slopes([x, v], traced.passage.rested);
+                (traced.passage, Jacobian::mechanical([by_x, by_v]))
+            }
+            DualKernel::WithCircuit { equation, clock, drive } => {
+                let (start, span) = (self.variables([x, v, electrical]), self.span(clock, span));
+                let Traced { passage, end } = passage::trace(model, equation, *clock, drive, start, span);
+                let rows = self.slopes(end, false);
+                (passage, Jacobian::with_circuit(rows))
+            }
         }
-        let in_si = [1.0, unit];
-        let row = |end: Dual, out: f64| std::array::from_fn(|j| end.slopes[j] / scales[j] * in_si[j] / out);
-        (passage, Jacobian { rows: [row(end.0, 1.0), row(end.1, unit)] })
     }
 
-    fn trace<T: Scalar>(&self, kernel: &Kernel<T>, start: (T, T), (from, to): (f64, f64)) -> Traced<T> {
-        let Kernel { equation, clock, drive } = kernel;
+    /// Kernel units of displacement, velocity and the state of the circuit, per SI unit.
+    fn kernel_units(&self) -> [f64; 3] {
+        let unit = self.model.scales.unit();
+        [1.0, unit, self.model.circuit().map_or(0.0, |circuit| unit / circuit.amount)]
+    }
+
+    /// Scales of displacement, velocity and the state of the circuit in kernel units. Derivatives are by these,
+    /// so that they affect the length of a step as the state does.
+    fn kernel_scales(&self) -> [f64; 3] {
+        let speed = self.model.scales.speed * self.model.scales.unit();
+        [self.model.scales.length, speed, speed]
+    }
+
+    /// A state in SI as numbers that are varied.
+    fn variables<const N: usize>(&self, state: [f64; N]) -> [Dual<N>; N] {
+        let (units, scales) = (self.kernel_units(), self.kernel_scales());
+        std::array::from_fn(|i| {
+            let mut slopes = [0.0; N];
+            slopes[i] = scales[i];
+            Dual { value: state[i] * units[i], slopes }
+        })
+    }
+
+    /// The derivatives in SI of a state at an end; all 0 where nothing of the start is left.
+    fn slopes<const N: usize>(&self, end: [Dual<N>; N], forgotten: bool) -> [[f64; N]; N] {
+        if forgotten {
+            return [[0.0; N]; N];
+        }
+        let (units, scales) = (self.kernel_units(), self.kernel_scales());
+        let entry = |i: usize, j: usize| end[i].slopes[j] / scales[j] * units[j] / units[i];
+        std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j)))
+    }
+
+    /// The instants at these times after a strobe, in forcing periods.
+    fn span<T: Scalar>(&self, clock: &Clock<T>, (from, to): (f64, f64)) -> (Instant<T>, Instant<T>) {
         let strobe = Instant { cycle: self.phase.0, phase: T::of(self.phase.1) * clock.period };
         let after = |periods: f64| match self.length {
             Length::Cycles(cycles) => {
@@ -140,7 +218,6 @@ impl StroboscopicMap {
             }
             Length::Seconds(seconds) => clock.at(seconds * periods),
         };
-        let span = (after(from), after(to));
-        with_drive!(drive, drive => passage::trace(&self.model, equation, *clock, drive, start, span))
+        (after(from), after(to))
     }
 }

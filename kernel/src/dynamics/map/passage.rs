@@ -17,13 +17,18 @@ use crate::numeric::{PolynomialRoots, Scalar};
 pub struct Passage {
     /// Displacement in m and velocity in m/s at the end.
     pub state: (f64, f64),
+    /// State of the circuit at the end, in A or V; 0 without one.
+    pub electrical: f64,
     /// Events in order of time, in s from the start of the drive. A mass that rests on a stop from the
     /// beginning has no event for that.
     pub events: Vec<Event>,
-    /// Determinant of the map from the start to here, computed without integration: exp(-c t/m) times the
-    /// squared restitution of each impact, 0 if the mass has rested. `None` with compliant stops, whose loss
-    /// depends on the motion, and with a circuit.
+    /// Determinant of the map from the start to here, computed without integration: exp(-(c/m + d) t), d the
+    /// rate at which the circuit decays, times the squared restitution of each impact; 0 if the mass has
+    /// rested. `None` with compliant stops, whose loss depends on the motion.
     pub determinant: Option<f64>,
+    /// Whether the mass has rested on a stop. Its later motion then does not depend on the displacement and
+    /// the velocity at the start.
+    pub rested: bool,
     /// Points at which the mass turned back before a stop without touching it, in order of time. The
     /// beginning of a motion from rest is not one of them.
     pub misses: Vec<Miss>,
@@ -68,6 +73,7 @@ impl Passage {
         self.events.extend(events);
         self.misses.extend(misses);
         self.state = (-self.state.0, -self.state.1);
+        self.electrical = 0.0 - self.electrical;
         self.determinant = self.determinant.map(|half| half * half);
         self.impacts *= 2;
         self
@@ -93,11 +99,10 @@ impl Passage {
     }
 }
 
-/// A passage, the state at its end in kernel units, and whether the mass has rested on a stop on the way.
+/// A passage, and the state at its end in kernel units, with that of the circuit.
 pub(super) struct Traced<T> {
     pub passage: Passage,
-    pub end: (T, T),
-    pub rested: bool,
+    pub end: [T; 3],
 }
 
 /// Integrates the motion between two instants, from a state in kernel units.
@@ -106,7 +111,7 @@ pub(super) fn trace<T: Scalar, D: Drive<T>>(
     equation: &Equation<T>,
     clock: Clock<T>,
     drive: &D,
-    start: (T, T),
+    start: [T; 3],
     (from, to): (Instant<T>, Instant<T>),
 ) -> Traced<T> {
     let request = Request { events: true, ..Request::default() };
@@ -148,7 +153,7 @@ fn traced<T: Scalar>(
     equation: &Equation<T>,
     record: Recorder<T>,
     from: Instant<T>,
-    &MotionState { at, x, v, .. }: &MotionState<T>,
+    &MotionState { at, x, v, circuit, .. }: &MotionState<T>,
     misses: Vec<Miss>,
     outcome: Outcome,
 ) -> Traced<T> {
@@ -157,14 +162,14 @@ fn traced<T: Scalar>(
     let impacts = record.counts.total_impacts;
     let events = record.events.unwrap_or_default();
     let time = record.clock.between(&from, &at).to_f64() * equation.unit;
-    let known = equation.compliant.is_none() && model.circuit().is_none();
-    let determinant = known.then(|| match rested {
+    let determinant = equation.compliant.is_none().then(|| match rested {
         true => 0.0,
-        false => (-model.total_damping() * time / model.mass).exp() * squared_restitutions(model, &events),
+        false => model.contraction(time).exp() * squared_restitutions(model, &events),
     });
     let state = (x.to_f64(), v.to_f64() / equation.unit);
-    let passage = Passage { state, events, determinant, misses, outcome, impacts };
-    Traced { passage, end: (x, v), rested }
+    let electrical = model.circuit().map_or(0.0, |known| known.amount * circuit.to_f64() / equation.unit);
+    let passage = Passage { state, electrical, events, determinant, rested, misses, outcome, impacts };
+    Traced { passage, end: [x, v, circuit] }
 }
 
 /// The product of the squared restitution of each impact.

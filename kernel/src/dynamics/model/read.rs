@@ -6,8 +6,8 @@ use super::Model;
 use super::excitation::ExcitationParts;
 use super::scales::{MIN_IMPACT, Scales};
 use super::stops::StopPair;
-use super::transducer::{Circuit, Output};
-use crate::dynamics::result::Sample;
+use super::transducer::{Circuit, CircuitState, Output};
+use crate::dynamics::result::{MapState, Sample};
 use crate::mechanics::{Hertz, Mechanism};
 use crate::numeric::{DoubleDouble, Number, Scalar};
 use crate::scene;
@@ -57,6 +57,27 @@ impl Model {
     /// electrical state.
     pub fn total_damping(&self) -> f64 {
         self.damping + self.transducer.map_or(0.0, |transducer| transducer.damping)
+    }
+
+    /// Logarithm of the factor by which damping and the circuit contract volumes of states in `time` s without
+    /// impacts; it is negative.
+    pub fn contraction(&self, time: f64) -> f64 {
+        let by_circuit = self.circuit().map_or(0.0, |circuit| circuit.decay * time);
+        -(self.total_damping() * time / self.mass + by_circuit)
+    }
+
+    /// What the state of the circuit is; `None` without a circuit.
+    pub fn circuit_state(&self) -> Option<CircuitState> {
+        self.circuit().map(|circuit| match circuit.is_voltage {
+            true => CircuitState::Voltage,
+            false => CircuitState::Current,
+        })
+    }
+
+    /// Unit in A or V of the state of the circuit whose energy is that of the mass at the velocity scale;
+    /// `None` without a circuit.
+    pub fn electrical_scale(&self) -> Option<f64> {
+        self.circuit().map(|circuit| circuit.amount * self.scales.speed)
     }
 
     /// Whether the scene has a transducer.
@@ -135,8 +156,9 @@ impl Model {
 
     /// The same model, with the same scales, from another start: displacement in m and velocity in m/s.
     /// Precondition: the start lies in the curve and between the stops.
-    pub fn with_start(&self, start: (f64, f64)) -> Self {
-        Self { start, motionless: false, ..self.clone() }
+    pub fn with_start(&self, start: impl Into<MapState>) -> Self {
+        let MapState { x, v, electrical } = start.into();
+        Self { start: (x, v), start_electrical: electrical, motionless: false, ..self.clone() }
     }
 
     /// The same model without stops.
@@ -154,13 +176,16 @@ impl Model {
         Self { duration, settle, ..self.clone() }
     }
 
-    /// The same model, continuing from a state of a run of `before`: displacement in m and velocity in m/s,
-    /// as in [`Run::carried`](crate::dynamics::Run::carried). A stop of this model that lies on the other
-    /// side of the mass carries it along and takes its speed, as does the end of the known curve.
+    /// The same model, continuing from a state of a run of `before`, as in
+    /// [`Run::carried`](crate::dynamics::Run::carried). A stop of this model that lies on the other side of the
+    /// mass carries it along and takes its speed, as does the end of the known curve. A current continues as a
+    /// current and a voltage as a voltage.
     #[must_use]
-    pub fn carried_on(mut self, before: &Self, state: (f64, f64)) -> Self {
-        let pressed = before.compliant.and(self.compliant).and_then(|_| before.pressed_depth(state.0));
-        self.start = self.held_within(state, pressed.map_or(0.0, |(depth, _)| depth));
+    pub fn carried_on(mut self, before: &Self, state: impl Into<MapState>) -> Self {
+        let MapState { x, v, electrical } = state.into();
+        let pressed = before.compliant.and(self.compliant).and_then(|_| before.pressed_depth(x));
+        self.start = self.held_within((x, v), pressed.map_or(0.0, |(depth, _)| depth));
+        self.start_electrical = self.electrical_after(before, electrical);
         self.motionless = false;
         self
     }

@@ -36,7 +36,16 @@ pub(crate) struct Circuit {
     pub decay: f64,
     /// State at w = 1 m/s, whose energy is that of the mass at this speed.
     pub amount: f64,
-    is_voltage: bool,
+    pub is_voltage: bool,
+}
+
+/// What the electrical state of a circuit is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum CircuitState {
+    /// The current in the coil in A.
+    Current,
+    /// The voltage of the piezoelectric layer in V.
+    Voltage,
 }
 
 impl Circuit {

@@ -4,7 +4,7 @@ use super::recorder::Recorder;
 use super::window::STILL_STATES;
 use crate::dynamics::clock::Instant;
 use crate::dynamics::result::{EventKind, Phase, Sample, Side};
-use crate::numeric::Scalar;
+use crate::numeric::{Scalar, decay};
 
 /// A recorder call other than a step. Velocities are signed, in kernel units.
 #[derive(Debug, Clone, Copy)]
@@ -88,7 +88,10 @@ impl<T: Scalar> Recorder<'_, T> {
             if self.clock.between(&strobe, until) <= T::zero() {
                 break;
             }
-            self.strobe(x, T::zero());
+            let circuit = self.standing_circuit.map_or(T::zero(), |(since, state, rate)| {
+                state * decay(rate * self.clock.between(&since, &strobe).larger(T::zero())).0
+            });
+            self.strobe(x, T::zero(), circuit);
             recorded += 1;
             if recorded == STILL_STATES {
                 recorded = 0;

@@ -1,7 +1,7 @@
 //! Goal of a pursued motion: the motion, region or event that ends the pursuit.
 
 use super::regime::Classifier;
-use crate::dynamics::result::{Arrival, Pursuit};
+use crate::dynamics::result::{Arrival, MapState, Pursuit};
 
 /// Number of stroboscopic states, beyond two periods of the motion, that must also repeat.
 const CONFIRMING_STATES: u64 = 12;
@@ -18,14 +18,16 @@ impl<'a> Goal<'a> {
     }
 
     /// Checks another stroboscopic state, which `classifier` already holds.
-    pub fn strobe(&mut self, classifier: &Classifier, state: (f64, f64)) {
+    pub fn strobe(&mut self, classifier: &Classifier, state: MapState) {
         if self.reached.is_some() {
             return;
         }
         let periods = classifier.strobes.seen - 1;
         if let Some(which) = self.pursuit.known.iter().position(|known| known.is_reached(state)) {
             self.reached = Some(Arrival::Captured { which, periods });
-        } else if let Some(which) = self.pursuit.regions.iter().position(|region| region.holds(state)) {
+        } else if let Some(which) =
+            self.pursuit.regions.iter().position(|region| region.holds((state.x, state.v)))
+        {
             self.reached = Some(Arrival::Entered { which, periods });
         } else if periods >= self.pursuit.repeats_from {
             let period = classifier.strobes.repeats_for(CONFIRMING_STATES);

@@ -2,7 +2,7 @@
 //! one at the phase of its start.
 
 use crate::dynamics::clock::{Clock, Instant};
-use crate::dynamics::result::{Request, SectionPoint};
+use crate::dynamics::result::{MapState, Request, SectionPoint};
 use crate::numeric::Scalar;
 
 /// Instants closer than this share of a forcing period are the same: more than the rounding of an instant.
@@ -20,8 +20,8 @@ pub(crate) struct Listing<T> {
     left: Option<u64>,
     /// Cycles of the clock between two states.
     cycles: i64,
-    /// Displacement in m and velocity in m/s of the states since `first`.
-    states: Vec<(f64, f64)>,
+    /// The states since `first`.
+    states: Vec<MapState>,
     first: Instant<T>,
 }
 
@@ -40,12 +40,12 @@ pub(crate) struct Listed<T> {
 }
 
 impl<T: Scalar> Listing<T> {
-    pub fn add(&mut self, (x, v): (f64, f64)) {
+    pub fn add(&mut self, state: MapState) {
         match &mut self.left {
             Some(left) => *left -= 1,
             None => self.states.clear(),
         }
-        self.states.push((x, v));
+        self.states.push(state);
         self.next.cycle += self.cycles;
     }
 
@@ -54,6 +54,18 @@ impl<T: Scalar> Listing<T> {
         if self.left.is_none() {
             let periods = (clock.between(&self.next, until) / period).floor().to_f64();
             self.next.cycle += (periods as i64 - 1).max(0) * self.cycles;
+        }
+    }
+
+    /// Sets the electrical state of those since `at`, while the mass stands still.
+    pub fn charge(&mut self, clock: &Clock<T>, at: &Instant<T>, electrical: impl Fn(&Instant<T>) -> f64) {
+        let mut instant = self.next;
+        for state in self.states.iter_mut().rev() {
+            instant.cycle -= self.cycles;
+            if clock.between(at, &instant) < T::zero() {
+                break;
+            }
+            state.electrical = electrical(&instant);
         }
     }
 
@@ -148,9 +160,9 @@ impl<T: Scalar> Listings<T> {
     }
 
     /// The section, and the last state of `carried`.
-    pub fn finish(self, clock: &Clock<T>) -> (Vec<SectionPoint>, Option<(f64, f64)>) {
+    pub fn finish(self, clock: &Clock<T>) -> (Vec<SectionPoint>, Option<MapState>) {
         let points = self.section.into_iter().flat_map(|Listing { first, cycles, states, .. }| {
-            states.into_iter().zip(0..).map(move |((x, v), number)| {
+            states.into_iter().zip(0..).map(move |(MapState { x, v, .. }, number)| {
                 let at = Instant { cycle: first.cycle + number * cycles, phase: first.phase };
                 SectionPoint { t: clock.seconds(&at), x, v }
             })

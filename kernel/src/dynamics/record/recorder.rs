@@ -48,6 +48,8 @@ pub(crate) struct Recorder<'a, T: Copy> {
     pub barrier_side: i8,
     pub classifier: Classifier,
     pub goal: Option<Goal<'a>>,
+    /// Of a mass that begins to stand still: the instant, the state of the circuit and its rate of decay.
+    pub standing_circuit: Option<(Instant<T>, T, T)>,
     /// The first instant of the run at the window's phase.
     pub origin: Instant<T>,
     pub next_strobe: Option<Instant<T>>,
@@ -122,6 +124,7 @@ impl<'a, T: Scalar> Recorder<'a, T> {
             barrier_side: side,
             classifier: Classifier::new(model.rhythm, scales, periods, first),
             goal: None,
+            standing_circuit: None,
             origin,
             next_strobe: (periods > 0).then_some(origin),
             listings: Listings::new(request, &clock, from, (periods, cycles), model.start_phase),

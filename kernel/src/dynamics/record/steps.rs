@@ -77,10 +77,10 @@ impl<T: Scalar> Recorder<'_, T> {
         }
         let into = |strobe: &Instant<T>| self.clock.between(&step.at, strobe);
         if self.next_strobe.as_ref().is_some_and(|strobe| into(strobe) < step.duration) {
-            self.strobes(path, step);
+            self.strobes(path, circuit, step);
         }
         if !self.listings.is_empty() {
-            self.list_states(path, step);
+            self.list_states(path, circuit, step);
         }
         if self.next_time < self.times.len() {
             let end = self.clock.seconds(&self.clock.advance(&step.at, step.duration));
@@ -223,6 +223,13 @@ impl<T: Scalar> Recorder<'_, T> {
         for i in first..self.samples.len() {
             let into = self.clock.between(at, &self.clock.at(self.samples[i].t)).larger(T::zero());
             self.samples[i].electrical = self.electrical(state * decay(circuit.decay * into).0);
+        }
+        let amount = self.electrical(T::of(1.0));
+        for listing in self.listings.each() {
+            listing.charge(&self.clock, at, |instant| {
+                let into = self.clock.between(at, instant).larger(T::zero());
+                amount * (state * decay(circuit.decay * into).0).to_f64()
+            });
         }
     }
 }

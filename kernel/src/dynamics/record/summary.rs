@@ -4,7 +4,7 @@ use super::recorder::Recorder;
 use super::sums::Sums;
 use crate::dynamics::clock::Instant;
 use crate::dynamics::model::excitation::Rhythm;
-use crate::dynamics::result::{Harvest, Ledger, Outcome, Place, Regime, Run, Sample, Summary};
+use crate::dynamics::result::{Harvest, Ledger, MapState, Outcome, Place, Regime, Run, Sample, Summary};
 use crate::dynamics::state::MotionState;
 use crate::numeric::{CompensatedSum, Scalar};
 
@@ -29,11 +29,12 @@ fn value<T: Scalar>(sum: &CompensatedSum<T>) -> f64 {
 
 impl<T: Scalar> Recorder<'_, T> {
     pub fn finish(mut self, ending: &Ending<T>) -> Run {
-        let &Ending { state: MotionState { at: end, x, v, .. }, outcome, .. } = ending;
+        let &Ending { state: MotionState { at: end, x, v, circuit, .. }, outcome, .. } = ending;
         let (final_x, final_v) = (x.to_f64(), v.to_f64() / self.unit);
+        let electrical = self.electrical(circuit);
         self.sample_the_end(&ending.state);
-        self.last_strobe(&end, (x, v));
-        let (section, carried) = self.listed(&end, (final_x, final_v));
+        self.last_strobe(&ending.state);
+        let (section, carried) = self.listed(&end, MapState { x: final_x, v: final_v, electrical });
         let covered = value(&self.covered);
         let seen = covered > 0.0;
         let ledger = self.ledger.then(|| self.energy_ledger(ending));
@@ -72,6 +73,7 @@ impl<T: Scalar> Recorder<'_, T> {
         let summary = Summary {
             final_x,
             final_v,
+            final_electrical: electrical,
             rms_velocity: (seen && rms.is_finite()).then_some(rms),
             regime: self.regime(moved),
             crossings: counts.crossings,

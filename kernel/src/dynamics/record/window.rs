@@ -8,7 +8,9 @@ use super::regime::Classifier;
 use super::repeats::{LONGEST, Strobe};
 use super::sums::Sums;
 use crate::dynamics::clock::Instant;
-use crate::dynamics::result::{Arrival, ReleaseIdentity, SectionPoint, Side};
+use crate::dynamics::result::{Arrival, MapState, ReleaseIdentity, SectionPoint, Side};
+use crate::dynamics::series::polynomial;
+use crate::dynamics::state::MotionState;
 use crate::dynamics::step::path::{Path, StepData};
 use crate::numeric::{CompensatedSum, Scalar};
 
@@ -20,18 +22,21 @@ pub(crate) const STILL_STATES: u32 = 32;
 const PURSUIT_WINDOW: u64 = 100;
 
 impl<'a, T: Scalar> Recorder<'a, T> {
-    pub(crate) fn strobes<P: Path<T>>(&mut self, path: &P, step: &StepData<T>) {
+    pub(crate) fn strobes<P: Path<T>>(&mut self, path: &P, circuit: Option<&[T]>, step: &StepData<T>) {
         while let Some(strobe) = self.next_strobe {
             let into = self.clock.between(&step.at, &strobe);
             if into >= step.duration {
                 return;
             }
             let into = path.parameter(into, step.length);
-            self.strobe(step.x_at(path, into), path.velocity(into));
+            let circuit = circuit.map_or(T::zero(), |w| polynomial::value(w, into));
+            self.strobe(step.x_at(path, into), path.velocity(into), circuit);
         }
     }
 
-    pub(crate) fn strobe(&mut self, x: T, v: T) {
+    /// Records a stroboscopic state, with that of the circuit.
+    pub(crate) fn strobe(&mut self, x: T, v: T, circuit: T) {
+        let electrical = if self.goal.is_some() { self.electrical(circuit) } else { 0.0 };
         let Some(strobe) = &mut self.next_strobe else { return };
         strobe.cycle += self.period_cycles;
         self.strobes_left -= 1;
@@ -42,7 +47,7 @@ impl<'a, T: Scalar> Recorder<'a, T> {
         let squared = self.settled.squared_velocity.value().to_f64();
         self.classifier.strobe(state, (squared, self.counts.crossings));
         if let Some(goal) = &mut self.goal {
-            goal.strobe(&self.classifier, (state.x, state.v));
+            goal.strobe(&self.classifier, MapState { x: state.x, v: state.v, electrical });
         }
     }
 
@@ -63,11 +68,12 @@ impl<'a, T: Scalar> Recorder<'a, T> {
         }
     }
 
-    /// Records the stroboscopic state at `end`, the end of the run, if the window ends there too.
-    pub(crate) fn last_strobe(&mut self, end: &Instant<T>, (x, v): (T, T)) {
-        let due = |strobe: &Instant<T>| self.clock.between(strobe, end).abs() <= self.period * T::of(1e-9);
+    /// Records the state at the end of the run as a stroboscopic one, if the window ends there too.
+    pub(crate) fn last_strobe(&mut self, state: &MotionState<T>) {
+        let due =
+            |strobe: &Instant<T>| self.clock.between(strobe, &state.at).abs() <= self.period * T::of(1e-9);
         if self.next_strobe.as_ref().is_some_and(due) {
-            self.strobe(x, v);
+            self.strobe(state.x, state.v, state.circuit);
         }
     }
 
@@ -106,7 +112,8 @@ impl<'a, T: Scalar> Recorder<'a, T> {
         Some(to)
     }
 
-    pub(crate) fn list_states<P: Path<T>>(&mut self, path: &P, step: &StepData<T>) {
+    pub(crate) fn list_states<P: Path<T>>(&mut self, path: &P, circuit: Option<&[T]>, step: &StepData<T>) {
+        let amount = self.electrical(T::of(1.0));
         for listing in self.listings.each() {
             while let Some(next) = listing.due() {
                 let into = self.clock.between(&step.at, &next).larger(T::zero());
@@ -114,7 +121,9 @@ impl<'a, T: Scalar> Recorder<'a, T> {
                     break;
                 }
                 let into = path.parameter(into, step.length);
-                listing.add((step.x_at(path, into).to_f64(), path.velocity(into).to_f64() / self.unit));
+                let electrical = circuit.map_or(0.0, |w| amount * polynomial::value(w, into).to_f64());
+                let (x, v) = (step.x_at(path, into).to_f64(), path.velocity(into).to_f64() / self.unit);
+                listing.add(MapState { x, v, electrical });
             }
         }
     }
@@ -124,7 +133,7 @@ impl<'a, T: Scalar> Recorder<'a, T> {
         for listing in self.listings.each() {
             listing.skip_still(&self.clock, self.period, until);
             while listing.due().is_some_and(|next| self.clock.between(&next, until) > T::zero()) {
-                listing.add((x.to_f64(), 0.0));
+                listing.add((x.to_f64(), 0.0).into());
             }
         }
     }
@@ -134,12 +143,12 @@ impl<'a, T: Scalar> Recorder<'a, T> {
     pub(crate) fn listed(
         &mut self,
         end: &Instant<T>,
-        (x, v): (f64, f64),
-    ) -> (Vec<SectionPoint>, Option<(f64, f64)>) {
+        state: MapState,
+    ) -> (Vec<SectionPoint>, Option<MapState>) {
         let same = self.period * T::of(SAME);
         for listing in self.listings.each() {
             if listing.due().is_some_and(|next| self.clock.between(&next, end).abs() <= same) {
-                listing.add((x, v));
+                listing.add(state);
             }
         }
         std::mem::take(&mut self.listings).finish(&self.clock)

@@ -1,35 +1,37 @@
 //! Arrival of a pursued motion: its known attractors and regions, and what ended the pursuit.
 
-use super::event::Side;
+use super::event::{MapState, Side};
 use super::summary::Summary;
 
-/// An ellipse around a stroboscopic state of a known motion. Motions inside it are known to go to
-/// that motion.
+/// An ellipse, beside a circuit an ellipsoid, around a stroboscopic state of a known motion. Motions inside it
+/// are known to go to that motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Capture {
-    /// Displacement in m and velocity in m/s of the known motion.
-    pub state: (f64, f64),
-    /// The coefficients a, b and c of the ellipse a x^2 + 2 b x v + c v^2 < 1, with x and v relative to the
-    /// state and a, b and c in SI.
-    pub form: [f64; 3],
-    /// Largest displacement and velocity from the state at which a motion has arrived. A motion inside the
-    /// ellipse but further away is followed until it is this near.
-    pub near: (f64, f64),
+    /// The state of the known motion.
+    pub state: MapState,
+    /// The coefficients of the ellipse a x^2 + 2 b x v + c v^2 + 2 w (d x + e v) + f w^2 < 1, with displacement
+    /// x, velocity v and state of the circuit w relative to the state, all in SI.
+    pub form: [f64; 6],
+    /// Largest difference from the state at which a motion has arrived. A motion inside the ellipse but further
+    /// away is followed until it is this near.
+    pub near: MapState,
 }
 
 impl Capture {
     /// Whether a state lies inside the ellipse.
-    pub fn holds(&self, state: (f64, f64)) -> bool {
-        let (x, v) = (state.0 - self.state.0, state.1 - self.state.1);
-        let [a, b, c] = self.form;
-        a * x * x + 2.0 * b * x * v + c * v * v < 1.0
+    pub fn holds(&self, state: MapState) -> bool {
+        let (x, v) = (state.x - self.state.x, state.v - self.state.v);
+        let w = state.electrical - self.state.electrical;
+        let [a, b, c, d, e, f] = self.form;
+        a * x * x + 2.0 * b * x * v + c * v * v + (2.0 * (d * x + e * v) + f * w) * w < 1.0
     }
 
     /// Whether a motion in this state has arrived.
-    pub fn is_reached(&self, state: (f64, f64)) -> bool {
+    pub fn is_reached(&self, state: MapState) -> bool {
         let near = |value: f64, other: f64, limit: f64| (value - other).abs() <= limit;
-        near(state.0, self.state.0, self.near.0)
-            && near(state.1, self.state.1, self.near.1)
+        near(state.x, self.state.x, self.near.x)
+            && near(state.v, self.state.v, self.near.v)
+            && near(state.electrical, self.state.electrical, self.near.electrical)
             && self.holds(state)
     }
 }
@@ -73,8 +75,8 @@ pub struct ReleaseIdentity {
 /// Start and termination criteria of a pursuit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pursuit<'a> {
-    /// Displacement in m and velocity in m/s at time 0.
-    pub start: (f64, f64),
+    /// The state at time 0.
+    pub start: MapState,
     /// Known motions to which it may go.
     pub known: &'a [Capture],
     /// Known regions that it may enter.
@@ -142,8 +144,8 @@ pub enum Arrival {
     Repeats {
         /// Period of the motion in forcing periods, at most 12.
         period: u32,
-        /// The last of the states, in m and m/s.
-        state: (f64, f64),
+        /// The last of the states.
+        state: MapState,
         /// See above.
         periods: u64,
     },

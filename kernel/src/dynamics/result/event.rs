@@ -130,3 +130,21 @@ pub struct SectionPoint {
     /// Velocity in m/s; right after an event at this instant.
     pub v: f64,
 }
+
+/// A state from which a motion can go on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MapState {
+    /// Displacement in m.
+    pub x: f64,
+    /// Velocity in m/s.
+    pub v: f64,
+    /// State of the circuit, a current in A or a voltage in V; 0 without one.
+    pub electrical: f64,
+}
+
+impl From<(f64, f64)> for MapState {
+    /// Displacement and velocity, with the circuit at rest.
+    fn from((x, v): (f64, f64)) -> Self {
+        Self { x, v, electrical: 0.0 }
+    }
+}

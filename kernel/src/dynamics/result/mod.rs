@@ -8,7 +8,7 @@ mod summary;
 use std::sync::atomic::AtomicBool;
 
 pub use arrival::{Arrival, Capture, Pursued, Pursuit, Region, ReleaseIdentity};
-pub use event::{Event, EventKind, Phase, Sample, SectionPoint, Side};
+pub use event::{Event, EventKind, MapState, Phase, Sample, SectionPoint, Side};
 pub use outcome::{Outcome, Place, Regime};
 pub use summary::{First, Firsts, Harvest, Ledger, Summary};
 
@@ -45,9 +45,9 @@ pub struct Run {
     /// The states of the settled window at the requested phase, one per forcing period, if they were
     /// requested and the drive repeats; at most some 4 million, and up to the end of the run.
     pub section: Vec<SectionPoint>,
-    /// Displacement in m and velocity in m/s at the last instant that is a whole number of forcing periods
+    /// The state at the last instant that is a whole number of forcing periods
     /// after the start, if it was requested and the drive repeats.
-    pub carried: Option<(f64, f64)>,
+    pub carried: Option<MapState>,
     /// Statistics, outcome and ledger.
     pub summary: Summary,
 }

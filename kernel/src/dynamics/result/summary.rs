@@ -70,6 +70,8 @@ pub struct Summary {
     pub final_x: f64,
     /// Velocity at the end in m/s.
     pub final_v: f64,
+    /// State of the circuit at the end in A or V; 0 without one.
+    pub final_electrical: f64,
     /// RMS velocity over the settled window in m/s; `None` if the run ended before it.
     pub rms_velocity: Option<f64>,
     /// Regime of the motion over the settled window.

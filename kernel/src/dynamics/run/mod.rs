@@ -12,7 +12,7 @@ use crate::dynamics::equation::Equation;
 use crate::dynamics::model::Model;
 use crate::dynamics::motion::Motion;
 use crate::dynamics::record::goal::Goal;
-use crate::dynamics::result::{Arrival, Outcome, Pursued, Pursuit, Request, Run};
+use crate::dynamics::result::{Arrival, MapState, Outcome, Pursued, Pursuit, Request, Run};
 use crate::dynamics::state::{Contact, Flow};
 use crate::dynamics::step::stepper::Settings;
 use crate::dynamics::step::work::{Costs, IMPACT_BUDGET};
@@ -120,7 +120,7 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
     /// be extended. Returns whether it has begun.
     fn begin_next_window(&mut self) -> bool {
         let Some(until) = self.until_settled else { return false };
-        self.record.last_strobe(&self.state.at, (self.state.x, self.state.v));
+        self.record.last_strobe(&self.state);
         if self.record.classifier.period().is_some() {
             return false;
         }
@@ -169,11 +169,15 @@ impl<'a, T: Scalar, D: Drive<T>> Motion<'a, T, D> {
     /// Puts the motion at the start of a pursuit and sets the end of the pursuit. A release from rest ends
     /// it, so it is never completed from a recurrence.
     pub fn pursuing(mut self, pursuit: &Pursuit<'a>) -> Self {
-        let start = (T::of(pursuit.start.0), T::of(pursuit.start.1 * self.stepper.equation.unit));
+        let unit = self.stepper.equation.unit;
+        let MapState { x, v, electrical } = pursuit.start;
+        let circuit = self.record.model.circuit().map_or(0.0, |circuit| circuit.state(electrical) * unit);
+        let start = [T::of(x), T::of(v * unit), T::of(circuit)];
         self.put(start, Instant { cycle: 0, phase: T::zero() });
         self.stepper.work.limit(pursuit.max_work);
         self.stepper.end = self.record.pursue(Goal::new(*pursuit), pursuit.max_periods);
-        (self.recurs, self.until_settled) = (true, None);
+        // what follows a release also depends on a circuit, so that no label identifies it
+        (self.recurs, self.until_settled) = (self.stepper.drive.circuit().is_none(), None);
         self
     }
 

@@ -18,7 +18,7 @@ const EVENTS: [BranchEvent; 4] =
 pub fn branch_chart(branch: &Branch, phase_deg: f64, ranges: Ranges) -> Chart {
     let table = branch.table();
     let field = table.columns()[0].name.as_str();
-    let millimetres: Vec<f64> = branch.orbits.iter().map(|orbit| orbit.state.0 * 1e3).collect();
+    let millimetres: Vec<f64> = branch.orbits.iter().map(|orbit| orbit.state.x * 1e3).collect();
     let points: Vec<Point> = branch.values.iter().copied().zip(millimetres.iter().copied()).collect();
     let stable: Vec<bool> = branch.orbits.iter().map(|orbit| orbit.is_stable()).collect();
     let up = PlotAxis::around(millimetres, 0.08, "displacement at the strobe (mm)").or_given(ranges.y);
@@ -50,7 +50,7 @@ pub fn branch_chart(branch: &Branch, phase_deg: f64, ranges: Ranges) -> Chart {
     for (i, value) in branch.values.iter().enumerate().filter(|row| panel.x.contains(*row.1)) {
         let words =
             [if stable[i] { "true" } else { "false" }, branch.events[i].map_or("", |event| event.name())];
-        drawn.put("branch", &[*value, branch.orbits[i].state.0], &words);
+        drawn.put("branch", &[*value, branch.orbits[i].state.x], &words);
     }
     let period = branch.orbits.first().map_or(1, |orbit| orbit.period);
     let about = format!(

@@ -3,7 +3,8 @@
 
 use super::Basins;
 use super::rounds::{Fate, Kind, Way};
-use crate::dynamics::{Model, Outcome, Place, Regime, Request, Side, Summary};
+use super::stroboscopic::final_state;
+use crate::dynamics::{MapState, Model, Outcome, Place, Regime, Request, Side, Summary};
 use crate::numeric::decimals;
 use crate::study::{State, Table, Task};
 
@@ -252,7 +253,8 @@ impl Basins {
     fn describe(&self, key: Key, row: usize, settled: u32, task: &Task) -> Option<(Summary, Vec<State>)> {
         let period = self.model.forcing_period().unwrap_or(1.0);
         let (x_mm, v) = self.starts.at(row);
-        let (mut start, mut settle) = ((x_mm / 1e3, v), 0.0);
+        let electrical = self.model.start_electrical();
+        let (mut start, mut settle) = (MapState { x: x_mm / 1e3, v, electrical }, 0.0);
         match key {
             Key::Cycle(_) => settle = f64::from(settled) * period,
             Key::Kind(kind) => match &self.rounds.kinds[kind as usize] {
@@ -263,7 +265,7 @@ impl Basins {
                 Kind::Rest(side) => {
                     let stops = self.model.stop_positions();
                     let stop = if *side == Side::Left { stops.0 } else { stops.1 };
-                    start = (stop.unwrap_or(start.0), 0.0);
+                    start = MapState { x: stop.unwrap_or(start.x), v: 0.0, electrical };
                 }
                 Kind::Judged(_, summary) => {
                     return Some((**summary, vec![(summary.final_x, summary.final_v)]));
@@ -273,20 +275,19 @@ impl Basins {
         let window = self.model.with_start(start).with_duration(settle + f64::from(WINDOW) * period, settle);
         let summary = window.run(&Request { cancel: Some(task.cancel), ..Request::default() }).summary;
         task.check_cancelled().ok()?;
-        let state = (summary.final_x, summary.final_v);
-        let states = states(&self.model, state, summary.period.unwrap_or(1), period);
+        let states = states(&self.model, final_state(&summary), summary.period.unwrap_or(1), period);
         (!task.is_cancelled()).then_some((summary, states))
     }
 }
 
 /// The states of a settled motion after each of `count` forcing periods, beginning with the one farthest to
 /// the right.
-fn states(model: &Model, state: State, count: u32, period: f64) -> Vec<State> {
+fn states(model: &Model, state: MapState, count: u32, period: f64) -> Vec<State> {
     let times: Vec<f64> = (0..count).map(|number| f64::from(number) * period).collect();
     let request = Request { sample_times: &times, ..Request::default() };
     let run = model.with_start(state).with_duration(f64::from(count) * period, 0.0).run(&request);
     if run.summary.outcome != Outcome::Done || run.samples.len() != times.len() {
-        return vec![state];
+        return vec![(state.x, state.v)];
     }
     let mut states: Vec<State> = run.samples.iter().map(|sample| (sample.x, sample.v)).collect();
     let by_state = |a: &State, b: &State| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1));

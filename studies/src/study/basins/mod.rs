@@ -46,12 +46,9 @@ pub enum NoBasins {
          of sines whose frequencies have a common period, or None"
     )]
     NoPeriod,
-    /// Its transducer has a state of its own.
-    #[error("{}", crate::study::ELECTRICAL_STATE)]
-    ElectricalState,
     /// It loses no energy.
     #[error(
-        "it has no damping and no stop that takes energy, so that no motion attracts others; set damping, \
+        "it has no damping, no transducer and no stop that takes energy, so that no motion attracts others; set damping, \
          such as damping=Ratio(0.02)"
     )]
     NoLoss,
@@ -89,18 +86,20 @@ impl Basins {
     /// Number of forcing periods after which a motion that has reached no known attractor is classified.
     pub const PATIENCE: u64 = PATIENCE;
 
-    /// The map of a scene over these starts, before any run; the start of the scene is ignored. States are
+    /// The map of a scene over these starts, before any run; of the start of the scene only the state of a circuit
+    /// is taken. States are
     /// taken once per forcing period or, without a drive, once per period of small oscillations.
     pub fn new(scene: &Scene, mechanism: Arc<Mechanism>, starts: Starts) -> Result<Self, NoBasins> {
-        if scene.transducer.has_state() {
-            return Err(NoBasins::ElectricalState);
-        }
         if !loses_energy(scene) {
             return Err(NoBasins::NoLoss);
         }
+        let electrical = match scene.start {
+            Start::At { electrical, .. } => electrical,
+            _ => 0.0,
+        };
         let ((low, high), v) = starts.extent();
         let at = |x_mm: f64, v_m_per_s: f64, excitation: &Excitation| {
-            let start = Start::At { x_mm, v_m_per_s, electrical: 0.0 };
+            let start = Start::At { x_mm, v_m_per_s, electrical };
             let scene = Scene { start, excitation: excitation.clone(), ..scene.clone() };
             Model::build(&scene, Arc::clone(&mechanism)).map_err(NoBasins::Faults)
         };
@@ -188,7 +187,7 @@ fn is_inside(room: (f64, f64), x_mm: f64) -> bool {
     (room.0..=room.1).contains(&(x_mm / 1e3))
 }
 
-/// Whether damping or a stop dissipates energy.
+/// Whether damping, a circuit or a stop dissipates energy.
 fn loses_energy(scene: &Scene) -> bool {
     let damped = match scene.damping {
         Damping::None => false,
@@ -196,6 +195,7 @@ fn loses_energy(scene: &Scene) -> bool {
         Damping::Coefficient { c_n_s_per_m } => c_n_s_per_m > 0.0,
     };
     damped
+        || scene.transducer.dissipates()
         || scene.stops.restitutions().into_iter().flatten().any(|restitution| restitution < 1.0)
         || matches!(scene.stops, Stops::Hertz { loss_s_per_m, .. } if loss_s_per_m > 0.0)
 }

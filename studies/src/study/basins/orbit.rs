@@ -1,5 +1,6 @@
 //! Stable periodic orbits of the stroboscopic map, with ellipses around their states from which all motions
-//! go to the orbit.
+//! go to the orbit. Beside a circuit points have its state as a third coordinate, and the ellipses are ellipsoids;
+//! without one that coordinate is 0.
 //!
 //! A motion whose states repeat proposes an orbit. Newton's method on the map over `period` forcing periods
 //! finds the orbit nearby, and the Lyapunov equation M = J^T M J + I gives a norm in which the linearised map
@@ -8,11 +9,12 @@
 //! ellipse: every motion that enters it goes to the orbit. If there is none, the map over multiples of the
 //! period is tried.
 
-use super::stroboscopic::{Point, Stroboscope};
-use crate::dynamics::{Capture, Jacobian, Outcome};
-use crate::study::{Cancelled, State};
+use nalgebra::{Matrix3, Vector3};
 
-type Matrix = [[f64; 2]; 2];
+use super::stroboscopic::{Point, Stroboscope};
+use crate::dynamics::{Capture, Jacobian, MapState, Outcome};
+use crate::study::Cancelled;
+use crate::study::orbit::newton_step;
 
 /// Largest number of steps of Newton's method.
 const MAX_STEPS: usize = 12;
@@ -32,6 +34,8 @@ const RADII: usize = 34;
 const GROWTH: f64 = std::f64::consts::SQRT_2;
 /// Number of starts on a circle.
 const AROUND: usize = 16;
+/// Number of starts on the sphere that takes the place of a circle beside a circuit.
+const ON_SPHERE: usize = 96;
 
 /// Distance to an orbit below which a state has arrived there, as a share of the scales: the same as for a
 /// repetition of states.
@@ -48,14 +52,14 @@ const DOUBLINGS: usize = 60;
 pub(super) enum Found {
     /// A stable orbit: its states, each with its ellipse.
     Stable(Vec<Capture>),
-    /// An unstable orbit through this state in m and m/s.
-    Unstable(State),
+    /// An unstable orbit through this state.
+    Unstable(MapState),
     /// No orbit, or none with an ellipse from which all motions go to it.
     Nothing,
 }
 
-/// The orbit of the proposed or twice the proposed period near a state in m and m/s.
-pub(super) fn find(scope: &Stroboscope, period: u32, state: State) -> Result<Found, Cancelled> {
+/// The orbit of the proposed or twice the proposed period near a state.
+pub(super) fn find(scope: &Stroboscope, period: u32, state: MapState) -> Result<Found, Cancelled> {
     let first = of_period(scope, period, state)?;
     // shortly after a period doubling the two halves of the doubled orbit are nearly equal
     if let Found::Unstable(_) = first
@@ -66,7 +70,7 @@ pub(super) fn find(scope: &Stroboscope, period: u32, state: State) -> Result<Fou
     Ok(first)
 }
 
-fn of_period(scope: &Stroboscope, period: u32, state: State) -> Result<Found, Cancelled> {
+fn of_period(scope: &Stroboscope, period: u32, state: MapState) -> Result<Found, Cancelled> {
     let Some(root) = newton(scope, period, scope.point(state)) else { return Ok(Found::Nothing) };
     let after: Vec<(Point, u32)> = (1..=period).map(|periods| (root, periods)).collect();
     let Some(states) = scope.map(&after)?.into_iter().collect::<Option<Vec<Point>>>() else {
@@ -78,7 +82,8 @@ fn of_period(scope: &Stroboscope, period: u32, state: State) -> Result<Found, Ca
     let mut orbit = vec![root];
     orbit.extend_from_slice(&states[..period as usize - 1]);
     for point in orbit {
-        let Some((_, jacobian)) = jacobian(scope, period, point) else { return Ok(Found::Nothing) };
+        let Some((_, jacobian)) = derivative(scope, period, point) else { return Ok(Found::Nothing) };
+        let jacobian = Matrix3::from_fn(|i, j| jacobian.rows()[i][j]);
         if lyapunov(&jacobian).is_none() {
             return Ok(Found::Unstable(scope.state(root)));
         }
@@ -97,39 +102,33 @@ fn ellipse(
     scope: &Stroboscope,
     period: u32,
     at: Point,
-    mut jacobian: Matrix,
+    mut jacobian: Matrix3<f64>,
 ) -> Result<Option<Capture>, Cancelled> {
     for times in TIMES {
         let Some(norm) = lyapunov(&jacobian) else { break };
         if let Some(radius) = radius(scope, times * period, at, &norm)? {
             return Ok(Some(capture(scope, at, &norm, radius)));
         }
-        jacobian = squared(&jacobian);
+        jacobian *= jacobian;
     }
     Ok(None)
 }
 
-fn squared([[p, q], [r, s]]: &Matrix) -> Matrix {
-    [[p * p + q * r, p * q + q * s], [r * p + s * r, r * q + s * s]]
-}
-
 fn distance(a: &Point, b: &Point) -> f64 {
-    (a[0] - b[0]).hypot(a[1] - b[1])
+    (Vector3::from(*a) - Vector3::from(*b)).norm()
 }
 
 /// A fixed point of the map of `period` forcing periods near `from`.
 fn newton(scope: &Stroboscope, period: u32, from: Point) -> Option<Point> {
     let mut point = from;
     for _ in 0..MAX_STEPS {
-        let (image, [[a, b], [c, d]]) = jacobian(scope, period, point)?;
-        let (a, d, rest) = (a - 1.0, d - 1.0, [point[0] - image[0], point[1] - image[1]]);
-        let determinant = a * d - b * c;
-        let step = [(d * rest[0] - b * rest[1]) / determinant, (a * rest[1] - c * rest[0]) / determinant];
-        let length = step[0].hypot(step[1]);
+        let (image, jacobian) = derivative(scope, period, point)?;
+        let step = newton_step(&jacobian, [0, 1, 2].map(|i| image[i] - point[i]))?;
+        let length = Vector3::from(step).norm();
         if !(length < LONGEST_STEP) {
             break;
         }
-        point = [point[0] + step[0], point[1] + step[1]];
+        point = [0, 1, 2].map(|i| point[i] + step[i]);
         if length < LAST_STEP {
             return Some(point);
         }
@@ -137,84 +136,91 @@ fn newton(scope: &Stroboscope, period: u32, from: Point) -> Option<Point> {
     None
 }
 
-/// The image of a point and the derivative of the map there, in units of the scales; `None` if the motion
-/// ends early.
-fn jacobian(scope: &Stroboscope, period: u32, at: Point) -> Option<(Point, Matrix)> {
-    let ((length, speed), map) =
-        (scope.units(), scope.model.stroboscopic_map(scope.model.drive_phase(0.0)?)?);
-    let (passage, Jacobian { rows: [[a, b], [c, d]] }) = map.pass_with_jacobian(scope.state(at), period);
+/// The image of a point and the derivative of the map there, in the units; `None` if the motion ends early.
+fn derivative(scope: &Stroboscope, period: u32, at: Point) -> Option<(Point, Jacobian)> {
+    let map = scope.model.stroboscopic_map(scope.model.drive_phase(0.0)?)?;
+    let (passage, jacobian) = map.pass_with_jacobian(scope.state(at), period);
     let whole = scope.has(at) && passage.outcome == Outcome::Done;
-    whole.then(|| (scope.point(passage.state), [[a, b * speed / length], [c * length / speed, d]]))
+    whole.then(|| (scope.point((&passage).into()), jacobian.in_units(scope.units().of_state())))
 }
 
-/// M = sum of (J^k)^T J^k over k >= 0, if the sum is finite, as a, b and c of the rows (a, b) and (b, c).
-/// Summed by doubling (Smith 1968).
-fn lyapunov(jacobian: &Matrix) -> Option<[f64; 3]> {
+/// M = sum of (J^k)^T J^k over k >= 0, if the sum is finite. Summed by doubling (Smith 1968).
+fn lyapunov(jacobian: &Matrix3<f64>) -> Option<Matrix3<f64>> {
     let mut power = *jacobian;
-    let mut sum = [1.0, 0.0, 1.0];
+    let mut sum = Matrix3::identity();
     for _ in 0..DOUBLINGS {
-        let [[p, q], [r, s]] = power;
-        let [a, b, c] = sum;
-        let more = [
-            a * p * p + 2.0 * b * p * r + c * r * r,
-            a * p * q + b * (p * s + q * r) + c * r * s,
-            a * q * q + 2.0 * b * q * s + c * s * s,
-        ];
-        sum = [a + more[0], b + more[1], c + more[2]];
+        let more = power.transpose() * sum * power;
+        sum += more;
         if !sum.iter().all(|entry| entry.is_finite()) {
             return None;
         }
-        if more[0] + more[2] <= f64::EPSILON * (sum[0] + sum[2]) {
+        if more.trace() <= f64::EPSILON * sum.trace() {
             return Some(sum);
         }
-        power = squared(&power);
+        power *= power;
     }
     None
 }
 
 /// The squared length of a vector in a norm.
-fn square([a, b, c]: &[f64; 3], [x, v]: Point) -> f64 {
-    a * x * x + 2.0 * b * x * v + c * v * v
+fn square(norm: &Matrix3<f64>, vector: &Vector3<f64>) -> f64 {
+    vector.dot(&(norm * vector))
+}
+
+/// Vectors of length 1, evenly around a circle or over a sphere (Vogel 1979).
+fn directions(size: usize) -> Vec<Vector3<f64>> {
+    let golden = std::f64::consts::PI * (3.0 - 5.0_f64.sqrt());
+    let on_circle = |part: usize| {
+        let (sine, cosine) = (std::f64::consts::TAU * part as f64 / AROUND as f64).sin_cos();
+        Vector3::new(cosine, sine, 0.0)
+    };
+    let on_sphere = |part: usize| {
+        let height = 1.0 - (2 * part + 1) as f64 / ON_SPHERE as f64;
+        let (sine, cosine) = (golden * part as f64).sin_cos();
+        let across = (1.0 - height * height).sqrt();
+        Vector3::new(across * cosine, across * sine, height)
+    };
+    if size == 3 { (0..ON_SPHERE).map(on_sphere).collect() } else { (0..AROUND).map(on_circle).collect() }
 }
 
 /// The largest radius around a fixed point up to which the map contracts every circle in the norm, at least
 /// half as strongly as its derivative does; `None` if it does not contract even the smallest one.
-fn radius(scope: &Stroboscope, period: u32, at: Point, norm: &[f64; 3]) -> Result<Option<f64>, Cancelled> {
-    let [a, b, c] = *norm;
-    // the unit circle of the norm is (u, w) by M = L L^T
-    let (l, m) = (a.sqrt(), b / a.sqrt());
-    let n = (c - m * m).sqrt();
+fn radius(
+    scope: &Stroboscope,
+    period: u32,
+    at: Point,
+    norm: &Matrix3<f64>,
+) -> Result<Option<f64>, Cancelled> {
+    // with M = L L^T, the points of length 1 in the norm are those that L^T takes to length 1
+    let Some(factor) = norm.cholesky().map(|factor| factor.l().transpose()) else { return Ok(None) };
+    let around: Option<Vec<Vector3<f64>>> =
+        directions(scope.size()).iter().map(|unit| factor.solve_upper_triangular(unit)).collect();
+    let Some(around) = around else { return Ok(None) };
     let radii = || (0..RADII).map(|step| MIN_RADIUS * GROWTH.powi(step as i32));
-    let away = |radius: f64, part: usize| {
-        let (sine, cosine) = (std::f64::consts::TAU * part as f64 / AROUND as f64).sin_cos();
-        let v = radius * sine / n;
-        [(radius * cosine - m * v) / l, v]
-    };
-    let circles: Vec<Point> =
-        radii().flat_map(|radius| (0..AROUND).map(move |part| away(radius, part))).collect();
-    let starts: Vec<(Point, u32)> = circles.iter().map(|[x, v]| ([at[0] + x, at[1] + v], period)).collect();
+    let circles: Vec<Vector3<f64>> =
+        radii().flat_map(|radius| around.iter().map(move |unit| unit * radius)).collect();
+    let starts: Vec<(Point, u32)> =
+        circles.iter().map(|from| ((Vector3::from(at) + from).into(), period)).collect();
     let images = scope.map(&starts)?;
-    let shrinks = |(from, image): (&Point, &Option<Point>)| {
+    let shrinks = |(from, image): (&Vector3<f64>, &Option<Point>)| {
         image.is_some_and(|image| {
-            let to = [image[0] - at[0], image[1] - at[1]];
-            square(norm, to) <= square(norm, *from) - 0.5 * (from[0] * from[0] + from[1] * from[1])
+            let to = Vector3::from(image) - Vector3::from(at);
+            square(norm, &to) <= square(norm, from) - 0.5 * from.norm_squared()
         })
     };
-    let whole = circles.chunks(AROUND).zip(images.chunks(AROUND));
+    let whole = circles.chunks(around.len()).zip(images.chunks(around.len()));
     let good = whole.take_while(|(from, to)| from.iter().zip(*to).all(shrinks)).count();
     Ok(good.checked_sub(1).and_then(|last| radii().nth(last)))
 }
 
 /// The ellipse of this radius in a norm, in SI.
-fn capture(scope: &Stroboscope, at: Point, norm: &[f64; 3], radius: f64) -> Capture {
-    let (length, speed) = scope.units();
+fn capture(scope: &Stroboscope, at: Point, norm: &Matrix3<f64>, radius: f64) -> Capture {
+    let units = scope.units().of_state();
     let per = 1.0 / (radius * radius);
-    let form = [
-        norm[0] * per / (length * length),
-        norm[1] * per / (length * speed),
-        norm[2] * per / (speed * speed),
-    ];
-    Capture { state: scope.state(at), form, near: (NEAR * length, NEAR * speed) }
+    let form = [(0, 0), (0, 1), (1, 1), (0, 2), (1, 2), (2, 2)];
+    let form = form.map(|(i, j)| norm[(i, j)] * per / (units[i] * units[j]));
+    let [x, v, electrical] = units.map(|unit| NEAR * unit);
+    Capture { state: scope.state(at), form, near: MapState { x, v, electrical } }
 }
 
 #[cfg(test)]
@@ -223,15 +229,20 @@ mod tests {
 
     #[test]
     fn the_norm_solves_its_equation_and_no_unstable_map_has_one() {
-        for jacobian in [[[0.5, 3.0], [0.0, -0.9]], [[0.6, -0.7], [0.7, 0.6]], [[0.0, 0.0], [0.0, 0.0]]] {
+        let plane = |a, b, c, d| Matrix3::new(a, b, 0.0, c, d, 0.0, 0.0, 0.0, 0.0);
+        let space = Matrix3::new(0.6, -0.7, 0.3, 0.7, 0.6, -0.2, 0.1, 2.0, 0.1);
+        for jacobian in [plane(0.5, 3.0, 0.0, -0.9), plane(0.6, -0.7, 0.7, 0.6), Matrix3::zeros(), space] {
             let norm = lyapunov(&jacobian).unwrap();
-            for from in [[1.0, 0.0], [0.3, -1.0], [-2.0, 0.1]] {
-                let to = jacobian.map(|[a, b]: [f64; 2]| a * from[0] + b * from[1]);
-                let shrunk = square(&norm, from) - (from[0] * from[0] + from[1] * from[1]);
-                assert!((square(&norm, to) - shrunk).abs() < 1e-13 * square(&norm, from), "{jacobian:?}");
+            for from in
+                [Vector3::new(1.0, 0.0, 0.2), Vector3::new(0.3, -1.0, 0.0), Vector3::new(-2.0, 0.1, -1.0)]
+            {
+                let shrunk = square(&norm, &from) - from.norm_squared();
+                let to = jacobian * from;
+                assert!((square(&norm, &to) - shrunk).abs() < 1e-13 * square(&norm, &from), "{jacobian:?}");
             }
         }
-        for jacobian in [[[1.001, 0.0], [0.0, 0.1]], [[0.0, -1.0], [1.0, 0.0]], [[0.1, 0.0], [5.0, -1.01]]] {
+        let grows = Matrix3::new(0.1, 0.0, 0.0, 5.0, 0.2, 0.0, 0.0, 3.0, -1.01);
+        for jacobian in [plane(1.001, 0.0, 0.0, 0.1), plane(0.0, -1.0, 1.0, 0.0), grows] {
             assert_eq!(lyapunov(&jacobian), None);
         }
     }

@@ -3,14 +3,15 @@
 //! The region begins with the cells that long motions visit at the strobes, and their neighbours. Each cell
 //! into which the stroboscopic map takes a corner or the centre of a known cell is added, until no further
 //! cell is found. If this terminates, all motions in the cells stay there. If it does not, the motion can
-//! escape, as a long irregular transient does, and there is no region.
+//! escape, as a long irregular transient does, and there is no region. Beside a circuit there is none either:
+//! every irregular motion is then followed to the end.
 
 use std::collections::BTreeSet;
 
 use super::stroboscopic::Stroboscope;
-use crate::dynamics::{Capture, Region};
+use crate::dynamics::{Capture, MapState, Region};
 use crate::numeric::extent;
-use crate::study::{Cancelled, State};
+use crate::study::Cancelled;
 
 /// Number of motions that are followed to find an attractor.
 const MOTIONS: usize = 16;
@@ -34,12 +35,16 @@ const ROUNDS: usize = 40;
 /// known orbit.
 pub(super) fn absorbing(
     scope: &Stroboscope,
-    state: State,
+    state: MapState,
     known: &[Capture],
 ) -> Result<Option<Region>, Cancelled> {
-    let [x, v] = scope.point(state);
-    let starts: Vec<State> = (0..MOTIONS)
-        .map(|number| [x, v + APART * number as f64])
+    // the cells are those of a plane
+    if scope.size() == 3 {
+        return Ok(None);
+    }
+    let [x, v, w] = scope.point(state);
+    let starts: Vec<MapState> = (0..MOTIONS)
+        .map(|number| [x, v + APART * number as f64, w])
         .filter(|point| scope.has(*point))
         .map(|point| scope.state(point))
         .collect();
@@ -47,8 +52,8 @@ pub(super) fn absorbing(
     if states.iter().any(|state| known.iter().any(|other| other.holds(*state))) {
         return Ok(None);
     }
-    let (left, right) = extent(states.iter().map(|state| state.0));
-    let (low, high) = extent(states.iter().map(|state| state.1));
+    let (left, right) = extent(states.iter().map(|state| state.x));
+    let (low, high) = extent(states.iter().map(|state| state.v));
     if !(right > left && high > low) {
         return Ok(None);
     }
@@ -66,11 +71,11 @@ pub(super) fn absorbing(
 fn closed(
     scope: &Stroboscope,
     region: Region,
-    states: &[State],
+    states: &[MapState],
     known: &[Capture],
 ) -> Result<Option<Region>, Cancelled> {
     let mut cells: BTreeSet<(i32, i32)> = BTreeSet::new();
-    for (i, j) in states.iter().map(|state| region.cell(*state)) {
+    for (i, j) in states.iter().map(|state| region.cell((state.x, state.v))) {
         cells.extend((-1..=1).flat_map(|right| (-1..=1).map(move |up| (i + right, j + up))));
     }
     let (mut new, mut seen): (Vec<_>, BTreeSet<(i32, i32)>) =
@@ -83,7 +88,7 @@ fn closed(
         let unseen: BTreeSet<(i32, i32)> = halves.filter(|half| !seen.contains(half)).collect();
         let place = |(i, j): &(i32, i32)| {
             let (x, v) = (f64::from(*i) * 0.5 * region.size.0, f64::from(*j) * 0.5 * region.size.1);
-            scope.point((region.corner.0 + x, region.corner.1 + v))
+            scope.point((region.corner.0 + x, region.corner.1 + v).into())
         };
         let starts: Vec<_> =
             unseen.iter().map(place).filter(|point| scope.has(*point)).map(|point| (point, 1)).collect();
@@ -96,7 +101,7 @@ fn closed(
             if known.iter().any(|capture| capture.holds(image)) {
                 return Ok(None);
             }
-            let cell = region.cell(image);
+            let cell = region.cell((image.x, image.v));
             if cells.insert(cell) {
                 new.push(cell);
             }

@@ -2,12 +2,13 @@
 
 use super::orbit::{Found, find};
 use super::region::absorbing;
-use super::stroboscopic::Stroboscope;
+use super::stroboscopic::{Stroboscope, final_state};
 use super::{Basins, Starts, is_inside};
 use crate::dynamics::{
-    Arrival, Capture, Outcome, Place, Pursued, Pursuit, Regime, Region, ReleaseIdentity, Side, Summary,
+    Arrival, Capture, MapState, Outcome, Place, Pursued, Pursuit, Regime, Region, ReleaseIdentity, Side,
+    Summary,
 };
-use crate::study::{Cancelled, State, Task, settled};
+use crate::study::{Cancelled, Task, settled};
 use crate::system::threads::Pool;
 
 /// Number of forcing periods after which a motion that has reached no known attractor is classified.
@@ -60,17 +61,18 @@ impl Item {
         whole.since(self.after.map_or(Way::default(), |(_, before)| before))
     }
 
-    /// The pursuit of the motion with at most `max_work` units of work.
+    /// The pursuit of the motion, which begins with this state of the circuit, with at most `max_work` units of work.
     pub fn pursuit<'a>(
         &self,
         starts: &Starts,
+        electrical: f64,
         known: &'a [Capture],
         regions: &'a [Region],
         max_work: u64,
     ) -> Pursuit<'a> {
         let (x_mm, v) = starts.at(self.row);
         Pursuit {
-            start: (x_mm / 1e3, v),
+            start: MapState { x: x_mm / 1e3, v, electrical },
             known,
             regions,
             repeats_from: self.repeats_from,
@@ -186,9 +188,9 @@ pub(super) struct Rounds {
     /// The orbit of each capture.
     pub orbit_of: Vec<u32>,
     /// States from which no stable orbit was found.
-    rejected: Vec<State>,
+    rejected: Vec<MapState>,
     /// States of unstable orbits.
-    unstable: Vec<State>,
+    unstable: Vec<MapState>,
     /// Regions around irregular motions.
     pub regions: Vec<Region>,
     /// The kind of each region.
@@ -278,7 +280,7 @@ impl Rounds {
 
     /// The verdict on a motion that has reached no known attractor.
     fn verdict(&self, summary: &Summary, scope: &Stroboscope) -> Verdict {
-        let end = (summary.final_x, summary.final_v);
+        let end = final_state(summary);
         verdict(summary, self.unstable.iter().any(|state| is_near(scope, *state, end, ON_ORBIT)))
     }
 
@@ -286,7 +288,7 @@ impl Rounds {
     /// of the next few, must confirm that it is irregular, since it may only settle slowly.
     fn judged(&mut self, verdict: Verdict, summary: Box<Summary>, scope: &Stroboscope, way: Way) -> Fate {
         let repeats = matches!(verdict, Verdict::Settled { period: Some(_), .. });
-        let state = (summary.final_x, summary.final_v);
+        let state = final_state(&summary);
         let kind = Kind::Judged(verdict, summary);
         if !repeats && self.known_kind(&kind).is_none() {
             let doubts = self.doubted.iter().filter(|other| **other == verdict).count();
@@ -306,7 +308,7 @@ impl Rounds {
     }
 
     /// Searches for an orbit near a proposed state.
-    fn propose(&mut self, scope: &Stroboscope, period: u32, state: State) -> Result<(), Cancelled> {
+    fn propose(&mut self, scope: &Stroboscope, period: u32, state: MapState) -> Result<(), Cancelled> {
         let known = self.captures.iter().any(|capture| capture.holds(state));
         let tried = self.rejected.iter().any(|rejected| is_near(scope, *rejected, state, SAME_PROPOSAL));
         if known || tried {
@@ -334,7 +336,7 @@ impl Rounds {
 
     /// Searches for a region around the irregular motion that an item reaches and that passes through
     /// `state`.
-    fn surround(&mut self, scope: &Stroboscope, item: Item, state: State) -> Result<(), Cancelled> {
+    fn surround(&mut self, scope: &Stroboscope, item: Item, state: MapState) -> Result<(), Cancelled> {
         let fate = item.after.map_or(self.fates[item.row], |after| self.releases[after.0 as usize].next);
         let Fate::Kind(kind, _) = fate else { return Ok(()) };
         let irregular = match &self.kinds[kind as usize] {
@@ -354,14 +356,15 @@ impl Rounds {
     }
 
     /// Whether a state lies in a region.
-    fn is_surrounded(&self, state: State) -> bool {
-        self.regions.iter().any(|region| region.holds(state))
+    fn is_surrounded(&self, state: MapState) -> bool {
+        self.regions.iter().any(|region| region.holds((state.x, state.v)))
     }
 }
 
-fn is_near(scope: &Stroboscope, a: State, b: State, share: f64) -> bool {
-    let (length, speed) = scope.units();
-    (a.0 - b.0).abs() <= share * length && (a.1 - b.1).abs() <= share * speed
+fn is_near(scope: &Stroboscope, a: MapState, b: MapState, share: f64) -> bool {
+    let units = scope.units().of_state();
+    let off = [a.x - b.x, a.v - b.v, a.electrical - b.electrical];
+    off.iter().zip(units).all(|(off, unit)| off.abs() <= share * unit)
 }
 
 /// Follows items with the attractors known so far, then adds the results; returns the items to follow next.
@@ -374,7 +377,8 @@ fn round(
 ) -> Result<Vec<Item>, Cancelled> {
     let (known, regions) = (rounds.captures.clone(), rounds.regions.clone());
     let max_work = scope.effort.of_one(rounds.remaining);
-    let pursuit = |item: &Item| item.pursuit(starts, &known, &regions, max_work);
+    let pursuit =
+        |item: &Item| item.pursuit(starts, scope.model.start_electrical(), &known, &regions, max_work);
     let pursuits: Vec<Pursuit> = items.iter().map(pursuit).collect();
     let tick = |pursuit: &Pursuit| {
         if pursuit.repeats_from == 0 && pursuit.releases == 0 {
@@ -390,7 +394,7 @@ fn round(
         if let Arrival::Unsettled(end) = &pursued.arrival
             && end.outcome == Outcome::Done
         {
-            unsettled.push((item, (end.final_x, end.final_v)));
+            unsettled.push((item, final_state(end)));
         }
         next.extend(rounds.note(item, pursued, scope));
     }

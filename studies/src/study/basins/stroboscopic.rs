@@ -3,12 +3,13 @@
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-use crate::dynamics::{Arrival, Model, Outcome, Pursued, Pursuit, Request};
-use crate::study::{Cancelled, ExponentOptions, State, average_exponents};
+use crate::dynamics::{Arrival, MapState, Model, Outcome, Pursued, Pursuit, Request, Sample, Summary};
+use crate::study::orbit::Units;
+use crate::study::{Cancelled, ExponentOptions, average_exponents};
 use crate::system::threads::{Pool, UnderWay, share};
 
-/// A displacement and a velocity in units of the scene's scales.
-pub(super) type Point = [f64; 2];
+/// A displacement, a velocity and the state of a circuit (0 without one) in units of the scene's scales.
+pub(super) type Point = [f64; 3];
 
 /// Cost of a forcing period with derivatives, relative to one without.
 const WITH_DERIVATIVES: u64 = 4;
@@ -24,27 +25,31 @@ pub(super) struct Stroboscope<'a> {
 }
 
 impl Stroboscope<'_> {
-    /// Units of length and speed of points.
-    pub fn units(&self) -> (f64, f64) {
-        let scales = self.model.scales();
-        (scales.length, scales.speed)
+    /// Units of points.
+    pub fn units(&self) -> Units {
+        Units::of(self.model, 1.0)
     }
 
-    /// A state in m and m/s as a point.
-    pub fn point(&self, (x, v): State) -> Point {
-        let (length, speed) = self.units();
-        [x / length, v / speed]
+    /// A state as a point.
+    pub fn point(&self, MapState { x, v, electrical }: MapState) -> Point {
+        let [length, speed, charge] = self.units().of_state();
+        [x / length, v / speed, electrical / charge]
     }
 
-    pub fn state(&self, [x, v]: Point) -> State {
-        let (length, speed) = self.units();
-        (x * length, v * speed)
+    pub fn state(&self, [x, v, w]: Point) -> MapState {
+        let [length, speed, charge] = self.units().of_state();
+        MapState { x: x * length, v: v * speed, electrical: w * charge }
+    }
+
+    /// Number of coordinates of a point that vary: two, or three beside a circuit.
+    pub fn size(&self) -> usize {
+        if self.model.has_electrical_state() { 3 } else { 2 }
     }
 
     /// Whether a point lies between the limits of displacement.
     pub fn has(&self, point: Point) -> bool {
-        let (x, v) = self.state(point);
-        x >= self.room.0 && x <= self.room.1 && v.is_finite()
+        let MapState { x, v, electrical } = self.state(point);
+        x >= self.room.0 && x <= self.room.1 && v.is_finite() && electrical.is_finite()
     }
 
     /// The images of points, each after its number of forcing periods. `None` for motions that begin outside
@@ -70,7 +75,7 @@ impl Stroboscope<'_> {
         for (place, pursued) in valid.into_iter().zip(self.pursue(&pursuits, &|_| ())?) {
             images[place] = match pursued.arrival {
                 Arrival::Unsettled(end) if end.outcome == Outcome::Done => {
-                    Some(self.point((end.final_x, end.final_v)))
+                    Some(self.point(final_state(&end)))
                 }
                 _ => None,
             };
@@ -82,10 +87,10 @@ impl Stroboscope<'_> {
     /// `None` if a motion ends early or they need more work than is left.
     pub fn paths(
         &self,
-        starts: &[State],
+        starts: &[MapState],
         periods: u32,
         skipped: usize,
-    ) -> Result<Option<Vec<State>>, Cancelled> {
+    ) -> Result<Option<Vec<MapState>>, Cancelled> {
         if !self.effort.has_room_for(starts.len() as u64 * u64::from(periods)) {
             return Ok(None);
         }
@@ -104,12 +109,13 @@ impl Stroboscope<'_> {
             }
         };
         let all: Option<Vec<_>> = self.pool.map(starts.len(), || (), path)?.into_iter().collect();
-        Ok(all.map(|paths| paths.iter().flatten().map(|sample| (sample.x, sample.v)).collect()))
+        let state = |&Sample { x, v, electrical, .. }: &Sample| MapState { x, v, electrical };
+        Ok(all.map(|paths| paths.iter().flatten().map(state).collect()))
     }
 
     /// Whether the Lyapunov exponent of the motion through a state shows that it is irregular; false if too
     /// little work is left.
-    pub fn is_irregular(&self, state: State) -> bool {
+    pub fn is_irregular(&self, state: MapState) -> bool {
         if !self.effort.has_room_for(WITH_DERIVATIVES * u64::from(ExponentOptions::PERIODS)) {
             return false;
         }
@@ -147,6 +153,11 @@ impl Stroboscope<'_> {
     fn is_cancelled(&self) -> bool {
         self.cancel.load(Ordering::Relaxed)
     }
+}
+
+/// The state at the end of a run.
+pub(super) fn final_state(summary: &Summary) -> MapState {
+    MapState { x: summary.final_x, v: summary.final_v, electrical: summary.final_electrical }
 }
 
 /// Units of work for the orbits and regions of a map: enough for some ellipses of an orbit of 12 periods that
@@ -217,7 +228,7 @@ mod tests {
         assert_eq!(effort.of_one(100), MAX_SHARES * (MAP_WORK / 100 + START_WORK));
         assert!(effort.has_room_for(u64::MAX), "nothing is known of the work of a period yet");
         let pursuit = Pursuit {
-            start: (0.0, 0.0),
+            start: (0.0, 0.0).into(),
             known: &[],
             regions: &[],
             repeats_from: 0,

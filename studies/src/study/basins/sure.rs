@@ -123,8 +123,12 @@ impl Basins {
         let (known, regions) = (&self.rounds.captures, &self.rounds.regions);
         let max_work = scope.effort.of_one(items.len());
         let endless = |item: &Item| Item { repeats_from: Pursuit::NEVER, ..*item };
-        let pursuits: Vec<Pursuit> =
-            items.iter().map(|item| endless(item).pursuit(&self.starts, known, regions, max_work)).collect();
+        let pursuits: Vec<Pursuit> = items
+            .iter()
+            .map(|item| {
+                endless(item).pursuit(&self.starts, scope.model.start_electrical(), known, regions, max_work)
+            })
+            .collect();
         let all = scope.pursue(&pursuits, &|_| tick())?;
         Ok(items.iter().zip(&all).map(|(item, end)| self.rounds.known_fate(item, end, scope)).collect())
     }

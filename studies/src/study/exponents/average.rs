@@ -1,18 +1,18 @@
 //! Lyapunov exponents of any motion, as averages over forcing periods.
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::cmp::Ordering;
+use std::sync::atomic::{self, AtomicBool};
 
 use super::tangent::Tangent;
 use super::{Estimate, Exponents, NoExponents};
-use crate::dynamics::Model;
+use crate::dynamics::{Jacobian, MapState, Model};
 use crate::numeric::CompensatedSum;
-use crate::study::State;
 
 /// Number of forcing periods before the average, in which a perturbation turns into the direction of fastest
 /// growth.
 const ALIGNMENT: u32 = 20;
 
-/// The exponents of the motion through `state`, in m and m/s at a [`phase`](Model::drive_phase) of the drive
+/// The exponents of the motion through `state`, such as `(x, v)` without a circuit, at a [`phase`](Model::drive_phase) of the drive
 /// from 0 to 1, averaged over `periods` forcing periods, at least 1, from this state on: transients are
 /// included, and periodic orbits get no special treatment. Without a drive, a period is the natural time of
 /// the mechanism.
@@ -21,43 +21,52 @@ const ALIGNMENT: u32 = 20;
 /// batches (Flegal and Jones 2010). They are valid if correlations decay within a batch.
 pub fn average_exponents(
     model: &Model,
-    state: State,
+    state: impl Into<MapState>,
     phase: f64,
     periods: u32,
     cancel: &AtomicBool,
 ) -> Result<Exponents, NoExponents> {
-    average(&Tangent::of(model, phase)?, state, periods, cancel)
+    average(&Tangent::of(model, phase)?, state.into(), periods, cancel)
 }
 
 /// Like [`average_exponents`], for a map.
 pub(super) fn average(
     tangent: &Tangent,
-    mut state: State,
+    mut state: MapState,
     periods: u32,
     cancel: &AtomicBool,
 ) -> Result<Exponents, NoExponents> {
     let periods = periods.max(1);
     let time = tangent.period() * f64::from(periods);
-    let mut change = [std::f64::consts::FRAC_1_SQRT_2; 2];
-    let (mut first, mut second) = (Batches::new(periods), Batches::new(periods));
+    let has_circuit = tangent.model().has_electrical_state();
+    let part = std::f64::consts::FRAC_1_SQRT_2;
+    let mut changes = [[part, part, 0.0], [0.0, 0.0, 1.0]];
+    let mut all = vec![Batches::new(periods); if has_circuit { 3 } else { 2 }];
     let mut measured = CompensatedSum::<f64>::new();
     let mut exact = Some(CompensatedSum::<f64>::new());
     for number in 0..ALIGNMENT + periods {
-        if cancel.load(Ordering::Relaxed) {
+        if cancel.load(atomic::Ordering::Relaxed) {
             return Err(NoExponents::Cancelled);
         }
         let passed = tangent.pass(state)?;
-        let [[a, b], [c, d]] = passed.jacobian.rows;
-        let [x, v] = [a * change[0] + b * change[1], c * change[0] + d * change[1]];
-        let growth = x.hypot(v);
+        let growth = stretched(&passed.jacobian, &mut changes[0], None);
         if growth == 0.0 {
-            return Ok(Exponents::of_rest(None, (periods, time), passed.exact.is_some()));
+            return Ok(Exponents::of_rest(None, (periods, time), tangent));
         }
-        change = [x / growth, v / growth];
+        let mut growths = vec![growth.ln()];
+        if has_circuit {
+            let [first, second] = &mut changes;
+            let growth = stretched(&passed.jacobian, second, Some(first));
+            // after a rest all perturbations have one direction
+            growths.push(if passed.rested { f64::NEG_INFINITY } else { growth.ln() });
+        }
+        growths.push(match passed.rested {
+            true => f64::NEG_INFINITY,
+            false => passed.log_determinant() - growths.iter().sum::<f64>(),
+        });
         state = passed.state;
         if number >= ALIGNMENT {
-            first.add(growth.ln());
-            second.add(passed.log_determinant() - growth.ln());
+            all.iter_mut().zip(growths).for_each(|(batches, growth)| batches.add(growth));
             measured.add(passed.measured);
             exact = exact.zip(passed.exact).map(|(mut sum, term)| {
                 sum.add(term);
@@ -66,14 +75,19 @@ pub(super) fn average(
         }
     }
     let exact_sum = exact.map(|sum| sum.value() / time + 0.0);
-    let (first, second) = (first.estimate(tangent.period()), second.estimate(tangent.period()));
-    // the difference of the exact sum and the first exponent has no further rounding error
-    let second = Estimate { per_s: exact_sum.map_or(second.per_s, |sum| sum - first.per_s), ..second };
-    // if the two differ by less than their scatter, the second one may be larger
-    let (first, second) = if second.per_s > first.per_s { (second, first) } else { (first, second) };
+    let mut estimates: Vec<Estimate> = all.iter().map(|batches| batches.estimate(tangent.period())).collect();
+    // the difference of the exact sum and the other exponents has no further rounding error
+    if let Some(sum) = exact_sum
+        && let [others @ .., last] = estimates.as_mut_slice()
+    {
+        last.per_s = others.iter().fold(sum, |left, estimate| left - estimate.per_s);
+    }
+    // those that differ by less than their scatter may be in another order
+    estimates.sort_by(|a, b| b.per_s.partial_cmp(&a.per_s).unwrap_or(Ordering::Equal));
     Ok(Exponents {
-        first,
-        second,
+        first: estimates[0],
+        second: estimates[1],
+        third: estimates.get(2).copied(),
         sum: measured.value() / time,
         exact_sum,
         period: None,
@@ -81,7 +95,25 @@ pub(super) fn average(
     })
 }
 
+/// Maps a perturbation of length 1 by a derivative, removes its part along `other`, which is of length 1 too,
+/// and makes its length 1 again. Returns the length before that; if it is 0 the perturbation stays.
+fn stretched(derivative: &Jacobian, change: &mut [f64; 3], other: Option<&[f64; 3]>) -> f64 {
+    let rows = derivative.rows();
+    let [x, v, w] = *change;
+    let mut next: [f64; 3] = std::array::from_fn(|i| rows[i][0] * x + rows[i][1] * v + rows[i][2] * w);
+    if let Some(other) = other {
+        let along: f64 = next.iter().zip(other).map(|(a, b)| a * b).sum();
+        next.iter_mut().zip(other).for_each(|(part, other)| *part -= along * other);
+    }
+    let growth = next[0].hypot(next[1]).hypot(next[2]);
+    if growth > 0.0 {
+        *change = next.map(|part| part / growth);
+    }
+    growth
+}
+
 /// Sums over consecutive batches of a series of known length.
+#[derive(Clone)]
 struct Batches {
     sums: Vec<f64>,
     added: u64,

@@ -3,13 +3,15 @@
 //! If the motion repeats, they are ln|multiplier| / period of the periodic orbit, which Newton's method
 //! finds. Otherwise they are averages over forcing periods (Benettin et al. 1980): a perturbation is mapped
 //! by the derivatives of the stroboscopic map, which include those of impacts (Müller 1995), and is
-//! normalised once per period. The map of the phase plane has two exponents; the third exponent of the driven
-//! system, along the trajectory, is 0.
+//! normalised once per period, and a second one is kept normal to it. The map of the phase plane has two
+//! exponents, beside a circuit three; that of the driven system along the trajectory, which is 0, is not among
+//! them.
 //!
-//! Their sum has an exact value, since only damping and impacts contract areas: -c/m + 2 ln(restitution)
-//! times the rate of impacts, summed over the stops. The second exponent is computed as this sum minus the
-//! first, so that it is accurate even if it is much smaller. A rest on a stop removes every perturbation;
-//! both exponents are then minus infinity.
+//! Their sum has an exact value, since only damping, circuit and impacts contract volumes: -c/m - d, d the rate
+//! at which the circuit decays, + 2 ln(restitution) times the rate of impacts, summed over the stops. The last
+//! exponent is computed as this sum minus the others, so that it is accurate even if it is much smaller. A rest
+//! on a stop removes every perturbation but those of a circuit; all exponents, or all but one, are then minus
+//! infinity.
 
 mod average;
 mod orbit;
@@ -17,7 +19,7 @@ mod tangent;
 
 use std::sync::atomic::AtomicBool;
 
-use crate::dynamics::{Model, Outcome, Request, Run};
+use crate::dynamics::{MapState, Model, Outcome, Request, Run};
 use crate::scene::{Fault, Scene};
 use crate::study::grid_study::fields;
 use crate::study::settled::PATIENCE;
@@ -59,7 +61,8 @@ pub fn exponents(
         Outcome::Cancelled { .. } => return Err(NoExponents::Cancelled),
         other => return Err(NoExponents::EndedEarly(other)),
     }
-    let state = (summary.final_x, summary.final_v);
+    let electrical = summary.final_electrical;
+    let state = MapState { x: summary.final_x, v: summary.final_v, electrical };
     let phase = model.drive_phase(summary.window.1).unwrap_or(0.0);
     let tangent = Tangent::of(model, phase)?;
     // a motion that has not settled may pass near a periodic orbit that does not attract it
@@ -103,7 +106,7 @@ impl Question for ExponentOptions {
 
     fn table(&self, grid: &Grid, rows: &[Row<Found>]) -> Table {
         let found: Vec<Found> = rows.iter().map(|row| row.answer).collect();
-        with_columns(fields(grid, rows, |_| 1, false), &found)
+        with_columns(fields(grid, rows, |_| 1, false), &found, self.circuits)
     }
 
     fn ahead(&self, threads: u64) -> u64 {
@@ -119,16 +122,26 @@ pub fn drive_fault(model: &Model, scene: &Scene) -> Option<Fault> {
 
 /// The exponents of one motion as a table of one row.
 pub fn exponents_row(found: &Exponents) -> Table {
-    with_columns(Table::new(), &[Some(*found)])
+    with_columns(Table::new(), &[Some(*found)], found.third.is_some())
 }
 
-fn with_columns(table: Table, found: &[Found]) -> Table {
+fn with_columns(table: Table, found: &[Found], has_circuit: bool) -> Table {
     let number = |of: fn(&Exponents) -> f64| move |cell: &Found| cell.as_ref().map(of);
-    table
+    let third = |of: fn(&Estimate) -> f64| move |cell: &Found| Some(of(cell.as_ref()?.third.as_ref()?));
+    let table = table
         .each("exponent_1_per_s", found, number(|exponents| exponents.first.per_s))
         .each("exponent_1_se", found, number(|exponents| exponents.first.error))
         .each("exponent_2_per_s", found, number(|exponents| exponents.second.per_s))
-        .each("exponent_2_se", found, number(|exponents| exponents.second.error))
+        .each("exponent_2_se", found, number(|exponents| exponents.second.error));
+    let table = match has_circuit {
+        true => table.each("exponent_3_per_s", found, third(|estimate| estimate.per_s)).each(
+            "exponent_3_se",
+            found,
+            third(|estimate| estimate.error),
+        ),
+        false => table,
+    };
+    table
         .each("sum_per_s", found, number(|exponents| exponents.sum))
         .each("exact_sum_per_s", found, |cell| cell.as_ref()?.exact_sum)
         .each("dimension", found, number(Exponents::dimension))
@@ -142,6 +155,8 @@ pub struct ExponentOptions {
     /// Time in s up to which a run may continue until its motion repeats; by default 1000 periods beyond the
     /// run.
     pub until_settled: Option<f64>,
+    /// Whether the cells of a grid may have a circuit, so that the table has the columns of a third exponent.
+    pub circuits: bool,
 }
 
 impl ExponentOptions {
@@ -151,7 +166,7 @@ impl ExponentOptions {
 
 impl Default for ExponentOptions {
     fn default() -> Self {
-        Self { periods: Self::PERIODS, until_settled: None }
+        Self { periods: Self::PERIODS, until_settled: None, circuits: false }
     }
 }
 
@@ -172,15 +187,17 @@ impl Estimate {
     }
 }
 
-/// Both exponents of a motion.
+/// The exponents of a motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Exponents {
     /// The larger one.
     pub first: Estimate,
-    /// The smaller one. NaN if stops are compliant and the contraction is too strong to be computed from the
+    /// The second one. NaN if stops are compliant and the contraction is too strong to be computed from the
     /// derivatives.
     pub second: Estimate,
+    /// The smallest one beside a circuit; otherwise `None`.
+    pub third: Option<Estimate>,
     /// Their sum in 1/s from the determinants of the derivatives. NaN if areas contract so much in a forcing
     /// period that a determinant, the difference of two products, is lost in rounding.
     pub sum: f64,
@@ -202,10 +219,13 @@ const BEYOND_SHEAR: f64 = 3.0;
 
 impl Exponents {
     /// The exponents of a motion that has rested on a stop within these forcing periods.
-    pub(super) fn of_rest(period: Option<u32>, span: (u32, f64), exact: bool) -> Self {
+    fn of_rest(period: Option<u32>, span: (u32, f64), tangent: &Tangent) -> Self {
         let nothing = f64::NEG_INFINITY;
         let (first, second) = (Estimate::exact(nothing), Estimate::exact(nothing));
-        Self { first, second, sum: nothing, exact_sum: exact.then_some(nothing), period, span }
+        let third = tangent.model().has_electrical_state().then(|| Estimate::exact(nothing));
+        let exact = tangent.model().compliant().is_none();
+        let exact_sum = exact.then_some(nothing);
+        Self { first, second, third, sum: nothing, exact_sum, period, span }
     }
 
     /// Whether the motion has rested on a stop, which removes every perturbation.
@@ -226,16 +246,19 @@ impl Exponents {
             && self.first.per_s * time > BEYOND_SHEAR * shear
     }
 
-    /// Kaplan-Yorke dimension of the stroboscopic section (Kaplan and Yorke 1979): 0 where both exponents are
-    /// below 0, 2 where their sum is not, 1 + first/|second| between. The dimension of the trajectory in
-    /// continuous time is larger by 1. NaN if it depends on the second exponent and that is not known.
+    /// Kaplan-Yorke dimension of the stroboscopic section (Kaplan and Yorke 1979): the largest number of
+    /// exponents whose sum is not below 0, and the share of the next one that makes it 0. The dimension of the
+    /// trajectory in continuous time is larger by 1. NaN if it depends on an exponent that is not known.
     pub fn dimension(&self) -> f64 {
-        let (first, second) = (self.first.per_s, self.second.per_s);
-        match first + second {
-            _ if first < 0.0 => 0.0,
-            sum if sum >= 0.0 => 2.0,
-            _ => 1.0 + first / second.abs(),
+        let (mut sum, mut whole) = (0.0, 0.0);
+        for Estimate { per_s, .. } in [Some(self.first), Some(self.second), self.third].into_iter().flatten()
+        {
+            if sum + per_s < 0.0 || per_s.is_nan() {
+                return if whole == 0.0 && !per_s.is_nan() { 0.0 } else { whole + sum / per_s.abs() };
+            }
+            (sum, whole) = (sum + per_s, whole + 1.0);
         }
+        whole
     }
 }
 
@@ -245,9 +268,6 @@ pub enum NoExponents {
     /// The excitation changes and does not repeat.
     #[error("its excitation has no period that repeats")]
     NoPeriod,
-    /// Its transducer has a state of its own.
-    #[error("{}", crate::study::ELECTRICAL_STATE)]
-    ElectricalState,
     /// It was cancelled.
     #[error("interrupted")]
     Cancelled,

@@ -2,7 +2,8 @@
 
 use super::tangent::{Passed, Tangent};
 use super::{Estimate, Exponents, NoExponents};
-use crate::study::State;
+use crate::dynamics::MapState;
+use crate::study::orbit::newton_step;
 
 /// Largest distance of a state of a repeating motion from the state one period later, in units of the scales.
 const NEAR: f64 = 1e-2;
@@ -22,25 +23,21 @@ const NEUTRAL: f64 = 1e-6;
 /// settled. `None` if there is no orbit near it, or if it is unstable and the motion is not exactly on it.
 pub(super) fn of_orbit(
     tangent: &Tangent,
-    start: State,
+    start: MapState,
     periods: u32,
 ) -> Result<Option<Exponents>, NoExponents> {
     let Some((orbit, distance, moved)) = find(tangent, start, periods)? else { return Ok(None) };
     let time = tangent.period() * f64::from(periods);
-    if orbit.rested() {
-        return Ok(Some(Exponents::of_rest(Some(periods), (periods, time), orbit.exact.is_some())));
+    if orbit.jacobian.is_zero() {
+        return Ok(Some(Exponents::of_rest(Some(periods), (periods, time), tangent)));
     }
-    let both = orbit.log_determinant();
-    let [larger, smaller] = orbit.jacobian.multipliers(both.exp());
-    let (first, second) = match larger.im != 0.0 {
-        true if both.is_finite() => (0.5 * both, 0.5 * both),
-        true => (larger.magnitude().ln(), smaller.magnitude().ln()),
-        false => (larger.magnitude().ln(), both - larger.magnitude().ln()),
-    };
+    let growths = growths(&orbit);
+    let first = growths[0];
     let stays = first <= NEUTRAL || (distance <= ROUNDING && !moved);
     Ok(stays.then(|| Exponents {
         first: Estimate::exact(first / time),
-        second: Estimate::exact(second / time),
+        second: Estimate::exact(growths[1] / time),
+        third: growths.get(2).map(|growth| Estimate::exact(growth / time)),
         sum: orbit.measured / time,
         exact_sum: orbit.exact.map(|sum| sum / time + 0.0),
         period: Some(periods),
@@ -48,9 +45,31 @@ pub(super) fn of_orbit(
     }))
 }
 
+/// Logarithms of the magnitudes of the multipliers of an orbit, by falling size.
+fn growths(orbit: &Passed) -> Vec<f64> {
+    if orbit.rested {
+        return vec![orbit.jacobian.trace().abs().ln(), f64::NEG_INFINITY, f64::NEG_INFINITY];
+    }
+    let all = orbit.log_determinant();
+    let multipliers = orbit.jacobian.multipliers(all.exp());
+    let mut growths: Vec<f64> = multipliers.iter().map(|multiplier| multiplier.magnitude().ln()).collect();
+    // the smallest, or a pair of that size, follows from the others, however small it is
+    let size = growths.len();
+    let smallest = if multipliers[size - 1].im == 0.0 { 1 } else { 2 };
+    let others: f64 = growths[..size - smallest].iter().sum();
+    if smallest == 1 || all.is_finite() {
+        growths[size - smallest..].fill((all - others) / smallest as f64);
+    }
+    growths
+}
+
 /// The periodic orbit near a state, the distance of its state from that one period later, and whether the
 /// state had to be changed; `None` if Newton's method finds none.
-fn find(tangent: &Tangent, start: State, periods: u32) -> Result<Option<(Passed, f64, bool)>, NoExponents> {
+fn find(
+    tangent: &Tangent,
+    start: MapState,
+    periods: u32,
+) -> Result<Option<(Passed, f64, bool)>, NoExponents> {
     let mut state = start;
     let mut best: Option<(Passed, f64, bool)> = None;
     for step in 0..STEPS {
@@ -59,16 +78,14 @@ fn find(tangent: &Tangent, start: State, periods: u32) -> Result<Option<(Passed,
             Err(_) if step > 0 => break, // a step led to a state whose motion ends early
             Err(error) => return Err(error),
         };
-        let [x, v] = tangent.scaled(state, orbit.state);
-        let distance = x.hypot(v);
+        let off = tangent.units().apart(state, orbit.state);
+        let distance = off[0].hypot(off[1]).hypot(off[2]);
         if step == 0 && !(distance <= NEAR) || best.is_some_and(|best| !(distance < best.1)) {
             break;
         }
         best = Some((orbit, distance, step > 0));
-        let [[a, b], [c, d]] = orbit.jacobian.rows;
-        let singular = (a - 1.0) * (d - 1.0) - b * c;
-        let by = [(b * v - (d - 1.0) * x) / singular, (c * x - (a - 1.0) * v) / singular];
-        let next = tangent.changed(state, by);
+        let Some(by) = newton_step(&orbit.jacobian, off) else { break };
+        let next = tangent.units().moved(state, by);
         if distance <= ROUNDING || !has_room(tangent, next) {
             break;
         }
@@ -79,11 +96,11 @@ fn find(tangent: &Tangent, start: State, periods: u32) -> Result<Option<(Passed,
 }
 
 /// Whether the mass can have this state.
-fn has_room(tangent: &Tangent, (x, v): State) -> bool {
+fn has_room(tangent: &Tangent, MapState { x, v, electrical }: MapState) -> bool {
     let model = tangent.model();
     let (low, high) = model.mechanism().curve.domain();
     let (left, right) = model.stop_positions();
     let rigid = model.compliant().is_none();
     let inside = left.is_none_or(|stop| x >= stop) && right.is_none_or(|stop| x <= stop);
-    v.is_finite() && x >= low && x <= high && (inside || !rigid)
+    v.is_finite() && electrical.is_finite() && x >= low && x <= high && (inside || !rigid)
 }

@@ -1,8 +1,8 @@
 //! Map over a forcing period with its derivatives.
 
 use super::NoExponents;
-use crate::dynamics::{Event, EventKind, Jacobian, Model, Outcome, Passage, Scales, Side, StroboscopicMap};
-use crate::study::State;
+use crate::dynamics::{Event, EventKind, Jacobian, MapState, Model, Outcome, Passage, Side, StroboscopicMap};
+use crate::study::orbit::Units;
 
 /// Share of its two products below which a determinant is lost in rounding, which is about 1e-15 of the
 /// products. (The error of the integration is relative to the determinant itself, about the tolerance.)
@@ -17,8 +17,8 @@ const PARTS: u32 = 8;
 /// The stroboscopic map of a model, with perturbations in units of its scales.
 pub(super) struct Tangent {
     map: StroboscopicMap,
-    scales: Scales,
-    /// Logarithm of the factor by which damping contracts areas in a period.
+    units: Units,
+    /// Logarithm of the factor by which damping and a circuit contract volumes in a period.
     damped: f64,
     /// The same for an impact on the left and on the right stop; `None` if they are compliant.
     struck: Option<[f64; 2]>,
@@ -27,22 +27,19 @@ pub(super) struct Tangent {
 /// Result of one or more forcing periods.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Passed {
-    /// The state at their end, in m and m/s.
-    pub state: State,
+    /// The state at their end.
+    pub state: MapState,
     /// Its derivatives by the state at the start, in units of the scales.
     pub jacobian: Jacobian,
     /// Logarithm of their determinant; NaN if it is lost in rounding.
     pub measured: f64,
-    /// The same from damping and impacts; `None` with compliant stops.
+    /// The same from damping, circuit and impacts; `None` with compliant stops.
     pub exact: Option<f64>,
+    /// Whether the mass has rested on a stop: perturbations have vanished but for those of a circuit.
+    pub rested: bool,
 }
 
 impl Passed {
-    /// Whether perturbations have vanished completely.
-    pub fn rested(&self) -> bool {
-        self.jacobian.rows == [[0.0; 2]; 2]
-    }
-
     /// The exact logarithm of the determinant if it is known, otherwise the computed one.
     pub fn log_determinant(&self) -> f64 {
         self.exact.unwrap_or(self.measured)
@@ -53,9 +50,6 @@ impl Tangent {
     /// The map over one period, beginning at a phase of the drive in forcing periods; without a drive, over
     /// the natural time.
     pub fn of(model: &Model, phase: f64) -> Result<Self, NoExponents> {
-        if model.has_electrical_state() {
-            return Err(NoExponents::ElectricalState);
-        }
         let map = match model.stroboscopic_map(phase) {
             Some(map) => map,
             None if model.excitation().is_constant() => StroboscopicMap::over(model, model.natural_time()),
@@ -67,8 +61,8 @@ impl Tangent {
             2.0 * pair.map_or(1.0, |stop| stop.restitution).ln()
         };
         let struck = model.compliant().is_none().then(|| [Side::Left, Side::Right].map(kept));
-        let damped = -model.total_damping() * map.period() / model.mass();
-        Ok(Self { scales: model.scales(), map, damped, struck })
+        let damped = model.contraction(map.period());
+        Ok(Self { units: Units::of(model, 1.0), map, damped, struck })
     }
 
     pub fn model(&self) -> &Model {
@@ -80,19 +74,18 @@ impl Tangent {
         self.map.period()
     }
 
-    /// The next period of the motion from a state in m and m/s.
-    pub fn pass(&self, state: State) -> Result<Passed, NoExponents> {
+    /// The next period of the motion from a state.
+    pub fn pass(&self, state: MapState) -> Result<Passed, NoExponents> {
         let (passage, derivative) = self.map.pass_with_jacobian(state, 1);
         if passage.outcome != Outcome::Done {
             return Err(NoExponents::EndedEarly(passage.outcome));
         }
-        let time = self.scales.length / self.scales.speed;
-        let [[a, b], [c, d]] = derivative.rows;
-        let jacobian = Jacobian { rows: [[a, b / time], [c * time, d]] };
-        if !products(&derivative).is_finite() {
+        let Units { length, speed, electrical, .. } = self.units;
+        let jacobian = derivative.in_units([length / speed, 1.0, electrical / speed]);
+        if !derivative.products().is_finite() {
             return Err(NoExponents::Grazing);
         }
-        let rested = derivative.rows == [[0.0; 2]; 2];
+        let rested = passage.rested;
         let impacts = |side: Side| {
             let hits = |event: &&Event| (event.kind, event.side) == (EventKind::Impact, side);
             passage.events.iter().filter(hits).count() as f64
@@ -107,7 +100,7 @@ impl Tangent {
                 self.logarithm(&passage, &derivative, 1.0, FEW_LEFT).unwrap_or_else(|| self.by_parts(state))
             }
         };
-        Ok(Passed { state: passage.state, jacobian, measured, exact })
+        Ok(Passed { state: (&passage).into(), jacobian, measured, exact, rested })
     }
 
     /// Logarithm of the determinant of a part of a period; `None` if the determinant is below the share
@@ -115,24 +108,25 @@ impl Tangent {
     fn logarithm(&self, passage: &Passage, derivative: &Jacobian, share: f64, least: f64) -> Option<f64> {
         let determinant = derivative.determinant().abs();
         let exact = passage.determinant.unwrap_or_else(|| (self.damped * share).exp());
-        (exact.min(determinant) > least * products(derivative)).then(|| determinant.ln())
+        (exact.min(determinant) > least * derivative.products()).then(|| determinant.ln())
     }
 
     /// The same for a period, from its parts; NaN if one of them is lost in rounding.
-    fn by_parts(&self, mut state: State) -> f64 {
+    fn by_parts(&self, mut state: MapState) -> f64 {
         let share = 1.0 / f64::from(PARTS);
         let parts = (0..PARTS).map(|part| {
             let span = (f64::from(part) * share, f64::from(part + 1) * share);
             let (passage, derivative) = self.map.pass_part_with_jacobian(state, span);
-            state = passage.state;
+            state = (&passage).into();
             self.logarithm(&passage, &derivative, share, LOST).unwrap_or(f64::NAN)
         });
         parts.sum()
     }
 
-    pub fn pass_many(&self, state: State, periods: u32) -> Result<Passed, NoExponents> {
-        let mut all =
-            Passed { state, jacobian: Jacobian::IDENTITY, measured: 0.0, exact: self.struck.map(|_| 0.0) };
+    pub fn pass_many(&self, state: MapState, periods: u32) -> Result<Passed, NoExponents> {
+        let jacobian = Jacobian::identity(self.model().has_electrical_state());
+        let exact = self.struck.map(|_| 0.0);
+        let mut all = Passed { state, jacobian, measured: 0.0, exact, rested: false };
         for _ in 0..periods {
             let next = self.pass(all.state)?;
             all = Passed {
@@ -140,26 +134,16 @@ impl Tangent {
                 jacobian: next.jacobian.after(&all.jacobian),
                 measured: all.measured + next.measured,
                 exact: all.exact.zip(next.exact).map(|(before, more)| before + more),
+                rested: all.rested || next.rested,
             };
         }
         Ok(all)
     }
 
-    /// The difference of two states in units of the scales.
-    pub fn scaled(&self, from: State, to: State) -> [f64; 2] {
-        [(to.0 - from.0) / self.scales.length, (to.1 - from.1) / self.scales.speed]
+    /// Units of the perturbations.
+    pub fn units(&self) -> &Units {
+        &self.units
     }
-
-    /// A state changed by this difference in units of the scales.
-    pub fn changed(&self, (x, v): State, by: [f64; 2]) -> State {
-        (x + by[0] * self.scales.length, v + by[1] * self.scales.speed)
-    }
-}
-
-/// The two products of which a determinant is the difference, without their signs.
-fn products(derivative: &Jacobian) -> f64 {
-    let [[a, b], [c, d]] = derivative.rows;
-    (a * d).abs() + (b * c).abs()
 }
 
 /// A count times a logarithm; 0 for a count of 0 even if the logarithm is minus infinity.

@@ -1,11 +1,11 @@
 //! Points of a branch of periodic orbits, by Newton's method in planes across the branch (pseudo-arclength
 //! continuation; Keller 1977).
 
-use nalgebra::{Matrix3, Vector2, Vector3};
+use nalgebra::{Matrix4, Vector3, Vector4};
 
 use super::{Orbit, allowed, map_of};
-use crate::dynamics::{Event, EventKind, Jacobian, Outcome, Passage, Side, StroboscopicMap};
-use crate::study::{Family, State};
+use crate::dynamics::{Event, EventKind, Jacobian, MapState, Model, Outcome, Passage, Side, StroboscopicMap};
+use crate::study::Family;
 
 /// Largest number of steps of Newton's method.
 const MAX_STEPS: usize = 24;
@@ -44,63 +44,96 @@ pub(super) struct Accuracy {
     pub step: f64,
 }
 
-/// Units of the coordinates of a point: length in m, speed in m/s, and the range of the field.
+/// Units of the coordinates of a point: length in m, speed in m/s, state of the circuit in A or V (1 without
+/// one), and the range of the field.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Units {
+pub(in crate::study) struct Units {
     pub length: f64,
     pub speed: f64,
+    pub electrical: f64,
     pub range: f64,
+}
+
+impl Units {
+    pub fn of(model: &Model, range: f64) -> Self {
+        let scales = model.scales();
+        let electrical = model.electrical_scale().unwrap_or(1.0);
+        Self { length: scales.length, speed: scales.speed, electrical, range }
+    }
+
+    pub fn of_state(&self) -> [f64; 3] {
+        [self.length, self.speed, self.electrical]
+    }
+
+    /// Difference of two states in the units.
+    pub fn apart(&self, from: MapState, to: MapState) -> [f64; 3] {
+        let Self { length, speed, electrical, .. } = *self;
+        let charged = (to.electrical - from.electrical) / electrical;
+        [(to.x - from.x) / length, (to.v - from.v) / speed, charged]
+    }
+
+    /// A state moved by this difference in the units.
+    pub fn moved(&self, state: MapState, by: [f64; 3]) -> MapState {
+        let MapState { x, v, electrical } = state;
+        MapState {
+            x: x + by[0] * self.length,
+            v: v + by[1] * self.speed,
+            electrical: electrical + by[2] * self.electrical,
+        }
+    }
 }
 
 /// A periodic orbit on a branch.
 #[derive(Debug, Clone)]
 pub(super) struct Point {
-    /// Displacement, velocity and field in the units.
-    pub at: Vector3<f64>,
+    /// Displacement, velocity, state of the circuit and field in the units. Without a circuit its state is 0,
+    /// and so are its derivatives.
+    pub at: Vector4<f64>,
     pub value: f64,
     pub orbit: Orbit,
     /// Derivatives of the corrector's map by the state, and their determinant.
     pub by_state: Jacobian,
     pub determinant: f64,
     /// Derivative of that map by the field, in the units.
-    pub by_field: [f64; 2],
+    pub by_field: [f64; 3],
 }
 
 impl Point {
-    /// Whether the mass rests during the motion, which then no longer depends on its initial state.
+    /// Whether the mass rests during the motion, which then no longer depends on its initial displacement and
+    /// velocity.
     pub fn forgets(&self) -> bool {
-        self.orbit.jacobian.rows == [[0.0; 2]; 2]
+        self.orbit.passage.rested
     }
 }
 
-/// Two equations in three unknowns, evaluated at a guess.
+/// Three equations in four unknowns, evaluated at a guess.
 pub(super) struct Equations<T> {
     /// Where they are evaluated: at the guess, or at the nearest admissible point.
-    pub at: Vector3<f64>,
+    pub at: Vector4<f64>,
     /// Residuals, which must become 0.
-    pub off: [f64; 2],
+    pub off: [f64; 3],
     /// Derivatives of the residuals by the unknowns.
-    pub slopes: [Vector3<f64>; 2],
+    pub slopes: [Vector4<f64>; 3],
     pub of: T,
 }
 
-/// The solution of two equations in three unknowns in the plane through a guess and normal to `across`, by
+/// The solution of three equations in four unknowns in the plane through a guess and normal to `across`, by
 /// Newton's method, with the length of the last step; `None` if it does not converge.
 pub(super) fn newton<T>(
-    guess: Vector3<f64>,
-    across: &Vector3<f64>,
+    guess: Vector4<f64>,
+    across: &Vector4<f64>,
     accuracy: Accuracy,
-    evaluate: impl Fn(&Vector3<f64>) -> Option<Equations<T>>,
-) -> Option<(T, Vector3<f64>, f64)> {
+    evaluate: impl Fn(&Vector4<f64>) -> Option<Equations<T>>,
+) -> Option<(T, Vector4<f64>, f64)> {
     let mut at = guess;
     let mut best = f64::INFINITY;
     for _ in 0..MAX_STEPS {
         let equations = evaluate(&at)?;
         at = equations.at;
         let off = equations.off;
-        let [first, second] = equations.slopes.map(|row| row.transpose());
-        let matrix = Matrix3::from_rows(&[first, second, across.transpose()]);
-        let right = Vector3::new(-off[0], -off[1], -across.dot(&(at - guess)));
+        let [first, second, third] = equations.slopes.map(|row| row.transpose());
+        let matrix = Matrix4::from_rows(&[first, second, third, across.transpose()]);
+        let right = Vector4::new(-off[0], -off[1], -off[2], -across.dot(&(at - guess)));
         let step = matrix.lu().solve(&right)?;
         let length = step.amax();
         let close = off.iter().all(|part| part.abs() <= CLOSE);
@@ -142,22 +175,26 @@ impl Corrector<'_> {
     }
 
     /// A state after these forcing periods, mirrored if the map is.
-    pub fn image(&self, (x, v): State) -> State {
-        if self.mirrored { (-x, -v) } else { (x, v) }
+    pub fn image(&self, MapState { x, v, electrical }: MapState) -> MapState {
+        match self.mirrored {
+            true => MapState { x: -x, v: -v, electrical: 0.0 - electrical },
+            false => MapState { x, v, electrical },
+        }
     }
 
     /// Difference of a motion from its mirror image half its period later, relative to the scales; `None` if
     /// the mirror image is not a motion of the scene, or the motion ends early.
-    pub fn asymmetry(map: &StroboscopicMap, orbit: &Orbit) -> Option<Vector2<f64>> {
+    pub fn asymmetry(map: &StroboscopicMap, orbit: &Orbit) -> Option<Vector3<f64>> {
         let model = map.model();
         if !model.mirrors_in_half_a_period() || orbit.period.is_multiple_of(2) {
             return None;
         }
         let half = map.pass_between(orbit.state, (0.0, 0.5 * f64::from(orbit.period)));
-        let scales = model.scales();
-        let off = Vector2::new(
-            (orbit.state.0 + half.state.0) / scales.length,
-            (orbit.state.1 + half.state.1) / scales.speed,
+        let units = Units::of(model, 1.0);
+        let off = Vector3::new(
+            (orbit.state.x + half.state.0) / units.length,
+            (orbit.state.v + half.state.1) / units.speed,
+            (orbit.state.electrical + half.electrical) / units.electrical,
         );
         (half.outcome == Outcome::Done).then_some(off)
     }
@@ -168,7 +205,7 @@ impl Corrector<'_> {
             return Some(orbit.clone());
         }
         let passage = self.map(value)?.pass_part(orbit.state, (phase - self.phase).rem_euclid(1.0));
-        (passage.outcome == Outcome::Done).then(|| Orbit { state: passage.state, ..orbit.clone() })
+        (passage.outcome == Outcome::Done).then(|| Orbit { state: MapState::from(&passage), ..orbit.clone() })
     }
 
     /// The shift in forcing periods to the phase that is farthest from all events at stops and from the times
@@ -195,13 +232,13 @@ impl Corrector<'_> {
     /// Displacements in m at the quarters of each forcing period of a motion; `None` if it ends early.
     pub fn displacements(&self, point: &Point) -> Option<Vec<f64>> {
         let map = self.map(point.value)?;
-        let done = |passage: Passage| (passage.outcome == Outcome::Done).then_some(passage.state);
+        let done = |passage: Passage| (passage.outcome == Outcome::Done).then(|| MapState::from(&passage));
         let mut state = point.orbit.state;
         let mut all = Vec::new();
         for _ in 0..self.periods {
-            all.push(state.0);
+            all.push(state.x);
             for part in QUARTERS {
-                all.push(done(map.pass_part(state, part))?.0);
+                all.push(done(map.pass_part(state, part))?.x);
             }
             state = done(map.pass(state, 1))?;
         }
@@ -209,25 +246,27 @@ impl Corrector<'_> {
     }
 
     /// The coordinates of a state at a value of the field.
-    pub fn at(&self, state: State, value: f64) -> Vector3<f64> {
-        let Units { length, speed, range } = self.units;
-        Vector3::new(state.0 / length, state.1 / speed, value / range)
+    pub fn at(&self, state: MapState, value: f64) -> Vector4<f64> {
+        let Units { length, speed, electrical, range } = self.units;
+        Vector4::new(state.x / length, state.v / speed, state.electrical / electrical, value / range)
     }
 
-    fn state(&self, at: &Vector3<f64>) -> State {
-        (at.x * self.units.length, at.y * self.units.speed)
-    }
-
-    /// Difference of two states in the units.
-    pub fn change(&self, from: State, to: State) -> [f64; 2] {
-        [(to.0 - from.0) / self.units.length, (to.1 - from.1) / self.units.speed]
+    fn state(&self, at: &Vector4<f64>) -> MapState {
+        let Units { length, speed, electrical, .. } = self.units;
+        MapState { x: at.x * length, v: at.y * speed, electrical: at.z * electrical }
     }
 
     /// The derivative of the map by the field for a passage from a state, in the units; one-sided if one side
     /// is not a valid scene. `by_state` are the derivatives by the state.
-    fn by_field(&self, state: State, passage: &Passage, by_state: &Jacobian, value: f64) -> Option<[f64; 2]> {
+    fn by_field(
+        &self,
+        state: MapState,
+        passage: &Passage,
+        by_state: &Jacobian,
+        value: f64,
+    ) -> Option<[f64; 3]> {
         let stretch = match passage.strikes() {
-            false => self.slopes(by_state, [0.0; 2]).iter().map(|row| row.amax()).fold(0.0, f64::max),
+            false => self.slopes(by_state, [0.0; 3]).iter().map(|row| row.amax()).fold(0.0, f64::max),
             true => 0.0,
         };
         let mut step = DIFFERENCE * (MAX_STRETCH / stretch).min(1.0) * self.units.range;
@@ -245,28 +284,31 @@ impl Corrector<'_> {
             let alike = [&above, &below].iter().all(|side| strike_alike(passage, &side.0));
             if alike || step < MIN_DIFFERENCE * self.units.range {
                 let over = (above.1 - below.1) / self.units.range;
-                let [above, below] = [above, below].map(|side| self.change(state, self.image(side.0.state)));
-                return Some([(above[0] - below[0]) / over, (above[1] - below[1]) / over]);
+                let end = |side: &Passage| self.units.apart(state, self.image(side.into()));
+                let (above, below) = (end(&above.0), end(&below.0));
+                return Some(std::array::from_fn(|i| (above[i] - below[i]) / over));
             }
             step *= 0.1;
         }
     }
 
     /// Derivatives of the residual, the change of a state by the map, by the coordinates.
-    fn slopes(&self, by_state: &Jacobian, by_field: [f64; 2]) -> [Vector3<f64>; 2] {
-        let Units { length, speed, .. } = self.units;
-        let [[a, b], [c, d]] = by_state.rows;
-        let (b, c) = (b * speed / length, c * length / speed);
-        [Vector3::new(a - 1.0, b, by_field[0]), Vector3::new(c, d - 1.0, by_field[1])]
+    fn slopes(&self, by_state: &Jacobian, by_field: [f64; 3]) -> [Vector4<f64>; 3] {
+        let by_state = by_state.in_units(self.units.of_state());
+        std::array::from_fn(|i| {
+            let mut row = by_state.rows()[i];
+            row[i] -= 1.0;
+            Vector4::new(row[0], row[1], row[2], by_field[i])
+        })
     }
 
     /// The point of the branch in the plane through `guess` and normal to `across`, if the method converges.
-    pub fn correct(&self, guess: Vector3<f64>, across: &Vector3<f64>) -> Option<Point> {
-        let evaluate = |at: &Vector3<f64>| {
+    pub fn correct(&self, guess: Vector4<f64>, across: &Vector4<f64>) -> Option<Point> {
+        let evaluate = |at: &Vector4<f64>| {
             let point = self.evaluate(at)?;
             Some(Equations {
                 at: point.at,
-                off: self.change(point.orbit.state, point.orbit.passage.state),
+                off: self.units.apart(point.orbit.state, (&point.orbit.passage).into()),
                 slopes: self.slopes(&point.by_state, point.by_field),
                 of: point,
             })
@@ -275,22 +317,22 @@ impl Corrector<'_> {
     }
 
     /// The tangent of the branch at a point, with a positive component along `along`.
-    pub fn tangent(&self, point: &Point, along: &Vector3<f64>) -> Option<Vector3<f64>> {
-        let [first, second] = self.slopes(&point.by_state, point.by_field).map(|row| row.transpose());
-        let matrix = Matrix3::from_rows(&[first, second, along.transpose()]);
-        let tangent = matrix.lu().solve(&Vector3::new(0.0, 0.0, 1.0))?;
+    pub fn tangent(&self, point: &Point, along: &Vector4<f64>) -> Option<Vector4<f64>> {
+        let slopes = self.slopes(&point.by_state, point.by_field);
+        let [first, second, third] = slopes.map(|row| row.transpose());
+        let matrix = Matrix4::from_rows(&[first, second, third, along.transpose()]);
+        let tangent = matrix.lu().solve(&Vector4::w())?;
         let tangent = tangent.try_normalize(0.0)?;
         tangent.iter().all(|part| part.is_finite()).then_some(tangent)
     }
 
     /// The motion through a state, which need not be periodic; `None` if it ends early or has no derivatives.
-    pub fn evaluate(&self, at: &Vector3<f64>) -> Option<Point> {
-        let value = at.z * self.units.range;
+    pub fn evaluate(&self, at: &Vector4<f64>) -> Option<Point> {
+        let value = at.w * self.units.range;
         let map = self.map(value)?;
         let state = allowed(map.model(), self.state(at));
         let (passage, jacobian) = map.pass_part_with_jacobian(state, (0.0, self.flight()));
-        let finite = jacobian.rows.as_flattened().iter().all(|entry| entry.is_finite());
-        if !finite || passage.outcome != Outcome::Done {
+        if !jacobian.is_finite() || passage.outcome != Outcome::Done {
             return None;
         }
         let by_state = if self.mirrored { jacobian.mirrored() } else { jacobian };
@@ -300,7 +342,8 @@ impl Corrector<'_> {
             true => (passage.with_mirror_image(self.flight() * map.period()), by_state.after(&by_state)),
             false => (passage, jacobian),
         };
-        let orbit = Orbit { period: self.periods, state, passage, jacobian };
+        let circuit = map.model().circuit_state();
+        let orbit = Orbit { period: self.periods, state, passage, jacobian, circuit };
         Some(Point { at: self.at(state, value), value, orbit, by_state, determinant, by_field })
     }
 }

@@ -1,6 +1,6 @@
 //! Events of a branch, located between two points of it to about 1e-9 of the range.
 
-use nalgebra::Vector3;
+use nalgebra::Vector4;
 
 use super::SAME;
 use super::corrector::{Corrector, Point};
@@ -51,7 +51,7 @@ pub(super) fn differ(a: &Point, b: &Point) -> bool {
 
 /// The characteristic polynomial of the corrector's map at 1 or -1: 0 where that is a multiplier.
 fn characteristic(point: &Point, at: f64) -> f64 {
-    1.0 - at * point.by_state.trace() + point.determinant
+    point.by_state.characteristic(at, point.determinant)
 }
 
 /// The events between two consecutive points in order, each with its point; `along` and `onward` are the
@@ -59,14 +59,14 @@ fn characteristic(point: &Point, at: f64) -> f64 {
 pub(super) fn between(
     corrector: &Corrector,
     from: &Point,
-    along: &Vector3<f64>,
+    along: &Vector4<f64>,
     to: &Point,
-    onward: &Vector3<f64>,
+    onward: &Vector4<f64>,
 ) -> Option<Vec<(BranchEvent, Point)>> {
     let passes = |at: f64| characteristic(from, at) * characteristic(to, at) < 0.0;
     let mut found = Vec::new();
     // a multiplier of the map passes through 1 only where the branch turns back
-    let turns = along.z * onward.z < 0.0;
+    let turns = along.w * onward.w < 0.0;
     if let Some((share, point)) = symmetry_breaking(corrector, from, to) {
         found.push((share, BranchEvent::Symmetry, point));
     } else if turns != passes(1.0) {
@@ -106,12 +106,12 @@ fn symmetry_breaking(corrector: &Corrector, from: &Point, to: &Point) -> Option<
     let share = near / (near + far);
     let middle = from.at + (to.at - from.at) * share;
     let half = Corrector { mirrored: true, ..*corrector };
-    let at = |field: f64| half.correct(Vector3::new(middle.x, middle.y, field), &Vector3::z());
+    let at = |field: f64| half.correct(Vector4::new(middle.x, middle.y, middle.z, field), &Vector4::w());
     let breaks = |point: &Point| characteristic(point, -1.0);
     let length = (to.at - from.at).norm();
     (0..HALVINGS).rev().find_map(|halving| {
         let width = length * 0.5_f64.powi(halving);
-        let (low, high) = (at(middle.z - width)?, at(middle.z + width)?);
+        let (low, high) = (at(middle.w - width)?, at(middle.w + width)?);
         (breaks(&low) * breaks(&high) < 0.0).then_some(())?;
         let (_, point) = root(&half, (&low, &high), breaks)?;
         (is_at(&point, -1.0) && (point.at - middle).norm() <= length).then_some((share, point))

@@ -2,20 +2,19 @@
 //!
 //! An orbit that turns back at the time t, at a gap g before a stop at s, leaves the state (s - g, 0) and
 //! returns to it one period later. An orbit that strikes the stop at a speed u leaves (s, -e u) and returns
-//! to (s, u). If the stop is ignored near t, both flights are smooth functions of t, of g or u, and of the
-//! field, and for g = 0 or u = 0 they are the same orbit, which grazes the stop. So Newton's method finds it
+//! to (s, u). A circuit is then in a state w, to which it returns. If the stop is ignored near t, both flights
+//! are smooth functions of t, of g or u, of w and of the field, and for g = 0 or u = 0 they are the same orbit, which grazes the stop. So Newton's method finds it
 //! from either side, and the two parts of the branch that meet there can be started from it, although the
 //! stroboscopic map changes like the square root of the distance from it (Nordmark 1991). For a symmetric
 //! orbit half a period is computed, so that it grazes both stops at once.
 
 use std::ops::Range;
 
-use nalgebra::Vector3;
+use nalgebra::Vector4;
 
 use super::corrector::{Accuracy, Corrector, Equations, Point, newton};
 use super::{Orbit, map_of};
-use crate::dynamics::{Event, EventKind, Jacobian, Miss, Outcome, Passage, Side, StroboscopicMap};
-use crate::study::State;
+use crate::dynamics::{Event, EventKind, Jacobian, MapState, Miss, Outcome, Passage, Side, StroboscopicMap};
 
 /// Largest gap at which a stop may be grazed nearby, as a share of the length scale.
 const SMALL_GAP: f64 = 0.1;
@@ -66,8 +65,8 @@ pub(super) struct Grazing<'a> {
     /// Times in forcing periods after a strobe around which stops are ignored, with half the length of each
     /// interval.
     open: Vec<(f64, f64)>,
-    /// Time in forcing periods after a strobe, 0, and field in its unit.
-    solution: Vector3<f64>,
+    /// Time in forcing periods after a strobe, 0, state of the circuit then and field in their units.
+    solution: Vector4<f64>,
     /// The orbit, with the derivatives on the side that misses the stop.
     pub point: Point,
 }
@@ -103,6 +102,10 @@ pub(super) fn grazings<'a>(corrector: &'a Corrector<'a>, near: &Point) -> Vec<(G
         Beside::Touching => size * size,
     };
     let flight = corrector.flight();
+    let circuit_at = |t: f64| {
+        let passage = map.pass_between(near.orbit.state, (0.0, t));
+        (passage.outcome == Outcome::Done).then_some(passage.electrical / units.electrical)
+    };
     // the first half of a symmetric orbit contains all contacts
     turns.retain(|turn| turn.0 < flight);
     turns.sort_by(|a, b| depth(a).total_cmp(&depth(b)));
@@ -116,7 +119,7 @@ pub(super) fn grazings<'a>(corrector: &'a Corrector<'a>, near: &Point) -> Vec<(G
         let others: Vec<f64> = others.filter(|other| apart(*other, t) > 1e-9).collect();
         let room = |at: f64| others.iter().map(|other| 0.5 * apart(at, *other)).fold(0.25 * flight, f64::min);
         let open = misses.clone().map(|miss| miss.0).chain([t]).map(|at| (at, room(at))).collect();
-        let solution = Vector3::new(t, 0.0, near.at.z);
+        let solution = Vector4::new(t, 0.0, circuit_at(t)?, near.at.w);
         let unsolved = Grazing { corrector, side, open, solution, point: near.clone() };
         Some((unsolved.solved()?, beside))
     };
@@ -142,9 +145,10 @@ impl Grazing<'_> {
             return None;
         }
         self.solution = solution;
-        let maps = Maps::of(self.corrector, solution.z * range)?;
-        let state = self.fly(&maps, (self.stop(&maps)?.0, 0.0), (solution.x, solution.x.ceil()))?;
-        self.point = self.at_strobe(&maps, state, solution.z * range)?;
+        let maps = Maps::of(self.corrector, solution.w * range)?;
+        let [start, _] = self.ends(&maps, &solution, Beside::Missing)?;
+        let state = self.fly(&maps, start, (solution.x, solution.x.ceil()))?;
+        self.point = self.at_strobe(&maps, state, solution.w * range)?;
         Some(self)
     }
 
@@ -183,68 +187,75 @@ impl Grazing<'_> {
         parts
     }
 
-    /// The state in m and m/s after a span of time, with stops ignored near the grazing.
-    fn fly(&self, maps: &Maps, state: State, span: (f64, f64)) -> Option<State> {
+    /// The state after a span of time, with stops ignored near the grazing.
+    fn fly(&self, maps: &Maps, state: MapState, span: (f64, f64)) -> Option<MapState> {
         self.parts(span).into_iter().try_fold(state, |state, (stops, span)| {
             let map = if stops { &maps.with } else { &maps.without };
             let passage = map.pass_between(state, span);
-            (passage.outcome == Outcome::Done).then_some(passage.state)
+            (passage.outcome == Outcome::Done).then(|| MapState::from(&passage))
         })
     }
 
     /// The state that leaves the grazing, and the state that must be reached after the flight.
-    fn ends(&self, maps: &Maps, size: f64, beside: Beside) -> Option<[State; 2]> {
+    fn ends(&self, maps: &Maps, at: &Vector4<f64>, beside: Beside) -> Option<[MapState; 2]> {
         let (stop, restitution) = self.stop(maps)?;
         let units = &self.corrector.units;
-        let toward = if self.side == Side::Left { -size } else { size };
+        let toward = if self.side == Side::Left { -at.y } else { at.y };
+        let electrical = at.z * units.electrical;
+        let state = |x: f64, v: f64| MapState { x, v, electrical };
         Some(match beside {
-            Beside::Missing => [(stop - toward * units.length, 0.0); 2],
+            Beside::Missing => [state(stop - toward * units.length, 0.0); 2],
             Beside::Touching => {
                 let speed = toward * units.speed;
-                [(stop, -restitution * speed), (stop, speed)]
+                [state(stop, -restitution * speed), state(stop, speed)]
             }
         })
     }
 
     /// The residual after a flight that begins at a time with a gap or speed, in the units.
-    fn off(&self, maps: &Maps, at: &Vector3<f64>, beside: Beside) -> Option<[f64; 2]> {
-        let [start, back] = self.ends(maps, at.y, beside)?;
+    fn off(&self, maps: &Maps, at: &Vector4<f64>, beside: Beside) -> Option<[f64; 3]> {
+        let [start, back] = self.ends(maps, at, beside)?;
         let end = self.fly(maps, start, (at.x, at.x + self.corrector.flight()))?;
-        Some(self.corrector.change(back, self.corrector.image(end)))
+        Some(self.corrector.units.apart(back, self.corrector.image(end)))
     }
 
     /// The orbit with a gap or speed in the units, from a guess, and the length of the last step.
-    fn solve(&self, guess: Vector3<f64>, beside: Beside) -> Option<(Vector3<f64>, f64)> {
-        let look = |at: &Vector3<f64>| {
+    fn solve(&self, guess: Vector4<f64>, beside: Beside) -> Option<(Vector4<f64>, f64)> {
+        let look = |at: &Vector4<f64>| {
             let maps = |z: f64| Maps::of(self.corrector, z * self.corrector.units.range);
-            let here = maps(at.z)?;
+            let here = maps(at.w)?;
             let off = self.off(&here, at, beside)?;
-            let side = |step: Vector3<f64>| {
+            let side = |step: Vector4<f64>| {
                 let to = at + step;
-                let other = if step.z == 0.0 { None } else { Some(maps(to.z)?) };
+                let other = if step.w == 0.0 { None } else { Some(maps(to.w)?) };
                 Some((self.off(other.as_ref().unwrap_or(&here), &to, beside)?, step.sum()))
             };
-            let slope = |step: Vector3<f64>| {
+            let slope = |step: Vector4<f64>| {
                 let (above, below) = match (side(step), side(-step)) {
                     (None, None) => return None,
                     (above, below) => (above.unwrap_or((off, 0.0)), below.unwrap_or((off, 0.0))),
                 };
-                Some([0, 1].map(|i| (above.0[i] - below.0[i]) / (above.1 - below.1)))
+                Some([0, 1, 2].map(|i| (above.0[i] - below.0[i]) / (above.1 - below.1)))
             };
-            let by_time = slope(Vector3::x() * DIFFERENCE)?;
-            let by_field = slope(Vector3::z() * DIFFERENCE)?;
+            let by_time = slope(Vector4::x() * DIFFERENCE)?;
+            let by_field = slope(Vector4::w() * DIFFERENCE)?;
+            let by_circuit = match here.with.model().has_electrical_state() {
+                true => slope(Vector4::z() * DIFFERENCE)?,
+                false => [0.0, 0.0, -1.0],
+            };
             // the gap or speed is fixed
-            let slopes = [0, 1].map(|i| Vector3::new(by_time[i], 0.0, by_field[i]));
+            let slopes = [0, 1, 2].map(|i| Vector4::new(by_time[i], 0.0, by_circuit[i], by_field[i]));
             Some(Equations { at: *at, off, slopes, of: () })
         };
-        newton(guess, &Vector3::y(), FINEST, look).map(|((), at, left)| (at, left))
+        newton(guess, &Vector4::y(), FINEST, look).map(|((), at, left)| (at, left))
     }
 
     /// The grazing orbit from its state at a strobe; `None` if it does not touch the stop or does not return.
-    fn at_strobe(&self, maps: &Maps, state: State, value: f64) -> Option<Point> {
+    fn at_strobe(&self, maps: &Maps, state: MapState, value: f64) -> Option<Point> {
         let corrector = self.corrector;
         let flight = corrector.flight();
-        let (mut at, mut by_state) = (state, Jacobian::IDENTITY);
+        let identity = Jacobian::identity(maps.with.model().has_electrical_state());
+        let (mut at, mut by_state, mut rested) = (state, identity, false);
         let (mut events, mut misses, mut impacts, mut determinant) = (Vec::new(), Vec::new(), 0, Some(1.0));
         for (stops, span) in self.parts((0.0, flight)) {
             let map = if stops { &maps.with } else { &maps.without };
@@ -252,8 +263,9 @@ impl Grazing<'_> {
             if passage.outcome != Outcome::Done {
                 return None;
             }
-            at = passage.state;
+            at = MapState::from(&passage);
             by_state = part.after(&by_state);
+            rested |= passage.rested;
             events.extend(passage.events);
             misses.extend(passage.misses);
             impacts += passage.impacts;
@@ -262,7 +274,8 @@ impl Grazing<'_> {
         // the contact within the flight, at the other stop if the motion is mirrored an odd number of times
         let flights = (self.solution.x / flight).floor();
         let time = self.solution.x - flights * flight;
-        let (mut side, (mut x, v)) = (self.side, self.fly(maps, state, (0.0, time))?);
+        let MapState { mut x, v, .. } = self.fly(maps, state, (0.0, time))?;
+        let mut side = self.side;
         if corrector.mirrored && flights % 2.0 != 0.0 {
             (side, x) = (side.other(), -x);
         }
@@ -270,32 +283,42 @@ impl Grazing<'_> {
         let t = maps.with.first_strobe() + time * maps.with.period();
         misses.push(Miss { t, side, gap });
         let units = &corrector.units;
-        let off = corrector.change(state, corrector.image(at));
-        let offsets = [off[0], off[1], gap / units.length, v / units.speed].map(f64::abs);
+        let off = corrector.units.apart(state, corrector.image(at));
+        let offsets = [off[0], off[1], off[2], gap / units.length, v / units.speed].map(f64::abs);
         if !offsets.iter().all(|part| *part <= EXACT) {
             return None;
         }
-        let mut passage = Passage { state: at, events, determinant, misses, outcome: Outcome::Done, impacts };
+        let mut passage = Passage {
+            state: (at.x, at.v),
+            electrical: at.electrical,
+            events,
+            determinant,
+            rested,
+            misses,
+            outcome: Outcome::Done,
+            impacts,
+        };
         let mut jacobian = by_state;
         if corrector.mirrored {
             passage = passage.with_mirror_image(flight * maps.with.period());
             (by_state, jacobian) = (by_state.mirrored(), by_state.after(&by_state));
         }
-        let orbit = Orbit { period: corrector.periods, state, passage, jacobian };
+        let circuit = maps.with.model().circuit_state();
+        let orbit = Orbit { period: corrector.periods, state, passage, jacobian, circuit };
         let determinant = determinant.unwrap_or_else(|| by_state.determinant());
         let at = corrector.at(state, value);
-        Some(Point { at, value, orbit, by_state, determinant, by_field: [0.0; 2] })
+        Some(Point { at, value, orbit, by_state, determinant, by_field: [0.0; 3] })
     }
 
-    /// The state in m and m/s at another phase of the drive.
-    pub fn at_phase(&self, phase: f64) -> Option<State> {
+    /// The state at another phase of the drive.
+    pub fn at_phase(&self, phase: f64) -> Option<MapState> {
         let maps = Maps::of(self.corrector, self.point.value)?;
         self.fly(&maps, self.point.orbit.state, (0.0, (phase - self.corrector.phase).rem_euclid(1.0)))
     }
 
     /// The orbit on one side of the grazing at about this distance in the units.
     pub fn beside(&self, beside: Beside, distance: f64) -> Option<Point> {
-        let (first, _) = self.solve(self.solution + Vector3::y() * FIRST, beside)?;
+        let (first, _) = self.solve(self.solution + Vector4::y() * FIRST, beside)?;
         let rate = (self.strobe(&first, beside)? - self.point.at).norm() / FIRST;
         let size = distance / rate;
         if !(size < LARGEST) {
@@ -325,11 +348,11 @@ impl Grazing<'_> {
     }
 
     /// The coordinates at a strobe of an orbit near the grazing one.
-    fn strobe(&self, at: &Vector3<f64>, beside: Beside) -> Option<Vector3<f64>> {
-        let value = at.z * self.corrector.units.range;
+    fn strobe(&self, at: &Vector4<f64>, beside: Beside) -> Option<Vector4<f64>> {
+        let value = at.w * self.corrector.units.range;
         let maps = Maps::of(self.corrector, value)?;
-        let [start, _] = self.ends(&maps, at.y, beside)?;
+        let [start, _] = self.ends(&maps, at, beside)?;
         let passage = maps.with.pass_between(start, (at.x, at.x.ceil()));
-        (passage.outcome == Outcome::Done).then(|| self.corrector.at(passage.state, value))
+        (passage.outcome == Outcome::Done).then(|| self.corrector.at((&passage).into(), value))
     }
 }

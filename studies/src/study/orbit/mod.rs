@@ -1,9 +1,9 @@
 //! Periodic orbits, by Newton's method on the stroboscopic map, and their branches over a field.
 //!
 //! A periodic orbit of n forcing periods is a fixed point of the map from a state to the state n periods
-//! later ([`StroboscopicMap`]). Its Floquet multipliers are the eigenvalues of the derivative of that map; it
-//! is stable if both are inside the unit circle. After a rest on a stop the motion no longer depends on the
-//! state before it, so both are 0.
+//! later ([`StroboscopicMap`]). Its Floquet multipliers are the eigenvalues of the derivative of that map, two
+//! or, beside a circuit, three; it is stable if all are inside the unit circle. After a rest on a stop the
+//! motion no longer depends on the state before it, so that all are 0 but one beside a circuit, which remembers.
 //!
 //! [`orbit`] finds the orbit near the settled motion of a run, [`orbit_near`] the one near a state;
 //! [`branch()`] follows it over a field.
@@ -16,14 +16,16 @@ mod walk;
 use std::fmt;
 use std::sync::atomic::AtomicBool;
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3, Vector4};
 
-use super::{Family, State, Table, Task, settled};
+use super::{Family, Table, Task, settled};
 use crate::dynamics::{
-    Event, EventKind, Jacobian, Model, Multiplier, Outcome, Passage, Regime, StroboscopicMap,
+    CircuitState, Event, EventKind, Jacobian, MapState, Model, Multiplier, Outcome, Passage, Regime,
+    StroboscopicMap,
 };
 use crate::scene::column_names;
-use corrector::{Corrector, Units};
+use corrector::Corrector;
+pub(super) use corrector::Units;
 pub use events::BranchEvent;
 use walk::Walk;
 
@@ -54,12 +56,14 @@ const TOLERANCE: f64 = 1e-14;
 pub struct Orbit {
     /// Its period in forcing periods.
     pub period: u32,
-    /// Displacement in m and velocity in m/s at the phase of the map.
-    pub state: (f64, f64),
+    /// Its state at the phase of the map.
+    pub state: MapState,
     /// What happens on it.
     pub passage: Passage,
     /// Derivative of the map over its period.
     pub jacobian: Jacobian,
+    /// What the electrical state is; `None` without a circuit.
+    pub circuit: Option<CircuitState>,
 }
 
 /// Why no periodic orbit was found.
@@ -84,9 +88,6 @@ pub enum NoOrbit {
          elsewhere"
     )]
     NotSettled,
-    /// Its transducer has a state of its own.
-    #[error("{}", crate::study::ELECTRICAL_STATE)]
-    ElectricalState,
     /// It was cancelled.
     #[error("it was told to stop")]
     Cancelled,
@@ -97,8 +98,13 @@ fn ended_at(outcome: Outcome) -> String {
 }
 
 impl Orbit {
-    /// Floquet multipliers, the larger magnitude first.
-    pub fn multipliers(&self) -> [Multiplier; 2] {
+    /// Floquet multipliers by falling magnitude: two, or three beside a circuit.
+    pub fn multipliers(&self) -> Vec<Multiplier> {
+        if self.passage.rested && self.jacobian.size() == 3 {
+            // the circuit's state at the release is all that is remembered
+            let nothing = Multiplier { re: 0.0, im: 0.0 };
+            return vec![Multiplier { re: self.jacobian.trace(), im: 0.0 }, nothing, nothing];
+        }
         self.jacobian.multipliers(self.determinant())
     }
 
@@ -146,8 +152,10 @@ impl Orbit {
 }
 
 /// The nearest state between rigid stops and on the force curve.
-pub(super) fn allowed(model: &Model, state: State) -> State {
-    model.held_within(state, if model.compliant().is_some() { f64::INFINITY } else { 0.0 })
+pub(super) fn allowed(model: &Model, state: MapState) -> MapState {
+    let depth = if model.compliant().is_some() { f64::INFINITY } else { 0.0 };
+    let (x, v) = model.held_within((state.x, state.v), depth);
+    MapState { x, v, ..state }
 }
 
 /// The stroboscopic map of a model, exact enough for its derivatives; `None` if the drive has no period.
@@ -155,52 +163,67 @@ pub(super) fn map_of(model: &Model, phase: f64) -> Option<StroboscopicMap> {
     model.with_tolerance(model.tolerance().min(TOLERANCE)).stroboscopic_map(phase)
 }
 
-/// The periodic orbit near a state (displacement in m and velocity in m/s at the phase of the map), by
-/// Newton's method. Its period is `periods` forcing periods, at least 1, or a divisor.
-pub fn orbit_near(map: &StroboscopicMap, guess: (f64, f64), periods: u32) -> Result<Orbit, NoOrbit> {
-    let scales = map.model().scales();
-    let size = |change: State| (change.0 / scales.length).abs().max((change.1 / scales.speed).abs());
-    let mut state = allowed(map.model(), guess);
+/// The periodic orbit near a state at the phase of the map, such as `(x, v)` without a circuit, by Newton's
+/// method. Its period is `periods` forcing periods, at least 1, or a divisor.
+pub fn orbit_near(map: &StroboscopicMap, guess: impl Into<MapState>, periods: u32) -> Result<Orbit, NoOrbit> {
+    let units = Units::of(map.model(), 1.0);
+    let mut state = allowed(map.model(), guess.into());
     let mut best = f64::INFINITY;
     for _ in 0..MAX_STEPS {
         let (passage, jacobian) = map.pass_with_jacobian(state, periods);
         if passage.outcome != Outcome::Done {
             return Err(NoOrbit::Ended(passage.outcome));
         }
-        let [[a, b], [c, d]] = jacobian.rows;
-        if ![a, b, c, d].iter().all(|entry| entry.is_finite()) {
+        if !jacobian.is_finite() {
             return Err(NoOrbit::Grazing);
         }
-        let off = (passage.state.0 - state.0, passage.state.1 - state.1);
-        // (1 - J) step = off
-        let determinant = (1.0 - a) * (1.0 - d) - b * c;
-        let step =
-            (((1.0 - d) * off.0 + b * off.1) / determinant, (c * off.0 + (1.0 - a) * off.1) / determinant);
-        let length = size(step);
-        if size(off) <= CLOSE && (length <= SMALLEST_STEP || length >= 0.5 * best) {
-            return Ok(shortest(map, Orbit { period: periods, state, passage, jacobian }));
+        let off = units.apart(state, (&passage).into());
+        let Some(step) = newton_step(&jacobian.in_units(units.of_state()), off) else {
+            return Err(NoOrbit::NotConverged);
+        };
+        let length = largest(step);
+        if largest(off) <= CLOSE && (length <= SMALLEST_STEP || length >= 0.5 * best) {
+            return Ok(shortest(
+                map,
+                Orbit { period: periods, state, passage, jacobian, circuit: map.model().circuit_state() },
+            ));
         }
         if !length.is_finite() {
             return Err(NoOrbit::NotConverged);
         }
         best = best.min(length);
         let share = (LONGEST_STEP / length).min(1.0);
-        state = allowed(map.model(), (state.0 + share * step.0, state.1 + share * step.1));
+        state = allowed(map.model(), units.moved(state, step.map(|part| share * part)));
     }
     Err(NoOrbit::NotConverged)
 }
 
+fn largest(change: [f64; 3]) -> f64 {
+    change.iter().fold(0.0, |largest, part| part.abs().max(largest))
+}
+
+/// The step of Newton's method to a fixed point of a map with these derivatives, which is `off` at present:
+/// (1 - J) step = off. `None` where the matrix is singular.
+pub(super) fn newton_step(jacobian: &Jacobian, off: [f64; 3]) -> Option<[f64; 3]> {
+    if jacobian.size() == 3 {
+        let rows = jacobian.rows();
+        let matrix = Matrix3::from_fn(|i, j| if i == j { 1.0 - rows[i][j] } else { -rows[i][j] });
+        return matrix.lu().solve(&Vector3::from(off)).map(Into::into);
+    }
+    let [[a, b], [c, d]] = jacobian.of_motion();
+    let determinant = (1.0 - a) * (1.0 - d) - b * c;
+    let (x, v) = ((1.0 - d) * off[0] + b * off[1], c * off[0] + (1.0 - a) * off[1]);
+    Some([x / determinant, v / determinant, 0.0])
+}
+
 /// The orbit with its smallest period.
 fn shortest(map: &StroboscopicMap, orbit: Orbit) -> Orbit {
-    let scales = map.model().scales();
+    let units = Units::of(map.model(), 1.0);
     let divisors = (1..orbit.period).filter(|period| orbit.period.is_multiple_of(*period));
     for period in divisors {
         let (passage, jacobian) = map.pass_with_jacobian(orbit.state, period);
-        let back = passage.state;
-        if (back.0 - orbit.state.0).abs() <= SAME * scales.length
-            && (back.1 - orbit.state.1).abs() <= SAME * scales.speed
-        {
-            return Orbit { period, state: orbit.state, passage, jacobian };
+        if largest(units.apart(orbit.state, (&passage).into())) <= SAME {
+            return Orbit { period, passage, jacobian, ..orbit };
         }
     }
     orbit
@@ -211,9 +234,6 @@ fn shortest(map: &StroboscopicMap, orbit: Orbit) -> Orbit {
 ///
 /// Precondition: the drive repeats.
 pub fn orbit(model: &Model, phase: f64, period: Option<u32>, cancel: &AtomicBool) -> Result<Orbit, NoOrbit> {
-    if model.has_electrical_state() {
-        return Err(NoOrbit::ElectricalState);
-    }
     let (Some(map), Some(forcing)) = (map_of(model, phase), model.forcing_period()) else {
         return Err(NoOrbit::NotSettled);
     };
@@ -225,9 +245,11 @@ pub fn orbit(model: &Model, phase: f64, period: Option<u32>, cancel: &AtomicBool
     let still = (summary.regime == Regime::Rest).then_some(1);
     let periods = period.or(summary.period).or(still).ok_or(NoOrbit::NotSettled)?;
     let since = (summary.window.1.max(summary.settles_at.unwrap_or(0.0)) / forcing).ceil();
-    let run = StroboscopicMap::over(model, map.first_strobe() + since * forcing).pass(model.start(), 1);
-    let guess =
-        if summary.period.or(still).is_some() { run.state } else { closest_return(&map, run.state, periods) };
+    let (x, v) = model.start();
+    let start = MapState { x, v, electrical: model.start_electrical() };
+    let run = StroboscopicMap::over(model, map.first_strobe() + since * forcing).pass(start, 1);
+    let state = MapState::from(&run);
+    let guess = if summary.period.or(still).is_some() { state } else { closest_return(&map, state, periods) };
     let orbit = orbit_near(&map, guess, periods)?;
     match period {
         Some(period) if orbit.period != period => Err(NoOrbit::Shorter(orbit.period)),
@@ -236,15 +258,15 @@ pub fn orbit(model: &Model, phase: f64, period: Option<u32>, cancel: &AtomicBool
 }
 
 /// Among the stroboscopic states after `from`, the one with the closest return after `periods`.
-fn closest_return(map: &StroboscopicMap, from: State, periods: u32) -> State {
-    let scales = map.model().scales();
-    let next = |state: &State| {
+fn closest_return(map: &StroboscopicMap, from: MapState, periods: u32) -> MapState {
+    let units = Units::of(map.model(), 1.0);
+    let next = |state: &MapState| {
         let passage = map.pass(*state, 1);
-        (passage.outcome == Outcome::Done).then_some(passage.state)
+        (passage.outcome == Outcome::Done).then(|| MapState::from(&passage))
     };
     let states: Vec<_> = std::iter::successors(Some(from), next).take(STROBES + periods as usize).collect();
     let returns = states.iter().zip(states.iter().skip(periods as usize));
-    let far = |(a, b): (&State, &State)| ((a.0 - b.0) / scales.length).hypot((a.1 - b.1) / scales.speed);
+    let far = |(a, b): (&MapState, &MapState)| Vector3::from(units.apart(*b, *a)).norm();
     returns.min_by(|a, b| far(*a).total_cmp(&far(*b))).map_or(from, |(state, _)| *state)
 }
 
@@ -254,16 +276,33 @@ pub fn orbit_table(orbits: &[Orbit]) -> Table {
 }
 
 fn with_orbits(table: Table, orbits: &[Orbit]) -> Table {
-    let part =
-        |number: usize, of: fn(Multiplier) -> f64| move |orbit: &Orbit| of(orbit.multipliers()[number]);
-    table
+    let part = |number: usize, of: fn(&Multiplier) -> f64| {
+        move |orbit: &Orbit| orbit.multipliers().get(number).map(of)
+    };
+    let table = table
         .each("period", orbits, |orbit| Some(u64::from(orbit.period)))
-        .each("x_m", orbits, |orbit| orbit.state.0)
-        .each("v_m_per_s", orbits, |orbit| orbit.state.1)
+        .each("x_m", orbits, |orbit| orbit.state.x)
+        .each("v_m_per_s", orbits, |orbit| orbit.state.v);
+    let circuit = orbits.first().and_then(|orbit| orbit.circuit);
+    let table = match circuit {
+        Some(CircuitState::Current) => table.each("current_a", orbits, |orbit| orbit.state.electrical),
+        Some(CircuitState::Voltage) => table.each("voltage_v", orbits, |orbit| orbit.state.electrical),
+        None => table,
+    };
+    let table = table
         .each("multiplier_1_re", orbits, part(0, |multiplier| multiplier.re))
         .each("multiplier_1_im", orbits, part(0, |multiplier| multiplier.im))
         .each("multiplier_2_re", orbits, part(1, |multiplier| multiplier.re))
-        .each("multiplier_2_im", orbits, part(1, |multiplier| multiplier.im))
+        .each("multiplier_2_im", orbits, part(1, |multiplier| multiplier.im));
+    let table = match circuit.is_some() {
+        true => table.each("multiplier_3_re", orbits, part(2, |multiplier| multiplier.re)).each(
+            "multiplier_3_im",
+            orbits,
+            part(2, |multiplier| multiplier.im),
+        ),
+        false => table,
+    };
+    table
         .each("stable", orbits, |orbit| Some(orbit.is_stable()))
         .each("impacts", orbits, |orbit| Some(orbit.passage.impacts))
         .each("rests", orbits, |orbit| Some(orbit.passage.rests()))
@@ -350,12 +389,11 @@ pub fn branch(
 ) -> Result<Branch, NoOrbit> {
     let model = family.model(from).map_err(|_| NoOrbit::NotConverged)?;
     let first = orbit(&model, phase, period, task.cancel)?;
-    let scales = model.scales();
-    let units = Units { length: scales.length, speed: scales.speed, range: (to - from).abs() };
+    let units = Units::of(&model, (to - from).abs());
     let map = map_of(&model, phase).ok_or(NoOrbit::NotConverged)?;
     let mirrored = Corrector::asymmetry(&map, &first).is_some_and(|off| off.amax() <= SAME);
     let corrector = Corrector { family, phase, periods: first.period, mirrored, units };
-    let upwards = Vector3::new(0.0, 0.0, (to - from).signum());
+    let upwards = Vector4::w() * (to - from).signum();
     let point = corrector.correct(corrector.at(first.state, from), &upwards).ok_or(NoOrbit::NotConverged)?;
     let along = corrector.tangent(&point, &upwards).ok_or(NoOrbit::Grazing)?;
     let branch = Branch {

@@ -1,13 +1,13 @@
 //! Continuation of a branch of periodic orbits: around folds by pseudo-arclength, and across grazings.
 
-use nalgebra::Vector3;
+use nalgebra::Vector4;
 
 use super::corrector::{Corrector, Point};
 use super::events::{BranchEvent, between, differ};
 use super::grazing::{Beside, Grazing, grazings};
 use super::{Branch, BranchEnd, NoOrbit, Orbit, SAME};
-use crate::dynamics::Model;
-use crate::study::{State, Task};
+use crate::dynamics::{MapState, Model};
+use crate::study::Task;
 
 /// First step, in the units of the branch.
 const FIRST: f64 = 2e-3;
@@ -42,10 +42,10 @@ const MIN_TOUCHING: f64 = 1e-5;
 const AT_AN_END: f64 = 1e-12;
 
 /// A point with the tangent of the branch there.
-pub(super) type Directed = (Point, Vector3<f64>);
+pub(super) type Directed = (Point, Vector4<f64>);
 
 /// Events in order, each with its point and, if it is known, the state at the phase of the rows.
-type Events = Vec<(BranchEvent, Point, Option<State>)>;
+type Events = Vec<(BranchEvent, Point, Option<MapState>)>;
 
 /// The part of the branch from the last point to the next.
 struct Stretch {
@@ -71,7 +71,7 @@ pub(super) struct Walk<'a> {
     /// The phase of the rows, in forcing periods.
     phase: f64,
     /// The coordinates of the rows, each with its arc length from the first.
-    rows: Vec<(Vector3<f64>, f64)>,
+    rows: Vec<(Vector4<f64>, f64)>,
     /// Whether the branch has returned to an earlier orbit.
     meets: bool,
     at: Directed,
@@ -155,7 +155,7 @@ impl<'a> Walk<'a> {
                     step = FIRST;
                     continue;
                 }
-                let leaves = beyond.is_some_and(|end| (self.at.0.at.z - end).abs() < SHORTEST);
+                let leaves = beyond.is_some_and(|end| (self.at.0.at.w - end).abs() < SHORTEST);
                 return Ok(match leaves {
                     true => BranchEnd::Range,
                     false if leaps => BranchEnd::Leap,
@@ -170,11 +170,11 @@ impl<'a> Walk<'a> {
     fn predicted(&self, step: f64) -> (Option<Directed>, Option<f64>) {
         let (point, along) = &self.at;
         let guess = point.at + along * step;
-        if let Some(end) = self.end_before(guess.z) {
+        if let Some(end) = self.end_before(guess.w) {
             return (self.last(end), Some(end));
         }
         let Some(next) = self.corrector.correct(guess, along) else { return (None, None) };
-        if let Some(end) = self.end_before(next.at.z) {
+        if let Some(end) = self.end_before(next.at.w) {
             return (self.last(end), Some(end));
         }
         let onward = self.corrector.tangent(&next, along);
@@ -190,8 +190,8 @@ impl<'a> Walk<'a> {
     /// The point at an end of the range.
     fn last(&self, end: f64) -> Option<Directed> {
         let (point, along) = &self.at;
-        let across = Vector3::new(0.0, 0.0, 1.0);
-        let share = (end - point.at.z) / along.z;
+        let across = Vector4::w();
+        let share = (end - point.at.w) / along.w;
         let next = self.corrector.correct(point.at + along * share, &across)?;
         let onward = self.corrector.tangent(&next, along)?;
         // at an end already, the branch first goes round the fold just before it
@@ -202,7 +202,7 @@ impl<'a> Walk<'a> {
     fn follows(&self, (next, onward): &Directed) -> bool {
         let (point, along) = &self.at;
         // a motion that is a function of the field does not turn back
-        let turns = point.forgets() && next.forgets() && onward.z * along.z < 0.0;
+        let turns = point.forgets() && next.forgets() && onward.w * along.w < 0.0;
         !turns && onward.dot(along) > STRAIGHT && self.is_ahead(next) && self.is_near(next)
     }
 
@@ -253,7 +253,7 @@ impl<'a> Walk<'a> {
         }
         let distance = |grazing: &Grazing| (grazing.point.at - point.at).norm();
         ahead.retain(|(grazing, _)| {
-            let within = self.end_before(grazing.point.at.z).is_none();
+            let within = self.end_before(grazing.point.at.w).is_none();
             within && distance(grazing) <= LONGEST && self.is_ahead(&grazing.point)
         });
         let nearest = ahead.into_iter().min_by(|a, b| distance(&a.0).total_cmp(&distance(&b.0)));
@@ -279,7 +279,7 @@ impl<'a> Walk<'a> {
         let (after, next) = self.on_from(&grazing, beside.other());
         events.extend(after);
         let is_last = next.is_none()
-            && self.ends.iter().any(|end| (grazing.point.at.z - end).abs() <= PAST_A_GRAZING[0]);
+            && self.ends.iter().any(|end| (grazing.point.at.w - end).abs() <= PAST_A_GRAZING[0]);
         Some(Stretch { events, next, is_last })
     }
 
@@ -304,7 +304,7 @@ impl<'a> Walk<'a> {
     fn on_from(&self, grazing: &Grazing, beside: Beside) -> (Events, Option<Directed>) {
         let directed = |distance: f64| {
             let point = grazing.beside(beside, distance)?;
-            let within = self.end_before(point.at.z).is_none();
+            let within = self.end_before(point.at.w).is_none();
             let onward = self.corrector.tangent(&point, &(point.at - grazing.point.at))?;
             within.then_some((point, onward))
         };
@@ -340,7 +340,7 @@ impl<'a> Walk<'a> {
     }
 
     /// Adds a row, with its state at the phase of the rows if known; without an event at a motion met before.
-    fn add(&mut self, event: Option<BranchEvent>, point: &Point, state: Option<State>) {
+    fn add(&mut self, event: Option<BranchEvent>, point: &Point, state: Option<MapState>) {
         let orbit = match state {
             Some(state) => Orbit { state, ..point.orbit.clone() },
             None => {
@@ -371,7 +371,7 @@ impl<'a> Walk<'a> {
         let Some(later) = self.corrector.clear_phase(point, also) else { return };
         let phase = (self.corrector.phase + later).rem_euclid(1.0);
         let Some(orbit) = self.corrector.at_phase(&point.orbit, point.value, phase) else { return };
-        let upwards = Vector3::new(0.0, 0.0, along.z.signum());
+        let upwards = Vector4::w() * along.w.signum();
         let corrector = Corrector { phase, ..self.corrector };
         let next = corrector.correct(corrector.at(orbit.state, point.value), &upwards);
         if let Some(next) = next
@@ -384,14 +384,14 @@ impl<'a> Walk<'a> {
     /// Whether a motion just beyond the present value of the field lasts for its period, wherever it leads.
     fn lasts_beyond(&self) -> bool {
         let (point, along) = &self.at;
-        self.corrector.evaluate(&(point.at + Vector3::z() * along.z.signum() * UNLOCATED)).is_some()
+        self.corrector.evaluate(&(point.at + Vector4::w() * along.w.signum() * UNLOCATED)).is_some()
     }
 
     /// Goes on from the present motion without the mirror condition; false where that finds none.
     fn forgets_its_mirror_image(&mut self) -> bool {
         let (point, along) = &self.at;
         let corrector = Corrector { mirrored: false, ..self.corrector };
-        let upwards = Vector3::new(0.0, 0.0, along.z.signum());
+        let upwards = Vector4::w() * along.w.signum();
         let Some(point) = corrector.correct(point.at, &upwards) else { return false };
         let Some(onward) = corrector.tangent(&point, along) else { return false };
         (self.corrector, self.at) = (corrector, (point, onward));
