@@ -214,6 +214,7 @@ mod tests {
         };
         for other in [Some(-2.0), Some(0.0), Some(3.0)] {
             let mut scene = Document::load("uneven-stops").unwrap().scene;
+            scene.sweep.clear();
             for stops in [uneven(other, Some(opposite(other))), uneven(Some(opposite(other)), other)] {
                 scene.stops = stops;
                 assert!(check(&scene).faults.is_empty(), "{stops:?}");

@@ -28,7 +28,8 @@ fn a_stop_at_0_halves_the_period_of_a_spring() {
         let (w, x) = (draw.between(0.5, 40.0), draw.between(-0.2, 1.5));
         let side = if mirrored { -1.0 } else { 1.0 };
         let (mass_g, v) = (draw.between(1.0, 2000.0), draw.between(0.1, 2.0));
-        let mut s = scene(linear(mass_g / 1e3 * w * w), at(side * x.max(0.0) * 1e3, side * v), 20.0 * PI / w);
+        let mut s =
+            scene(linear(mass_g / 1e3 * w * w), at(side * x.max(0.0) * 1e3 + 0.0, side * v), 20.0 * PI / w);
         s.mass_g = mass_g;
         s.stops = if mirrored { right_stop(0.0, 1.0) } else { left_stop(-0.0, 1.0) };
         let r = model(&s).run(&full(&dense(s.run.duration_s, 700)));
