@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use interwell::scene::Excitation;
-use interwell::study::inspect;
+use interwell::study::{can_cross, inspect};
 
 use super::shard::line;
 use super::support::{load, mechanism};
@@ -59,7 +59,7 @@ fn report(spec: &str, common: &Common) -> Result<String, Failure> {
     let mut text = format!("{}: {}\n", document.name, document.scene.title);
     lines.iter().for_each(|line| text += &format!("  {line}\n"));
     if let Excitation::Sine { .. } = document.scene.excitation
-        && mechanism.landscape.barrier.is_some()
+        && can_cross(&document.scene, &mechanism)
     {
         // the search takes long, so its command is named instead
         let set = common.set.iter().flat_map(|set| ["--set", set]);

@@ -155,6 +155,7 @@ fn why_empty(column: &str, scene: &Alternative, rated: &Rated, given: &str) -> S
         _ if scene.mechanism.landscape.barrier.is_none() => {
             "no barrier between two wells, so nothing to cross"
         }
+        _ if rated.crossing.is_none() => "no barrier stands between its stops, so nothing to cross",
         "crosses_from_hz" | "crosses_to_hz" => {
             return format!("no frequency that was tried makes its settled motion cross at {given} g");
         }

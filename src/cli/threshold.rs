@@ -5,7 +5,7 @@ use interwell::numeric::extent;
 use interwell::output::{ThresholdPicture, can_show_thresholds, threshold_chart};
 use interwell::questions::{Error, Threshold, drive_alone};
 use interwell::scene::Document;
-use interwell::study::{Grid, NoThresholds, Onset, Scan, Table, threshold_table};
+use interwell::study::{Grid, NoThresholds, Onset, Scan, Table, can_cross, threshold_table};
 
 use super::support::{finite, load, mechanism, outputs, pool, until_settled, warn};
 use super::{ChartOptions, Common, Failure, Output, Picture, caption, refuse, with_bar};
@@ -102,7 +102,13 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         NoThresholds::Wrong(cells) => Error::cells_of(&document, cells),
     })?;
     outputs.table(Output::DATA, &table)?;
-    let remarks = [missing(&table, &scan, onset, &grid), undecided(&table)];
+    let fixed = !grid.axes().iter().map(|axis| &axis.field).chain([&scan.field]).any(|field| is_limit(field));
+    let blocked = mechanism.filter(|mechanism| fixed && !can_cross(scene, mechanism));
+    let blocked = blocked.map(|mechanism| match mechanism.landscape.barrier {
+        None => "there is no barrier between two wells",
+        Some(_) => "no barrier lies between the stops",
+    });
+    let remarks = [missing(&table, &scan, onset, &grid, blocked), undecided(&table)];
     remarks.iter().flatten().for_each(|words| common.say(&format!("{name}: {words}")));
     if let Some(picture) = picture {
         let (rows, grid, field) = (&table, &grid, &*scan.field);
@@ -134,11 +140,19 @@ fn undecided(table: &Table) -> Option<String> {
     ))
 }
 
-/// Explains an empty `value`, if a row has one.
-fn missing(table: &Table, scan: &Scan, onset: Onset, grid: &Grid) -> Option<String> {
+/// Whether a field moves a stop or changes the mechanism.
+fn is_limit(field: &str) -> bool {
+    field.starts_with("stops") || field.starts_with("mechanism")
+}
+
+/// Explains an empty `value`, if a row has one. `blocked` says why no row can have a crossing.
+fn missing(table: &Table, scan: &Scan, onset: Onset, grid: &Grid, blocked: Option<&str>) -> Option<String> {
     let values = table.numbers("value")?;
     let count = values.iter().filter(|value| value.is_nan()).count();
     let rows = of_rows(count, values.len(), ["has no value", "have no value"])?;
+    if let Some(why) = blocked.filter(|_| onset != Onset::Release) {
+        return Some(format!("{rows}: {why}, so nothing to cross"));
+    }
     let what = match onset {
         Onset::Release => "releases the mass from a stop",
         Onset::Crossing => "makes the settled motion cross",

@@ -1,5 +1,6 @@
 //! Traps of impacts, rests, releases and breaks, each a test with the name of the trap.
 
+mod anywhere;
 mod bookkeeping;
 mod breaks;
 mod budgets;

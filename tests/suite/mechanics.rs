@@ -9,6 +9,7 @@ mod prototype_table;
 mod reading;
 mod sums;
 mod tables;
+mod transverse;
 
 use interwell::mechanics::{BuildError, ForceCurve, ForceTable, Mechanism, Piece, fit, force_scale};
 use interwell::scene::{self, Files};

@@ -6,6 +6,7 @@
 //! - it is never beyond a rigid stop, its events are ones that a mass can follow, what is counted is what is
 //!   listed, and its ledger closes to the tolerance (`sound`, `runs`);
 //! - its mirror image runs as its mirror image does, bit for bit (`mirror`, `runs`);
+//! - all of this holds between stops at 0, on one side of it, and alone (`anywhere`);
 //! - a stop that is never reached, samples, events, a ledger and threads change no bit (`runs`, `sweep`);
 //! - the determinant of its stroboscopic map is that of damping and impacts (`determinant`);
 //! - it has settled where its states come back or it rests, and impacts are counted alike by every command
@@ -19,6 +20,7 @@
 //! `INTERWELL_PROPERTY_CASES=20` twenty times as many. One that fails is made as simple as it stays failing
 //! and printed as a scene file, with the files that it names and with the seed.
 
+mod anywhere;
 mod bound;
 mod counts;
 mod determinant;

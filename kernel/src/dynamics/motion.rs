@@ -66,7 +66,7 @@ impl<'a, T: Scalar, D: Drive<T>> Motion<'a, T, D> {
     ) -> Self {
         let unit = equation.unit;
         let (x, v) = (T::of(model.start.0), T::of(model.start.1 * unit));
-        let mode = equation.mode_at(x, model.mechanism.curve.piece_index(model.start.0));
+        let mode = equation.mode_at(x, model.piece_index(model.start.0));
         let contact = if model.motionless { Contact::Motionless } else { Contact::Free };
         let settings = Settings::new(model, unit, tolerance);
         let mut record = Recorder::new(model, (clock, drive), unit, settings.order, request, (x, v));
@@ -103,7 +103,7 @@ impl<'a, T: Scalar, D: Drive<T>> Motion<'a, T, D> {
     /// Puts the mass, in free flight, at a displacement and a velocity at this instant, with this state of the
     /// circuit.
     pub fn put(&mut self, [x, v, circuit]: [T; 3], at: Instant<T>) {
-        let piece = self.record.model.mechanism.curve.piece_index(x.to_f64());
+        let piece = self.record.model.piece_index(x.to_f64());
         let mode = self.stepper.equation.mode_at(x, piece);
         self.state = MotionState { at, circuit, ..MotionState::new((x, v), mode, Contact::Free) };
         self.record.barrier_side = self.record.barrier.map_or(0, |barrier| side_of(x, barrier));

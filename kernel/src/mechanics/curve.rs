@@ -219,6 +219,11 @@ impl ForceCurve {
         }
     }
 
+    /// Index of the piece that contains `x`; on a break, the one to its right or left.
+    pub(crate) fn piece_beside(&self, x: f64, right: bool) -> usize {
+        self.breaks.partition_point(|b| *b < x || (right && *b == x))
+    }
+
     /// Force dV/dx at `x` in N, for `x` in m inside the domain; beyond it, NaN.
     pub fn force(&self, x: f64) -> f64 {
         self.inside(x).map_or(f64::NAN, |p| p.force(x))

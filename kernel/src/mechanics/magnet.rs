@@ -1,12 +1,19 @@
 //! Force between two dipole magnets that pass each other, in closed form and as a piecewise polynomial.
 //!
-//! The magnets face each other at x = 0 across the gap g and are magnetised along the line that joins them
-//! there; one moves with the mass, perpendicular to that line. As point dipoles with parallel moments they
-//! have the energy U = K (1/r^3 - 3 g^2/r^5) with r^2 = x^2 + g^2 (Griffiths 1999, "Introduction to
-//! Electrodynamics", third edition, equation 6.35), where K = mu_0 m_1 m_2/(4 pi) is the strength. The
-//! force dU/dx that holds the mass is F = 3 K x (4 g^2 - x^2)/r^7, with the stiffness 12 K/g^5 at x = 0 and
-//! zeros at x = +-2 g. The magnets attract each other at x = 0 for K above 0 and repel each other for K
-//! below 0 (antiparallel moments).
+//! The magnets stand beside each other at x = 0, the gap g apart; one moves with the mass, perpendicular to
+//! the line that joins them there. Two point dipoles at the distance r along the unit vector n have the energy
+//! U = mu_0/(4 pi) (m_1 m_2 - 3 (n m_1) (n m_2))/r^3 with scalar products of the moments (Griffiths 1999,
+//! "Introduction to Electrodynamics", third edition, equation 6.35; Jackson 1999, "Classical Electrodynamics",
+//! third edition, equation 4.26 for electric ones). Here r^2 = x^2 + g^2, and the strength
+//! K = mu_0 m_1 m_2/(4 pi) is above 0 for parallel and below 0 for antiparallel moments. The force that holds
+//! the mass is F = dU/dx:
+//!
+//! - moments along the line that joins the magnets at x = 0 ([`Moments::Facing`]): U = K (1/r^3 - 3 g^2/r^5),
+//!   F = 3 K x (4 g^2 - x^2)/r^7, with the stiffness 12 K/g^5 at x = 0 and zeros at x = +-2 g. Parallel ones
+//!   attract each other at x = 0;
+//! - moments perpendicular to that line and to the motion, so that n m = 0 ([`Moments::Transverse`]):
+//!   U = K/r^3, F = -3 K x/r^5, with the stiffness -3 K/g^5 at x = 0 and no other zero. Parallel ones repel
+//!   each other everywhere (Cottone, Vocca and Gammaitoni 2009, "Nonlinear energy harvesting").
 //!
 //! The size of the magnets is neglected: magnets longer or wider than the gap are weaker than their dipoles.
 
@@ -15,8 +22,9 @@ use std::sync::OnceLock;
 use super::curve::{FitReport, ForceCurve, Piece};
 use super::fit::{allowed_error, fit_within};
 use super::table::ForceTable;
+use crate::scene::Moments;
 
-/// Half the length of the curve's domain in gaps; the force beyond is at most 1e-8 of its maximum.
+/// Half the length of the curve's domain in gaps; the force beyond is at most 4e-8 of its maximum.
 const REACH: f64 = 100.0;
 
 /// Allowed error of the pieces relative to the largest force, up to the last extremum of the force.
@@ -38,18 +46,40 @@ const CHECKS_PER_SAMPLE: usize = 16;
 /// piece, and each is sampled by tens of checks.
 const CHECK_MARGIN: f64 = 1.01;
 
-/// F in units of K/g^4 at x = u g.
-fn unit_force(u: f64) -> f64 {
+/// F in units of K/g^4 at x = u g for facing moments.
+fn facing_force(u: f64) -> f64 {
     let squared = u * u + 1.0;
     3.0 * u * (4.0 - u * u) / (squared.powi(3) * squared.sqrt())
 }
 
-/// Force dU/dx in N at `x` in m of a magnet of `strength` in N m^4 at a `gap` in m.
-pub fn magnet_force(strength: f64, gap: f64, x: f64) -> f64 {
-    strength / gap.powi(4) * unit_force(x / gap)
+/// F in units of K/g^4 at x = u g for transverse moments.
+fn transverse_force(u: f64) -> f64 {
+    let squared = u * u + 1.0;
+    -3.0 * u / (squared * squared * squared.sqrt())
 }
 
-/// Energy in J at `x` in m over that at x = 0, of a magnet of `strength` in N m^4 at a `gap` in m.
+/// Force dU/dx in N at `x` in m of a magnet with facing moments, of `strength` in N m^4 at a `gap` in m.
+pub fn magnet_force(strength: f64, gap: f64, x: f64) -> f64 {
+    strength / gap.powi(4) * facing_force(x / gap)
+}
+
+/// Force dU/dx in N at `x` in m of a magnet with transverse moments, of `strength` in N m^4 at a `gap` in m.
+pub fn transverse_magnet_force(strength: f64, gap: f64, x: f64) -> f64 {
+    strength / gap.powi(4) * transverse_force(x / gap)
+}
+
+/// Energy in J at `x` in m over that at x = 0, of a magnet with transverse moments, of `strength` in N m^4 at
+/// a `gap` in m.
+pub fn transverse_magnet_potential(strength: f64, gap: f64, x: f64) -> f64 {
+    // 1/r^3 - 1 without cancellation: with s = r^2 - 1 and p = r^3 it is -(p - 1)/p, and
+    // p - 1 = ((1 + s)^3 - 1)/(p + 1)
+    let s = (x / gap).powi(2);
+    let p = (1.0 + s) * (1.0 + s).sqrt();
+    strength / gap.powi(3) * (-(s * (3.0 + s * (3.0 + s))) / ((p + 1.0) * p))
+}
+
+/// Energy in J at `x` in m over that at x = 0, of a magnet with facing moments, of `strength` in N m^4 at a
+/// `gap` in m.
 pub fn magnet_potential(strength: f64, gap: f64, x: f64) -> f64 {
     // 1/r^3 - 3/r^5 + 2 without cancellation: with s = r^2 - 1 and p = r^5 it is (s - 2 + 2 p)/p, and
     // 2 p - 2 = 2 ((1 + s)^5 - 1)/(p + 1)
@@ -60,9 +90,16 @@ pub fn magnet_potential(strength: f64, gap: f64, x: f64) -> f64 {
 }
 
 /// The curve for strength 1 and gap 1, computed once. Its report has the error in the same units.
-fn unit_curve() -> Result<&'static ForceCurve, String> {
-    static UNIT: OnceLock<Result<ForceCurve, String>> = OnceLock::new();
-    UNIT.get_or_init(|| {
+fn unit_curve(moments: Moments) -> Result<&'static ForceCurve, String> {
+    type Unit = OnceLock<Result<ForceCurve, String>>;
+    static UNITS: [Unit; 2] = [OnceLock::new(), OnceLock::new()];
+    // the square of the last extremum of the force in gaps is a root of 4 s^2 - 27 s + 4 for facing moments,
+    // and 1/4 for transverse ones
+    let (unit, unit_force, last_extremum): (_, fn(f64) -> f64, f64) = match moments {
+        Moments::Facing => (&UNITS[0], facing_force, ((27.0 + 665_f64.sqrt()) / 8.0).sqrt()),
+        Moments::Transverse => (&UNITS[1], transverse_force, 0.5),
+    };
+    unit.get_or_init(|| {
         let last = SAMPLES as f64 - 1.0;
         let place = |i: f64| {
             let s: f64 = (2.0 * i - last) / last;
@@ -71,10 +108,9 @@ fn unit_curve() -> Result<&'static ForceCurve, String> {
         let x: Vec<f64> = (0..SAMPLES).map(|i| place(i as f64)).collect();
         let force = x.iter().map(|u| unit_force(*u)).collect();
         let table = ForceTable { x, force };
-        // the square of the last extremum of the force in gaps is a root of 4 s^2 - 27 s + 4
-        let last = ((27.0 + 665_f64.sqrt()) / 8.0).sqrt();
         let near = allowed_error(&table, TOLERANCE);
-        let falloff = |u: &f64| if u.abs() > last { unit_force(*u) / unit_force(last) } else { 1.0 };
+        let largest = unit_force(last_extremum);
+        let falloff = |u: &f64| if u.abs() > last_extremum { unit_force(*u) / largest } else { 1.0 };
         let allowed: Vec<f64> = table.x.iter().map(|u| near * falloff(u).abs()).collect();
         let curve = fit_within(&table, &allowed, &[DEGREE], None)?;
         let checks = CHECKS_PER_SAMPLE * (SAMPLES - 1);
@@ -100,11 +136,11 @@ fn unit_curve() -> Result<&'static ForceCurve, String> {
 /// report has the largest error against the closed form. The force is 0 everywhere for a strength of 0.
 ///
 /// The error, if the numbers leave the range of double precision, is a sentence.
-pub fn magnet(strength: f64, gap: f64) -> Result<ForceCurve, String> {
+pub fn magnet(moments: Moments, strength: f64, gap: f64) -> Result<ForceCurve, String> {
     if strength == 0.0 {
         return Ok(ForceCurve::polynomial(&[0.0]));
     }
-    let unit = unit_curve()?;
+    let unit = unit_curve(moments)?;
     let scale = strength / gap.powi(4);
     let scaled = |piece: &Piece| {
         let mut factor = scale;

@@ -44,7 +44,7 @@ pub use flexure::{FlexureError, Flexures};
 pub use function::FunctionError;
 pub use hertz::{ContactMaterial, Hertz};
 pub use landscape::{Barrier, Equilibrium, ForceExtremum, Kink, KinkAtWell, Landscape, Well};
-pub use magnet::{magnet_force, magnet_potential};
+pub use magnet::{magnet_force, magnet_potential, transverse_magnet_force, transverse_magnet_potential};
 pub use table::{ForceTable, MAX_POINTS, MIN_POINTS, TableError};
 
 use std::sync::Arc;
@@ -52,7 +52,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use self::fit::fit_cancellable;
 use self::flexure::{Geometry, Group};
-use crate::scene::{self, Fault, Files, FlexureGroup};
+use crate::scene::{self, Fault, Files, FlexureGroup, Moments};
 
 /// A mechanism in SI units: its force curve and what follows from it.
 #[derive(Debug, Clone, PartialEq)]
@@ -78,12 +78,15 @@ pub enum Element {
         /// In N/m.
         stiffness: f64,
     },
-    /// Two dipole magnets that face each other at x = 0.
+    /// Two dipole magnets beside each other at x = 0.
     Magnets {
-        /// In N m^4; above 0 they attract each other at x = 0.
+        /// In N m^4; above 0 for parallel moments, which attract each other at x = 0 if they are facing and
+        /// repel each other if they are transverse.
         strength: f64,
         /// In m.
         gap: f64,
+        /// Direction of both moments.
+        moments: Moments,
     },
 }
 
@@ -199,12 +202,13 @@ impl Mechanism {
                 let element = Some(Element::Spring { stiffness: *n_per_m });
                 Ok(Self { element, ..Self::new(ForceCurve::polynomial(&[0.0, *n_per_m])) })
             }
-            scene::Mechanism::Magnet { strength_n_mm4, gap_mm } => {
+            scene::Mechanism::Magnet { strength_n_mm4, gap_mm, moments } => {
                 let (strength, gap) = (strength_n_mm4 * 1e-12, gap_mm / 1e3);
                 let value = strength_n_mm4.to_string();
                 let fault = |problem: String| Fault::new("mechanism.strength_n_mm4", value, problem);
-                let curve = magnet::magnet(strength, gap).map_err(fault)?;
-                Ok(Self { element: Some(Element::Magnets { strength, gap }), ..Self::new(curve) })
+                let curve = magnet::magnet(*moments, strength, gap).map_err(fault)?;
+                let element = Some(Element::Magnets { strength, gap, moments: *moments });
+                Ok(Self { element, ..Self::new(curve) })
             }
             scene::Mechanism::Sum(parts) => {
                 let part = |(index, part): (usize, &scene::Mechanism)| {

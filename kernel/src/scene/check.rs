@@ -23,6 +23,10 @@ const MAX_SINES: u64 = 16_384;
 /// Largest number of parts of a sum of mechanisms, since flexures are solved one by one.
 const MAX_PARTS: usize = 16;
 
+/// Smallest room between two stops on one side of x = 0, relative to the distance of the farther one: in a
+/// smaller room displacements have too few digits.
+const ROOM_OVER_DISTANCE: f64 = 1e-6;
+
 /// Result of a check.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Checked {
@@ -129,6 +133,20 @@ fn stops(field: &str, stops: &Stops, checked: &mut Checked) {
     let Stops::Uneven { left_mm, right_mm, restitution_left, restitution_right } = stops else {
         return hertz(field, stops, checked);
     };
+    if let (Some(left), Some(right)) = (*left_mm, *right_mm)
+        && !(left + right >= ROOM_OVER_DISTANCE * left.abs().max(right.abs()) && left + right > 0.0)
+        && !["left_mm", "right_mm"].iter().any(|name| has_fault(&format!("{field}.{name}"), checked))
+    {
+        let problem = format!(
+            "the right stop, at {} mm, must stand right of the left one, at {} mm ({field}.left_mm = {}); \
+             both count from x = 0, right_mm to the right and left_mm to the left; leave a room of at least \
+             {ROOM_OVER_DISTANCE:e} of the farther distance",
+            number_text(right),
+            number_text(0.0 - left),
+            number_text(left)
+        );
+        checked.fault(format!("{field}.right_mm"), number_text(right), problem);
+    }
     if left_mm.is_none() && right_mm.is_none() {
         checked.fault(field, "Uneven()", "give left_mm, right_mm or both; `stops: None` is no stops");
     } else if restitution_left.is_none() && restitution_right.is_none() {
@@ -225,10 +243,11 @@ pub(super) fn has_fault(field: &str, checked: &Checked) -> bool {
 /// Checks relations between two fields, unless one of them is already outside its range.
 fn relations(scene: &Scene, checked: &mut Checked) {
     if let Start::At { x_mm, .. } = scene.start {
-        let [left, right] = scene.stops.limits_mm().map(|mm| mm.unwrap_or(f64::INFINITY));
+        let [left, right] = scene.stops.positions_mm();
+        let (left, right) = (left.unwrap_or(f64::NEG_INFINITY), right.unwrap_or(f64::INFINITY));
         let bad_stop = checked.faults.iter().any(|fault| fault.field.starts_with("stops"));
-        if (x_mm > right || x_mm < -left) && !bad_stop && !has_fault("start.x_mm", checked) {
-            let (side, at) = if x_mm > right { ("right", right) } else { ("left", -left) };
+        if (x_mm > right || x_mm < left) && !bad_stop && !has_fault("start.x_mm", checked) {
+            let (side, at) = if x_mm > right { ("right", right) } else { ("left", left) };
             let field = match scene.stops {
                 Stops::Uneven { .. } => format!("stops.{side}_mm"),
                 _ => "stops.travel_limit_mm".to_owned(),

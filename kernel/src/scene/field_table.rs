@@ -163,6 +163,7 @@ const fn is_equal(a: &[u8], b: &[u8]) -> bool {
 }
 
 const POSITIVE: (f64, f64) = (1e-15, 1e15);
+const PLACE: (f64, f64) = (-1e15, 1e15);
 const MODULUS: (f64, f64) = (1e-60, 1e60);
 const COEFFICIENT: (f64, f64) = (-1e200, 1e200);
 const ACCELERATION: (f64, f64) = (-1e30, 1e30);
@@ -178,6 +179,7 @@ const TYPED_HZ: (f64, f64) = (1e-2, 1e5);
 const TYPED_BAND: (f64, f64) = (0.0, 1e5);
 const TYPED_LENGTH: (f64, f64) = (1e-3, 1e4);
 const TYPED_LIMIT: (f64, f64) = (1e-3, 1e6);
+const TYPED_PLACE: (f64, f64) = (-1e6, 1e6);
 const TYPED_SECONDS: (f64, f64) = (0.01, 1e6);
 const TYPED_COUPLING: (f64, f64) = (-1e6, 1e6);
 
@@ -273,13 +275,13 @@ pub const FIELDS: &[FieldInfo] = &[
              in.")
         .axis(38),
     field("mechanism.strength_n_mm4", (-1e60, 1e60),
-            "give the strength in N mm^4, such as 2000; below 0 the magnets repel, 0 is no magnet")
+            "give the strength in N mm^4, such as 2000; below 0 for antiparallel moments, 0 is no magnet")
         .control("strength of the magnets", ((-2e3, 2e3, 1.0), Scale::Value), (-1e9, 1e9),
-            "Increase: the magnets attract each other more where they face each other: the barrier gets \
-             lower. Below 0 they repel each other, and it gets higher.")
+            "Increase: facing magnets attract each other more at x = 0: the barrier gets lower. Below 0 they \
+             repel each other, and it gets higher. Transverse ones do the opposite.")
         .axis(39),
     field("mechanism.gap_mm", POSITIVE,
-            "give the distance of the magnets where they face each other in mm, such as 5")
+            "give the distance of the magnets at x = 0 in mm, such as 5")
         .control("gap of the magnets", ((0.5, 20.0, 0.1), Scale::Value), TYPED_LENGTH,
             "Increase: the magnets are further apart. Their force falls with the fourth power of it and \
              reaches further to both sides.")
@@ -294,14 +296,14 @@ pub const FIELDS: &[FieldInfo] = &[
         .control("travel limit ±", STOP, TYPED_LIMIT, LIMIT_HOVER).axis(1),
     field("stops.restitution", SHARE, REBOUND_REMEDY)
         .control("restitution", ZERO_TO_ONE, SHARE, REBOUND_HOVER).axis(4),
-    field("stops.left_mm", POSITIVE,
-            "give the distance of the left stop from x = 0 as a positive number in mm, or leave it out for \
-             an open side")
-        .control("left", STOP, TYPED_LIMIT, LIMIT_HOVER).axis(8),
-    field("stops.right_mm", POSITIVE,
-            "give the distance of the right stop from x = 0 as a positive number in mm, or leave it out for \
-             an open side")
-        .control("right", STOP, TYPED_LIMIT, LIMIT_HOVER).axis(9),
+    field("stops.left_mm", PLACE,
+            "give how far left of x = 0 the left stop stands in mm, below 0 for one right of it, or leave it \
+             out for an open side")
+        .control("left", STOP, TYPED_PLACE, LIMIT_HOVER).axis(8),
+    field("stops.right_mm", PLACE,
+            "give how far right of x = 0 the right stop stands in mm, below 0 for one left of it, or leave it \
+             out for an open side")
+        .control("right", STOP, TYPED_PLACE, LIMIT_HOVER).axis(9),
     field("stops.restitution_left", SHARE, REBOUND_REMEDY)
         .control("left restitution", ZERO_TO_ONE, SHARE, REBOUND_HOVER).axis(10),
     field("stops.restitution_right", SHARE, REBOUND_REMEDY)
@@ -384,7 +386,7 @@ pub const FIELDS: &[FieldInfo] = &[
         .whole().named("seed").axis(41),
     field("excitation.lines", (1.0, 4096.0), "256 sines look like noise for some minutes")
         .whole().named("lines of the noise"),
-    field("start.x_mm", (-1e15, 1e15), "give a displacement in mm")
+    field("start.x_mm", PLACE, "give a displacement in mm")
         .control("start, displacement", ((-8.0, 8.0, 0.05), Scale::Value), (-1e6, 1e6),
             "Increase: the mass begins further to the right. The motion begins again."),
     field("start.v_m_per_s", (-1e30, 1e30), "give a velocity in m/s")

@@ -83,14 +83,16 @@ pub enum Mechanism {
         /// Stiffness in N/m, -1e200 to 1e200.
         n_per_m: f64,
     },
-    /// Two axially magnetised dipole magnets, one of them on the mass, that face each other across a gap at
-    /// x = 0.
+    /// Two dipole magnets with a gap between them at x = 0, one of them on the mass.
     Magnet {
-        /// mu_0 m_1 m_2/(4 pi) of the two moments in N mm^4, -1e60 to 1e60; above 0 they attract each other
-        /// at x = 0, below 0 they repel.
+        /// mu_0 m_1 m_2/(4 pi) of the two moments in N mm^4, -1e60 to 1e60, above 0 for parallel ones. Those
+        /// attract each other at x = 0 if they are facing and repel each other if they are transverse.
         strength_n_mm4: f64,
         /// Distance of the two dipoles at x = 0 in mm, 1e-15 to 1e15.
         gap_mm: f64,
+        /// Direction of both moments; left out, facing.
+        #[serde(default, skip_serializing_if = "is_default")]
+        moments: Moments,
     },
     /// Forces in parallel on the same mass: 1 to 16 parts, none of them a sum.
     Sum(Vec<Mechanism>),
@@ -105,6 +107,16 @@ impl Mechanism {
             _ => Vec::new(),
         }
     }
+}
+
+/// Direction of the moments of two magnets.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Moments {
+    /// Along the line that joins the magnets at x = 0, so that poles face each other there.
+    #[default]
+    Facing,
+    /// Perpendicular to that line and to the motion.
+    Transverse,
 }
 
 /// One polynomial of a piecewise force: F = c0 + c1 (x - origin) + c2 (x - origin)^2 + ...
@@ -128,6 +140,10 @@ pub struct FlexureGroup {
     pub length_mm: f64,
     /// Width of each in mm, 1e-15 to 1e15.
     pub width_mm: f64,
+}
+
+fn is_default(moments: &Moments) -> bool {
+    *moments == Moments::default()
 }
 
 fn default_poisson() -> f64 {

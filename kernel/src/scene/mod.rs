@@ -73,7 +73,7 @@ pub use measured::{
     Channel, ChosenColumn, ColumnOptions, ColumnRequest, MAX_MEASURED_BYTES, MAX_MEASURED_ROWS, Measured,
     MeasuredError, MeasuredText, read_measured,
 };
-pub use mechanism::{FlexureGroup, ForcePiece, Mechanism};
+pub use mechanism::{FlexureGroup, ForcePiece, Mechanism, Moments};
 pub use periodic::{DriveError, PeriodicDrive};
 pub use presets::{EmbeddedTable, PRESETS, Preset, TABLES, export};
 pub use record::{Record, read_record};

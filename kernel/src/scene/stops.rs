@@ -16,12 +16,13 @@ pub enum Stops {
         /// Coefficient of restitution, 0 to 1.
         restitution: f64,
     },
-    /// Rigid stops that differ; a side left out is open.
+    /// Rigid stops anywhere; a side left out is open. A distance of 0 is a stop at x = 0, and one below 0 is a
+    /// stop beyond it: `left_mm: -1, right_mm: 3` are stops at 1 and at 3 mm.
     Uneven {
-        /// Distance of the left stop from x = 0 in mm, 1e-15 to 1e15.
+        /// Distance of the left stop from x = 0 to the left in mm, -1e15 to 1e15.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         left_mm: Option<f64>,
-        /// Distance of the right stop from x = 0 in mm, 1e-15 to 1e15.
+        /// Distance of the right stop from x = 0 to the right in mm, -1e15 to 1e15.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         right_mm: Option<f64>,
         /// Restitution of the left stop, 0 to 1; left out, that of the right stop.
@@ -60,7 +61,8 @@ pub enum Stops {
 }
 
 impl Stops {
-    /// Distances of the left and the right stop from x = 0 in mm; `None` for an open side.
+    /// Distances of the left and the right stop from x = 0 in mm, each towards its side; `None` for an open
+    /// side.
     pub fn limits_mm(&self) -> [Option<f64>; 2] {
         match *self {
             Self::None => [None; 2],
@@ -69,6 +71,13 @@ impl Stops {
             }
             Self::Uneven { left_mm, right_mm, .. } => [left_mm, right_mm],
         }
+    }
+
+    /// Displacements of the left and the right stop in mm; `None` for an open side.
+    pub fn positions_mm(&self) -> [Option<f64>; 2] {
+        let [left, right] = self.limits_mm();
+        // the sum with 0 makes a 0 of -0
+        [left.map(|mm| 0.0 - mm), right.map(|mm| mm + 0.0)]
     }
 
     /// The distance in mm of both stops, if they have one common field.

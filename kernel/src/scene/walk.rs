@@ -211,7 +211,7 @@ fields! {
         Self::Pieces { ends_m as leaf, pieces as leaf, error_n }
         Self::Table { path as text, tolerance }
         Self::Linear { n_per_m }
-        Self::Magnet { strength_n_mm4, gap_mm }
+        Self::Magnet { strength_n_mm4, gap_mm, moments as leaf }
         ; Self::Sum [parts as inside]
     }
     // the buckling flexures have the same ranges

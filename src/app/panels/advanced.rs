@@ -133,7 +133,7 @@ fn uneven_ui(ui: &mut Ui, session: &mut Session, width: f32) {
         if response.on_disabled_hover_text(why).changed() {
             session.edit_once(|scene| {
                 if let Stops::Uneven { left_mm, right_mm, .. } = &mut scene.stops {
-                    *(if right { right_mm } else { left_mm }) = exists.then_some(other.unwrap_or(1.5));
+                    *(if right { right_mm } else { left_mm }) = exists.then(|| opposite(other));
                 }
             });
         }
@@ -142,17 +142,26 @@ fn uneven_ui(ui: &mut Ui, session: &mut Session, width: f32) {
 }
 
 /// Converts equal stops to stops that may differ, or back: then both take the numbers of the right stop, or
-/// of the left one if the right side is open.
+/// of the left one if the right side is open or its stop does not stand right of x = 0.
 fn other_kind(stops: Stops) -> Stops {
     let ([left_mm, right_mm], [restitution_left, restitution_right]) =
         (stops.limits_mm(), stops.restitutions());
     match stops {
         Stops::Rigid { .. } => Stops::Uneven { left_mm, right_mm, restitution_left, restitution_right },
         Stops::Uneven { .. } => Stops::Rigid {
-            travel_limit_mm: right_mm.or(left_mm).unwrap_or(1.5),
+            travel_limit_mm: right_mm.into_iter().chain(left_mm).find(|mm| *mm > 0.0).unwrap_or(1.5),
             restitution: restitution_right.unwrap_or(0.36),
         },
         Stops::None | Stops::Hertz { .. } => stops,
+    }
+}
+
+/// The distance in mm from x = 0 of a stop that comes opposite a stop at this distance on the other side.
+fn opposite(other_mm: Option<f64>) -> f64 {
+    match other_mm {
+        Some(mm) if mm > 0.0 => mm,
+        Some(mm) if mm < 0.0 => -2.0 * mm,
+        _ => 1.5,
     }
 }
 
@@ -197,5 +206,21 @@ mod tests {
         let stops = Stops::Rigid { travel_limit_mm: 2.0, restitution: 0.4 };
         assert_eq!(other_kind(other_kind(stops)), stops);
         assert_eq!(other_kind(Stops::None), Stops::None);
+        let uneven = |left_mm, right_mm| Stops::Uneven {
+            left_mm,
+            right_mm,
+            restitution_left: Some(0.5),
+            restitution_right: Some(0.4),
+        };
+        for other in [Some(-2.0), Some(0.0), Some(3.0)] {
+            let mut scene = Document::load("uneven-stops").unwrap().scene;
+            scene.sweep.clear();
+            for stops in [uneven(other, Some(opposite(other))), uneven(Some(opposite(other)), other)] {
+                scene.stops = stops;
+                assert!(check(&scene).faults.is_empty(), "{stops:?}");
+                scene.stops = other_kind(stops);
+                assert!(check(&scene).faults.is_empty(), "{stops:?}");
+            }
+        }
     }
 }

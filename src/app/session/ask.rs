@@ -143,7 +143,7 @@ impl Session {
     fn can_search(&self) -> bool {
         self.fault.is_none()
             && matches!(self.built.excitation, Excitation::Sine { .. })
-            && self.mechanism.landscape.barrier.is_some()
+            && study::can_cross(&self.built, &self.mechanism)
     }
 }
 

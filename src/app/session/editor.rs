@@ -225,8 +225,8 @@ fn text_of(scene: &Scene) -> Result<String, String> {
 
 /// Moves a start that lies beyond a stop to that stop.
 pub(in crate::app) fn keep_start_inside(scene: &mut Scene) {
-    let [left, right] = scene.stops.limits_mm();
-    let (left, right) = (left.map_or(f64::NEG_INFINITY, |mm| -mm), right.unwrap_or(f64::INFINITY));
+    let [left, right] = scene.stops.positions_mm();
+    let (left, right) = (left.unwrap_or(f64::NEG_INFINITY), right.unwrap_or(f64::INFINITY));
     if let Start::At { x_mm, .. } = &mut scene.start {
         if *x_mm > right {
             *x_mm = right;

@@ -43,9 +43,9 @@ pub fn reach(control: &Control, session: &Session) -> Reach {
 fn travel(session: &Session) -> Reach {
     let (saved, limits) = (session.editor.saved(), [session.remembered_stops(), session.scene().stops]);
     let well = session.opened.well_mm;
-    let furthest = |stops: &Stops| stops.limits_mm().into_iter().flatten().reduce(f64::max);
+    let furthest = |stops: &Stops| stops.limits_mm().into_iter().flatten().map(f64::abs).reduce(f64::max);
     let stops = || furthest(&saved.stops).or_else(|| limits.iter().find_map(furthest));
-    let size = well.filter(|mm| *mm > 0.0).or_else(stops).unwrap_or(10.0);
+    let size = well.filter(|mm| *mm > 0.0).or_else(stops).filter(|mm| *mm > 0.0).unwrap_or(10.0);
     let step = below(size / 130.0);
     Reach::even(2.0 * step, (0.6 * size / step).round() * 2.0 * step, step)
 }

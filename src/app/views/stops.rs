@@ -8,6 +8,7 @@ use crate::app::ui::style::GRAB;
 use crate::app::ui::widgets::arrows;
 use crate::app::words::fields::info;
 use crate::app::words::numbers::{decimal, decimals, shown};
+use crate::scene::Stops;
 
 use super::ViewContext;
 use super::context::Drawn;
@@ -30,8 +31,7 @@ fn shown_stops(session: &Session, drawn: Drawn) -> ([Option<f64>; 2], bool) {
         let (left, right) = drawn.model(session).stop_positions();
         return ([left, right].map(|stop| stop.map(|stop| stop * 1e3)), false);
     }
-    let [left, right] = session.scene().stops.limits_mm();
-    let present = [left.map(|mm| -mm), right];
+    let present = session.scene().stops.positions_mm();
     if !session.player.is_past() {
         return (present, true);
     }
@@ -65,7 +65,16 @@ pub fn stops_ui(
     let step = key_step(context.session);
     let fine = FINE * step;
     let words = |mm: f64| format!("{} mm", shown(mm, decimals(fine)));
-    for (mm, side) in stops.into_iter().zip([-1.0_f32, 1.0]) {
+    // the nearest to x = 0 that a stop may come; unequal ones may pass it up to the other stop
+    let nearest = |side: f32| match (context.session.scene().stops, stops) {
+        (Stops::Uneven { .. }, [left, right]) => {
+            let other = if side < 0.0 { right.map(|mm| -mm) } else { left };
+            other.map_or(f64::NEG_INFINITY, |other| decimal(other + step))
+        }
+        _ => step,
+    };
+    let nearest = [nearest(-1.0), nearest(1.0)];
+    for ((mm, side), nearest) in stops.into_iter().zip([-1.0_f32, 1.0]).zip(nearest) {
         let Some(mm) = mm else { continue };
         let x = context.span.screen_from_world(mm / 1e3, rect) + side * radius;
         let wall = Rect::from_two_pos(pos2(x, top), pos2(x + side * WALL, bottom));
@@ -100,7 +109,7 @@ pub fn stops_ui(
         if let Some(pointer) = response.interact_pointer_pos().filter(|_| response.dragged()) {
             let place = context.span.world_from_screen(pointer.x - side * (radius + 0.5 * WALL), rect) * 1e3;
             // 0.01 mm for the prototype, which is finer than a hand
-            let distance = decimal((f64::from(side) * place / fine).round() * fine).max(step);
+            let distance = decimal((f64::from(side) * place / fine).round() * fine).max(nearest) + 0.0;
             context.session.edit(|scene| scene.stops.set_limit(side > 0.0, distance));
             let text = words(distance);
             let align = if side > 0.0 { egui::Align2::LEFT_TOP } else { egui::Align2::RIGHT_TOP };
@@ -112,7 +121,8 @@ pub fn stops_ui(
             ui.painter().rect_stroke(wall.expand(3.0), 2.0, stroke, egui::StrokeKind::Outside);
             let moved = arrows(ui, response.id) * f64::from(side);
             if moved != 0.0 {
-                let distance = decimal(((mm.abs() / step).round() + moved) * step).max(step);
+                let from = (f64::from(side) * mm / step).round();
+                let distance = decimal((from + moved) * step).max(nearest) + 0.0;
                 context.session.press(name, ui.input(|input| input.time));
                 context.session.edit(|scene| scene.stops.set_limit(side > 0.0, distance));
             }

@@ -1,5 +1,7 @@
 //! Table of scenes and of what their motions settle to, a column each: for Before / now and for Compare.
 
+use std::cmp::Ordering;
+
 use eframe::egui::{FontId, Grid, Label, RichText, Sense, TextStyle, Ui, Vec2};
 
 use crate::app::session::Card;
@@ -319,9 +321,8 @@ fn difference(value: f64, present: f64, decimals: &dyn Fn(f64) -> usize) -> Stri
 
 /// The reach in mm, on its side of the stops.
 fn reach_mm(card: &Card, run: &Summary) -> Option<String> {
-    let [left, right] = card.scene.stops.limits_mm();
-    let stops = (left.map(|mm| -mm * 1e-3), right.map(|mm| mm * 1e-3));
-    run.max_abs_x.map(|reach| mm_beside(reach, stops))
+    let stops = card.scene.stops.positions_mm().map(|stop| stop.map(|mm| mm * 1e-3));
+    run.max_abs_x.map(|reach| mm_beside(reach, stops.into()))
 }
 
 /// Whether the row of the shaking contains this number.
@@ -360,13 +361,18 @@ pub(super) fn shaking(scene: &Scene) -> String {
 
 pub(super) fn stops(scene: &Scene) -> String {
     let (stops, mm) = (&scene.stops, |value: f64| format!("{} mm", shown(value, decimals_for(value).min(2))));
-    let side =
-        |stop: Option<f64>, sign: &str| stop.map_or("open".to_owned(), |stop| format!("{sign}{}", mm(stop)));
-    match (stops.travel_limit_mm(), stops.limits_mm()) {
+    let side = |stop: Option<f64>| {
+        stop.map_or("open".to_owned(), |at| match at.total_cmp(&0.0) {
+            Ordering::Less => format!("\u{2212}{}", mm(-at)),
+            Ordering::Equal => mm(at),
+            Ordering::Greater => format!("+{}", mm(at)),
+        })
+    };
+    match (stops.travel_limit_mm(), stops.positions_mm()) {
         (Some(limit), _) if stops.restitutions() == [None; 2] => format!("±{}, compliant", mm(limit)),
         (Some(limit), _) => format!("±{}", mm(limit)),
         (None, [None, None]) => "none".to_owned(),
-        (None, [left, right]) => format!("{}, {}", side(left, "\u{2212}"), side(right, "+")),
+        (None, [left, right]) => format!("{}, {}", side(left), side(right)),
     }
 }
 

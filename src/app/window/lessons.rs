@@ -238,10 +238,9 @@ impl Window {
         self.memory.covered = lesson.filter(|open| open.keeps_back(&name)).map(|_| curve);
         let covering = lesson.filter(|open| open.is_covering());
         self.memory.question = covering.and_then(|open| question(open.step().text()));
-        let present = self.session.scene().stops.limits_mm();
-        let asked = lesson.and_then(OpenLesson::asked).map(|scene| scene.stops.limits_mm());
-        let [left, right] = asked.filter(|asked| *asked != present).unwrap_or_default();
-        self.memory.asked_stops = [left.map(|mm| -mm), right];
+        let present = self.session.scene().stops.positions_mm();
+        let asked = lesson.and_then(OpenLesson::asked).map(|scene| scene.stops.positions_mm());
+        self.memory.asked_stops = asked.filter(|asked| *asked != present).unwrap_or_default();
         self.memory.starts = lesson.map(OpenLesson::starts).unwrap_or_default();
     }
 

@@ -49,7 +49,8 @@ const GAP_STEPS: u32 = 50;
 /// Length of such a step, as a share of the threshold.
 const GAP_STEP: f64 = 0.01;
 
-/// The thresholds of the amplitude. `None` if the drive is not a sine, without a barrier, or if cancelled.
+/// The thresholds of the amplitude. `None` if the drive is not a sine, without a barrier between the stops, or
+/// if cancelled.
 pub fn thresholds(scene: &Scene, mechanism: &Arc<Mechanism>, task: &Task) -> Option<Thresholds> {
     let found = crossing(scene, mechanism, None, None, Above::Searched, task);
     let (crossing, searched_to) = found.ok().flatten()?;
@@ -64,7 +65,8 @@ pub(super) enum Above {
 }
 
 /// The smallest amplitude of a sine whose settled motion from rest crosses, and the largest amplitude
-/// searched. Runs continue up to `until_settled` in s, if given. `None` without a sine or a barrier.
+/// searched. Runs continue up to `until_settled` in s, if given. `None` without a sine, or without a
+/// barrier between the stops.
 pub(super) fn crossing(
     scene: &Scene,
     mechanism: &Arc<Mechanism>,
@@ -116,25 +118,33 @@ pub(super) fn crossing(
 /// barrier.
 fn holding_push(scene: &Scene, mechanism: &Mechanism) -> Option<f64> {
     let Landscape { barrier, extrema, .. } = &mechanism.landscape;
-    let barrier = barrier.as_ref()?;
-    let rests = match right_stop(scene) {
-        Some(stop) => stop.min(barrier.right_well),
-        None => barrier.right_well,
-    };
+    let barrier = barrier.as_ref().filter(|_| can_cross(scene, mechanism))?;
+    let rests = stops(scene)[1].map_or(barrier.right_well, |stop| stop.min(barrier.right_well));
     let between = |x: f64| x >= barrier.x && x <= rests;
     let inside = extrema.iter().filter(|extremum| between(extremum.x)).map(|extremum| extremum.force.abs());
     let force = inside.fold(mechanism.curve.force(rests).abs(), f64::max);
     Some(force / (scene.mass_g / 1e3) / STANDARD_GRAVITY).filter(|push| *push > 0.0 && push.is_finite())
 }
 
-fn right_stop(scene: &Scene) -> Option<f64> {
-    scene.stops.limits_mm()[1].map(|mm| mm / 1e3)
+/// Whether the mechanism has a barrier between the stops of a scene. Compliant stops let the mass pass beyond
+/// their surface.
+pub fn can_cross(scene: &Scene, mechanism: &Mechanism) -> bool {
+    let [left, right] = stops(scene);
+    let soft = matches!(scene.stops, Stops::Hertz { .. });
+    let between = |x: f64| left.is_none_or(|stop| stop < x) && right.is_none_or(|stop| x < stop);
+    let Landscape { barrier, left_barrier, .. } = &mechanism.landscape;
+    barrier.map(|barrier| barrier.x).into_iter().chain(*left_barrier).any(|x| soft || between(x))
+}
+
+/// Displacements of the left and the right stop in m.
+fn stops(scene: &Scene) -> [Option<f64>; 2] {
+    scene.stops.positions_mm().map(|stop| stop.map(|mm| mm / 1e3))
 }
 
 /// The amplitude in g whose inertial force equals the force that presses a resting mass on its stop.
 pub(super) fn frees_at(scene: &Scene, mechanism: &Mechanism) -> Option<f64> {
     let Excitation::Sine { .. } = scene.excitation else { return None };
-    let right = right_stop(scene)?;
+    let right = stops(scene)[1]?;
     let well = mechanism.landscape.right_stable()?.x;
     let press = -mechanism.curve.force(right);
     (right < well && press > 0.0).then(|| press / (scene.mass_g / 1e3) / STANDARD_GRAVITY)

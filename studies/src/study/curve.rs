@@ -53,7 +53,8 @@ pub fn default_positions(scene: &Scene, mechanism: &Mechanism, points: usize) ->
     const MARGIN: f64 = 1.15;
     const DEFAULT_REACH_MM: f64 = 10.0;
     let equilibria = mechanism.landscape.equilibria.iter().map(|equilibrium| equilibrium.x.abs() * 1e3);
-    let farthest = equilibria.chain(scene.stops.limits_mm().into_iter().flatten()).fold(0.0, f64::max);
+    let stops = scene.stops.limits_mm().into_iter().flatten().map(f64::abs);
+    let farthest = equilibria.chain(stops).fold(0.0, f64::max);
     let reach = if farthest > 0.0 { two_digits_up(MARGIN * farthest) } else { DEFAULT_REACH_MM };
     let (left, right) = mechanism.curve.domain();
     let range_mm = ((-reach).max(left * 1e3), reach.min(right * 1e3));
@@ -75,8 +76,7 @@ pub fn metres(mm: f64) -> f64 {
 
 /// Positions in m of the left and the right stop; NaN without one.
 pub fn stop_positions(scene: &Scene) -> (f64, f64) {
-    let [left, right] = scene.stops.limits_mm().map(|stop| stop.map_or(f64::NAN, metres));
-    (-left, right)
+    scene.stops.positions_mm().map(|stop| stop.map_or(f64::NAN, metres)).into()
 }
 
 /// `points` even positions from `range.0` to `range.1`. Both ends are exact, and the middle is exactly 0 if

@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use super::amplitudes::frees_at;
+use super::amplitudes::{can_cross, frees_at};
 use super::contact::strikes_in_words;
 use super::small_amplitude_frequency;
 use crate::dynamics::Model;
@@ -32,6 +32,9 @@ pub fn inspect(scene: &Scene, mechanism: &Arc<Mechanism>) -> Result<Vec<String>,
     }
     lines.extend(damping(scene, &model));
     lines.extend(landscape(&mechanism.landscape, model.mass()));
+    if mechanism.landscape.barrier.is_some() && !can_cross(scene, mechanism) {
+        lines.push("the barrier does not lie between the stops, so that nothing crosses it".to_owned());
+    }
     lines.extend(frees_at(scene, mechanism).map(|amplitude| {
         format!("at rest on its right stop the mass is released from {} g on", short(amplitude))
     }));

@@ -66,7 +66,7 @@ mod watch;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 pub use alternatives::{Alternative, Rated, SEARCHED_SPAN, alternatives, comparison_parts, comparison_table};
-pub use amplitudes::{Thresholds, stops_that_cross, thresholds};
+pub use amplitudes::{Thresholds, can_cross, stops_that_cross, thresholds};
 pub use basins::{Answer, Attractor, Basins, EvenRange, MAX_STARTS, NoBasins, Shares, Starts, StartsError};
 pub use best::{
     BestDesign, BestQuestion, Constraint, DesignRange, Environment, INTERVALS, MOST_FIELDS, NoBest, Optimum,

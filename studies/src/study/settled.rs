@@ -81,7 +81,7 @@ pub struct Standing {
     pub needed_j: f64,
 }
 
-/// The state of the mass in its well; `None` without a barrier.
+/// The state of the mass in its well; `None` without a barrier between the stops.
 pub fn standing(model: &Model, state: &Sample) -> Option<Standing> {
     let curve = &model.mechanism().curve;
     let wells = model.mechanism().landscape.wells();
@@ -90,7 +90,9 @@ pub fn standing(model: &Model, state: &Sample) -> Option<Standing> {
     let lowest = left.map_or(wells[well].x, |stop| stop.max(wells[well].x));
     let floor = curve.potential(right.map_or(lowest, |stop| stop.min(lowest)));
     let tops = [wells[well].left_top, wells[well].right_top];
-    let top = tops.into_iter().flatten().map(|top| curve.potential(top)).reduce(f64::min)?;
+    let reached = |top: &f64| left.is_none_or(|stop| stop < *top) && right.is_none_or(|stop| *top < stop);
+    let tops = tops.into_iter().flatten().filter(reached);
+    let top = tops.map(|top| curve.potential(top)).reduce(f64::min)?;
     Some(Standing {
         well,
         pressed_n: (state.phase != Phase::Free).then(|| curve.force(state.x).abs()),

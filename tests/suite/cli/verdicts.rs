@@ -253,3 +253,31 @@ fn all_wrong_cells_of_thresholds_are_named() {
     let line = "threshold nominal-cubic --over stops.travel_limit_mm=1:5:2 --over mass_g=14,16 --quiet";
     assert_eq!(stdout(&format!("{line} --jobs 1")), stdout(&format!("{line} --jobs 3")));
 }
+
+#[test]
+fn a_barrier_that_is_not_between_the_stops_is_the_reason() {
+    let beyond = "--set stops=Uneven(left_mm:-1,right_mm:3,restitution_left:0.4)";
+    let checked = stdout(&format!("check nominal-cubic {beyond}"));
+    assert!(checked.contains("rigid stops: left at 1 mm with restitution 0.4; right at 3 mm"), "{checked}");
+    assert!(checked.contains("the barrier does not lie between the stops"), "{checked}");
+    assert!(!checked.contains("least amplitude that crosses"), "{checked}");
+    let scan = "--field excitation.amplitude_g=0.5:1:0.25 --set run.duration_s=2";
+    for (scene, why) in [
+        (format!("nominal-cubic {beyond}"), "no barrier lies between the stops, so nothing to cross"),
+        ("monostable".to_owned(), "there is no barrier between two wells, so nothing to cross"),
+    ] {
+        let output = headless(&format!("threshold {scene} {scan} --out /dev/null")).assert().success();
+        let said = String::from_utf8_lossy(&output.get_output().stderr).into_owned();
+        assert!(said.contains(&format!("the row has no value: {why}")), "{said}");
+    }
+    refused(
+        headless("simulate nominal-cubic --set stops=Uneven(left_mm:-3,right_mm:1,restitution_left:0.4)"),
+        &["stops.right_mm = 1: the right stop, at 1 mm, must stand right of the left one, at 3 mm"],
+    );
+    // a stop at 0 is written without a sign
+    let swept = "sweep nominal-cubic --set stops=Uneven(left_mm:0,right_mm:9,restitution_left:0.4) \
+                 --set run.duration_s=2 --over stops.left_mm=-1:1:0.5 --columns min_x_m --quiet";
+    let csv = stdout(swept);
+    assert_eq!(column(&csv, "left_mm"), ["-1", "-0.5", "0", "0.5", "1"]);
+    assert!(!csv.contains("-0,") && !csv.contains("-0\n"), "{csv}");
+}

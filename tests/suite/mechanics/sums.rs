@@ -19,7 +19,7 @@ fn linear(n_per_m: f64) -> scene::Mechanism {
 }
 
 fn magnet(strength_n_mm4: f64, gap_mm: f64) -> scene::Mechanism {
-    scene::Mechanism::Magnet { strength_n_mm4, gap_mm }
+    scene::Mechanism::Magnet { strength_n_mm4, gap_mm, moments: scene::Moments::Facing }
 }
 
 fn table() -> scene::Mechanism {

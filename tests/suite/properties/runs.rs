@@ -14,7 +14,7 @@ use super::sound::{LEDGER, ledger_in_tolerances, sound};
 /// Steps in which a scene of these sizes must be through where no stop is elastic.
 const STEPS: u64 = 200_000;
 
-fn times(scene: &Scene, n: usize) -> Vec<f64> {
+pub fn times(scene: &Scene, n: usize) -> Vec<f64> {
     let end = scene.run.duration_s;
     (0..=n).map(|i| (end * i as f64 / n as f64).min(end)).collect()
 }
@@ -52,7 +52,7 @@ fn a_mirrored_scene_has_the_mirrored_run() {
     });
 }
 
-fn same_bits(a: &Run, b: &Run) -> Verdict {
+pub fn same_bits(a: &Run, b: &Run) -> Verdict {
     for (p, q) in a.samples.iter().zip(&b.samples) {
         prop_assert_eq!(p, q);
     }

@@ -41,7 +41,7 @@ pub fn elastic(stops: &Stops) -> bool {
     rigid && written(stops).iter().any(|stop| stop.0.is_finite() && stop.1 == 1.0)
 }
 
-fn restitution() -> impl Strategy<Value = f64> {
+pub fn restitution() -> impl Strategy<Value = f64> {
     prop_oneof![Just(0.0), Just(1.0), Just(0.36), 0.0..0.97f64]
 }
 
@@ -166,8 +166,8 @@ fn damping() -> impl Strategy<Value = Damping> {
 
 /// Where a scene starts: at rest, or between the stops, on one of them, in the middle, in a well.
 fn start(share: f64, v: f64, stops: &Stops, units: Units, mechanism: &Mechanism) -> Start {
-    let [low, high] = written(stops).map(|(d, _)| d.min(1.5));
-    let (low, high) = (-low, high);
+    let [left, right] = written(stops).map(|(d, _)| d);
+    let (low, high) = ((-left).max(right.min(0.0) - 1.5), right.min((-left).max(0.0) + 1.5));
     let x = match share {
         s if s < 0.08 => return Start::Rest,
         s if s < 0.15 => low,

@@ -64,9 +64,10 @@ impl Units {
                 error_n: error_n * force,
             },
             Mechanism::Linear { n_per_m } => Mechanism::Linear { n_per_m: n_per_m * force / length },
-            Mechanism::Magnet { strength_n_mm4, gap_mm } => Mechanism::Magnet {
+            Mechanism::Magnet { strength_n_mm4, gap_mm, moments } => Mechanism::Magnet {
                 strength_n_mm4: strength_n_mm4 * force * length.powi(4),
                 gap_mm: gap_mm * length,
+                moments: *moments,
             },
             Mechanism::Sum(parts) => Mechanism::Sum(parts.iter().map(|part| self.mechanism(part)).collect()),
             Mechanism::Table { .. } | Mechanism::Flexures { .. } => natural.clone(),

@@ -78,8 +78,35 @@ fn every_relation_between_fields_is_checked() {
         (&[("stops", "Uneven()")], "stops = Uneven(): give left_mm, right_mm or both"),
         (&[("stops", "Uneven(left_mm: 1)")], "give restitution_left or restitution_right"),
         (
-            &[("stops", "Uneven(left_mm: -1, restitution_left: 1)")],
-            "stops.left_mm = -1: must be 1e-15 to 1e15",
+            &[("stops", "Uneven(left_mm: -2e15, restitution_left: 1)")],
+            "stops.left_mm = -2e15: must be -1e15 to 1e15; give how far left of x = 0",
+        ),
+        (
+            &[("stops", "Uneven(left_mm: -1, right_mm: 0.5, restitution_left: 1)")],
+            "stops.right_mm = 0.5: the right stop, at 0.5 mm, must stand right of the left one, at 1 mm \
+             (stops.left_mm = -1)",
+        ),
+        (
+            &[("stops", "Uneven(left_mm: 0, right_mm: 0, restitution_left: 1)")],
+            "stops.right_mm = 0: the right stop, at 0 mm, must stand right of the left one, at 0 mm",
+        ),
+        (
+            &[("stops", "Uneven(left_mm: 1, right_mm: -0.9999999, restitution_left: 1)")],
+            "leave a room of at least 1e-6 of the farther distance",
+        ),
+        (
+            &[
+                ("stops", "Uneven(left_mm: -1, right_mm: 3, restitution_left: 1)"),
+                ("start", "At(x_mm: 0.5, v_m_per_s: 0)"),
+            ],
+            "start.x_mm = 0.5: lies outside the left stop at 1 mm (stops.left_mm)",
+        ),
+        (
+            &[
+                ("stops", "Uneven(left_mm: 0, restitution_left: 1)"),
+                ("start", "At(x_mm: -0.5, v_m_per_s: 0)"),
+            ],
+            "start.x_mm = -0.5: lies outside the left stop at 0 mm (stops.left_mm)",
         ),
         (
             &[rigid, ("start", "At(x_mm: 3, v_m_per_s: 0)")],

@@ -57,9 +57,13 @@ fn every_mechanism_reads_and_writes() {
             "Sum([Linear(n_per_m: -3), Magnet(strength_n_mm4: 20, gap_mm: 5), Table(path: \"a b.csv\")])",
             Mechanism::Sum(vec![
                 Mechanism::Linear { n_per_m: -3.0 },
-                Mechanism::Magnet { strength_n_mm4: 20.0, gap_mm: 5.0 },
+                Mechanism::Magnet { strength_n_mm4: 20.0, gap_mm: 5.0, moments: Moments::Facing },
                 table(1e-4),
             ]),
+        ),
+        (
+            "Magnet(strength_n_mm4: -20, gap_mm: 5, moments: Transverse)",
+            Mechanism::Magnet { strength_n_mm4: -20.0, gap_mm: 5.0, moments: Moments::Transverse },
         ),
         ("Table(path: \"a b.csv\", tolerance: 1e-6)", table(1e-6)),
     ] {
@@ -99,6 +103,11 @@ fn every_damping_and_stop_and_start_reads_and_writes() {
             "Uneven(left_mm: 1, right_mm: Some(2), restitution_right: 0)",
             uneven(Some(1.0), Some(2.0), None, Some(0.0)),
         ),
+        (
+            "Uneven(left_mm: -1, right_mm: 3, restitution_left: 0.5)",
+            uneven(Some(-1.0), Some(3.0), Some(0.5), None),
+        ),
+        ("Uneven(right_mm: 0, restitution_right: 1)", uneven(None, Some(0.0), None, Some(1.0))),
     ] {
         let document = document(&[("stops", text)]);
         assert_eq!(document.scene.stops, stops);

@@ -63,7 +63,7 @@ impl<T: Scalar> Equation<T> {
         }
         let stop = |at: Option<StopAt>, sign: T| {
             at.map(|s| {
-                let mode = &modes[curve.piece_index(s.x).min(modes.len() - 1)];
+                let mode = &modes[model.piece_index(s.x)];
                 let (f, slope, size) = mode.force.value(T::of(s.x) - mode.origin);
                 Stop {
                     restitution: T::of(s.restitution),

@@ -36,8 +36,6 @@ accessors! {
     compliant: Option<Hertz>,
     /// Displacement in m and velocity in m/s at the start.
     start: (f64, f64),
-    /// Displacement in m at which crossings are counted, if the mechanism has a barrier.
-    crossing_level: Option<f64>,
     /// Duration in s.
     duration: f64,
     /// Start of the settled window in s.
@@ -53,6 +51,24 @@ accessors! {
 }
 
 impl Model {
+    /// Displacement in m at which crossings are counted: the barrier, or the equilibrium of a single well;
+    /// `None` without one, and where no motion can pass it, since it lies on or beyond a rigid stop.
+    pub fn crossing_level(&self) -> Option<f64> {
+        let rigid = self.stops.filter(|_| self.compliant.is_none());
+        self.crossing_level.filter(|level| rigid.is_none_or(|stops| stops.are_around(*level)))
+    }
+
+    /// Index of the piece of the force curve at `x` in m; on a stop that stands on a break of the curve, the
+    /// piece on the side of the mass.
+    pub(in crate::dynamics) fn piece_index(&self, x: f64) -> usize {
+        let curve = &self.mechanism.curve;
+        match self.stop_positions() {
+            (Some(left), _) if left == x => curve.piece_beside(x, true),
+            (_, Some(right)) if right == x => curve.piece_beside(x, false),
+            _ => curve.piece_index(x),
+        }
+    }
+
     /// Damping coefficient in N s/m that acts on the motion, including that of a transducer without an
     /// electrical state.
     pub fn total_damping(&self) -> f64 {

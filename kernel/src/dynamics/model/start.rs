@@ -20,16 +20,8 @@ pub(crate) fn start_state(
     let domain = mechanism.curve.domain();
     match scene.start {
         Start::Rest => {
-            let Some(equilibrium) = mechanism.landscape.right_stable() else {
-                let problem =
-                    "this mechanism has no stable equilibrium to rest at; use At(x_mm: .., v_m_per_s: ..)";
-                return Err(fault("start", "Rest", problem));
-            };
-            let mut x = right.map_or(equilibrium.x, |stop| equilibrium.x.min(stop.x));
-            x = left.map_or(x, |stop| x.max(stop.x));
-            if let Some(hertz) = compliant.filter(|_| x != equilibrium.x) {
-                x = pressed_in(mechanism, &hertz, x, equilibrium.x);
-            }
+            let at = [left, right].map(|stop| stop.map(|stop| stop.x));
+            let x = rest(mechanism, at, compliant).map_err(|problem| fault("start", "Rest", problem))?;
             Ok((x, 0.0))
         }
         Start::At { x_mm, v_m_per_s, .. } => {
@@ -46,6 +38,40 @@ pub(crate) fn start_state(
             Ok((x, v_m_per_s))
         }
     }
+}
+
+/// Displacement in m at which a mass rests between these stops: the right-hand stable equilibrium of the
+/// mechanism; where that lies beyond the right stop, the stop if the mechanism presses the mass onto it, else
+/// the nearest stable equilibrium to the left of it, else the left stop; the mirror image of that where it
+/// lies beyond the left stop. The error says that there is no such place.
+fn rest(
+    mechanism: &Mechanism,
+    [left, right]: [Option<f64>; 2],
+    compliant: Option<Hertz>,
+) -> Result<f64, &'static str> {
+    let Some(equilibrium) = mechanism.landscape.right_stable() else {
+        return Err("this mechanism has no stable equilibrium to rest at; use At(x_mm: .., v_m_per_s: ..)");
+    };
+    let stable = || mechanism.landscape.equilibria.iter().filter(|at| at.stable).map(|at| at.x);
+    let before = |x: f64| right.is_none_or(|stop| x <= stop);
+    let inside = stable().rfind(|x| before(*x) && left.is_none_or(|stop| *x >= stop));
+    // the stop of a side, if the mechanism presses the mass onto it
+    let pressed = |stop: Option<f64>, sign: f64| {
+        let stop = stop.filter(|x| sign * mechanism.curve.force(*x) < 0.0)?;
+        let beyond = |x: &f64| sign * (x - stop) > 0.0;
+        let Some(hertz) = compliant else { return Some(stop) };
+        let nearest = |a: f64, b: f64| if (a - stop).abs() < (b - stop).abs() { a } else { b };
+        Some(pressed_in(mechanism, &hertz, stop, stable().filter(beyond).reduce(nearest)?))
+    };
+    let at = if before(equilibrium.x) {
+        inside.or_else(|| pressed(left, -1.0)).or_else(|| pressed(right, 1.0))
+    } else {
+        pressed(right, 1.0).or(inside).or_else(|| pressed(left, -1.0))
+    };
+    at.ok_or(
+        "the mass rests nowhere between the stops: no stable equilibrium lies between them, and the mechanism \
+         presses it onto neither; use At(x_mm: .., v_m_per_s: ..)",
+    )
 }
 
 /// Displacement in m of a mass at rest that the mechanism presses onto the compliant stop at `surface`,

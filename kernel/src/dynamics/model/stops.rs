@@ -6,9 +6,9 @@ use crate::scene::Stops;
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct StopPair {
-    /// On the side of negative x.
+    /// The one that limits the mass to the left.
     pub left: Option<StopAt>,
-    /// On the side of positive x.
+    /// The one that limits the mass to the right; it stands right of the left one.
     pub right: Option<StopAt>,
 }
 
@@ -25,7 +25,9 @@ pub struct StopAt {
 impl StopPair {
     /// The stops of a scene; `None` if it has none.
     pub(crate) fn of(stops: &Stops) -> Option<Self> {
-        let at = |mm: f64, sign: f64, restitution: f64| Some(StopAt { x: sign * (mm / 1e3), restitution });
+        // the sum with 0 makes a 0 of -0
+        let at =
+            |mm: f64, sign: f64, restitution: f64| Some(StopAt { x: sign * (mm / 1e3) + 0.0, restitution });
         match *stops {
             Stops::None => None,
             Stops::Hertz { travel_limit_mm, .. } => {
@@ -44,5 +46,10 @@ impl StopPair {
                 })
             }
         }
+    }
+
+    /// Whether a displacement in m lies between the stops and on neither.
+    pub(crate) fn are_around(&self, x: f64) -> bool {
+        self.left.is_none_or(|stop| stop.x < x) && self.right.is_none_or(|stop| x < stop.x)
     }
 }

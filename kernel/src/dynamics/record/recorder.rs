@@ -92,7 +92,7 @@ impl<'a, T: Scalar> Recorder<'a, T> {
             ),
         };
         let scales = (model.scales.length, model.scales.speed);
-        let barrier = model.crossing_level.map(T::of);
+        let barrier = model.crossing_level().map(T::of);
         let side = barrier.map_or(0, |b| side_of(start.0, b));
         let mut samples = Vec::new();
         samples.reserve_exact(request.sample_times.len());

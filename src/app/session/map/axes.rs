@@ -100,6 +100,15 @@ pub fn axis(path: &str, scene: &Scene, when_on: Stops, well_mm: Option<f64>) -> 
         }
         _ => up_to(if present > 0.0 { 2.0 * present } else { 1.0 }),
     };
+    // every value leaves the mass room beside the other stop
+    let other = match (name, with_stops.stops) {
+        ("left_mm", Stops::Uneven { right_mm, .. }) => right_mm,
+        ("right_mm", Stops::Uneven { left_mm, .. }) => left_mm,
+        _ => None,
+    };
+    let least = other.map_or(f64::NEG_INFINITY, |mm| -mm);
+    let shift = if least >= from { (((least - from) / step).floor() + 1.0) * step } else { 0.0 };
+    let (from, to) = (decimal(from + shift), decimal(to + shift));
     SweepAxis { field: path.to_owned(), from, to, step, values: Vec::new() }
 }
 

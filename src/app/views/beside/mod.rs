@@ -16,7 +16,7 @@ use crate::app::words::numbers::three;
 use crate::dynamics::Model;
 use crate::mechanics::Element;
 use crate::numeric::short;
-use crate::scene::Transducer;
+use crate::scene::{Moments, Transducer};
 
 mod transducer;
 
@@ -51,11 +51,32 @@ const WORDS_ROOM: f32 = 120.0;
 pub(super) struct Attachments {
     /// Total stiffness of the springs in N/m; 0 without a spring.
     stiffness: f64,
-    /// Strength in N m^4 and gap in m of the pair of magnets that is the stiffest at x = 0.
-    magnets: Option<(f64, f64)>,
+    /// The pair of magnets that is the stiffest at x = 0.
+    magnets: Option<Pair>,
     /// Number of pairs of magnets.
     pairs: usize,
     transducer: Transducer,
+}
+
+/// A pair of magnets.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Pair {
+    /// In N m^4.
+    strength: f64,
+    /// In m.
+    gap: f64,
+    moments: Moments,
+}
+
+impl Pair {
+    /// Stiffness in N/m at x = 0; above 0 the magnets attract each other there.
+    fn stiffness(self) -> f64 {
+        let factor = match self.moments {
+            Moments::Facing => 12.0,
+            Moments::Transverse => -3.0,
+        };
+        factor * self.strength / self.gap.powi(5)
+    }
 }
 
 /// Places of the parts on the screen.
@@ -84,15 +105,14 @@ pub(super) struct LowerFlexures {
 impl Attachments {
     pub fn of(model: &Model) -> Self {
         let mut parts = Self { stiffness: 0.0, magnets: None, pairs: 0, transducer: model.transducer() };
-        let stiff = |(strength, gap): (f64, f64)| strength.abs() / gap.powi(5);
         for element in model.mechanism().parts_or_self().iter().filter_map(|part| part.element) {
             match element {
                 Element::Spring { stiffness } => parts.stiffness += stiffness,
-                Element::Magnets { strength, gap } if strength != 0.0 => {
+                Element::Magnets { strength, gap, moments } if strength != 0.0 => {
                     parts.pairs += 1;
-                    let largest = parts.magnets.map_or(0.0, stiff);
-                    if stiff((strength, gap)) > largest {
-                        parts.magnets = Some((strength, gap));
+                    let pair = Pair { strength, gap, moments };
+                    if pair.stiffness().abs() > parts.magnets.map_or(0.0, |pair| pair.stiffness().abs()) {
+                        parts.magnets = Some(pair);
                     }
                 }
                 Element::Magnets { .. } => {}
@@ -137,8 +157,8 @@ impl Attachments {
         let taken = RefCell::new(taken);
         let pen = Pen { ui, painter, style, places, named, is_free_on_the_right, has_magnets, taken };
         pen.spring(self.stiffness, &mut shapes);
-        if let Some((strength, gap)) = self.magnets {
-            pen.magnets(strength, gap, self.pairs, &mut shapes);
+        if let Some(pair) = self.magnets {
+            pen.magnets(pair, self.pairs, &mut shapes);
         }
         if self.transducer != Transducer::None {
             pen.transducer(&self.transducer, &mut shapes);
@@ -216,7 +236,8 @@ impl Pen<'_> {
         self.explain(place, "spring", &words);
     }
 
-    fn magnets(&self, strength: f64, gap: f64, pairs: usize, shapes: &mut Vec<Shape>) {
+    fn magnets(&self, pair: Pair, pairs: usize, shapes: &mut Vec<Shape>) {
+        let Pair { strength, gap, moments } = pair;
         let Places { rect, bottom, body, zero, ref below } = *self.places;
         let room = bottom - body.bottom();
         let pole = POLE.min((room - 6.0) / 4.0);
@@ -227,13 +248,20 @@ impl Pen<'_> {
         let (closest, farthest) = (2.0 * pole + 3.0, (room - 2.0 * pole - 3.0).max(2.0 * pole + 3.0));
         let wanted = below.as_ref().map_or(0.5 * (closest + farthest), |lower| lower.along * gap as f32);
         let distance = wanted.clamp(closest, farthest);
-        let attract = strength > 0.0;
+        let attract = pair.stiffness() > 0.0;
         let hung = pos2(body.center().x, body.bottom() + pole);
         let stood = pos2(zero, body.bottom() + pole + distance);
         let post = Rect::from_min_max(pos2(zero - 3.0, stood.y + pole), pos2(zero + 3.0, bottom));
         shapes.push(Shape::rect_filled(post, 0.0, self.style.frame_colour()));
-        self.magnet(hung, pole, true);
-        self.magnet(stood, pole, attract);
+        match moments {
+            Moments::Facing => [(hung, true), (stood, attract)].map(|(at, up)| self.magnet(at, pole, up)),
+            // one pole faces the viewer
+            Moments::Transverse => {
+                let size = vec2(2.0 * MAGNET, 2.0 * pole);
+                [(hung, true), (stood, strength > 0.0)]
+                    .map(|(at, north)| self.pole(Rect::from_center_size(at, size), north))
+            }
+        };
         let verb = if attract { "attract" } else { "repel" };
         let name = format!("magnets {verb}");
         let right = (name.as_str(), pos2(zero + MAGNET + 6.0, stood.y), Align2::LEFT_CENTER);
@@ -252,31 +280,41 @@ impl Pen<'_> {
                 format!(" Of {n} pairs of magnets this one is the stiffest there; the others are not drawn.")
             }
         };
-        let words = format!(
-            "Two magnets, {} mm apart where they face each other at x = 0, with a strength of {} N mm⁴. They \
-             {effect} up to {} mm from it, and further out the other way.{more}",
-            mm(gap),
-            three((1e12 * strength).abs()),
-            mm(2.0 * gap)
-        );
+        let strength = three((1e12 * strength).abs());
+        let words = match moments {
+            Moments::Facing => format!(
+                "Two magnets, {} mm apart where they face each other at x = 0, with a strength of {strength} \
+                 N mm⁴. They {effect} up to {} mm from it, and further out the other way.{more}",
+                mm(gap),
+                mm(2.0 * gap)
+            ),
+            Moments::Transverse => format!(
+                "Two magnets, {} mm apart at x = 0 and magnetised across the drawing, with a strength of \
+                 {strength} N mm⁴. They {effect}.{more}",
+                mm(gap)
+            ),
+        };
         self.explain(Rect::from_center_size(stood, vec2(2.0 * MAGNET, 2.0 * pole)), "magnets", &words);
     }
 
     fn magnet(&self, middle: Pos2, pole: f32, north_above: bool) {
-        let (ink, ground) = (self.style.ink(), self.style.ground());
         let half = |above: bool| {
             let y = if above { middle.y - pole } else { middle.y };
             Rect::from_min_size(pos2(middle.x - MAGNET, y), vec2(2.0 * MAGNET, pole))
         };
-        for (place, north) in [(half(true), north_above), (half(false), !north_above)] {
-            let (fill, letter) = if north { (ink, ground) } else { (ground, ink) };
-            let edge = Stroke::new(1.2, ink);
-            self.painter.rect(place, 0.0, fill, edge, StrokeKind::Inside);
-            self.taken.borrow_mut().places.push(place);
-            if pole >= LETTERED {
-                let text = if north { "N" } else { "S" };
-                self.painter.text(place.center(), Align2::CENTER_CENTER, text, self.style.small(), letter);
-            }
+        self.pole(half(true), north_above);
+        self.pole(half(false), !north_above);
+    }
+
+    fn pole(&self, place: Rect, north: bool) {
+        let (ink, ground) = (self.style.ink(), self.style.ground());
+        let (fill, letter) = if north { (ink, ground) } else { (ground, ink) };
+        let edge = Stroke::new(1.2, ink);
+        self.painter.rect(place, 0.0, fill, edge, StrokeKind::Inside);
+        self.taken.borrow_mut().places.push(place);
+        if place.height() >= LETTERED {
+            let text = if north { "N" } else { "S" };
+            self.painter.text(place.center(), Align2::CENTER_CENTER, text, self.style.small(), letter);
         }
     }
 }

@@ -105,15 +105,16 @@ impl Basins {
         };
         let (left, right) = mechanism.curve.domain();
         let within = |x_mm: f64| x_mm.clamp(left * 1e3, right * 1e3);
-        let limits = scene.stops.limits_mm();
+        let [left_stop, right_stop] = scene.stops.positions_mm();
         let between = |x_mm: f64| {
-            let x_mm = limits[0].map_or(x_mm, |stop| x_mm.max(-stop));
-            limits[1].map_or(x_mm, |stop| x_mm.min(stop))
+            let x_mm = left_stop.map_or(x_mm, |stop| x_mm.max(stop));
+            right_stop.map_or(x_mm, |stop| x_mm.min(stop))
         };
         let middle = at(between(within(0.0)), 0.0, &scene.excitation)?;
         let excitation = shaken(scene, &middle);
         let excitation = excitation.as_ref().unwrap_or(&scene.excitation);
-        let reference = 1e3 * middle.crossing_level().unwrap_or(0.0);
+        let reference = middle.crossing_level().or(mechanism.landscape.crossing_position());
+        let reference = 1e3 * reference.unwrap_or(0.0);
         let (low, high) = (between(within(low)), between(within(high)));
         let far = if reference - low > high - reference { low } else { high };
         let model = at(far, v, excitation)?;

@@ -1,6 +1,7 @@
 //! Characteristic numbers of a measured and of the computed motion.
 
 use crate::dynamics::Model;
+use crate::numeric::extent;
 use crate::scene::{Excitation, Quantity, Scene};
 use crate::study::identify::{Turn, noise, reach, turns};
 use crate::study::{Table, Values};
@@ -120,7 +121,10 @@ fn rebounds(model: &Model, times: &[f64], measured: &[f64], computed: &[f64]) ->
     let sides = [stops.left.map(|stop| stop.x), stops.right.map(|stop| stop.x)];
     let room = match sides {
         [Some(left), Some(right)] => right - left,
-        [one, other] => 2.0 * one.or(other).unwrap_or(0.0).abs(),
+        _ => {
+            let (low, high) = extent(measured.iter().copied());
+            high - low
+        }
     };
     let barrier = barrier(model);
     let back = reach(measured, noise(measured));
