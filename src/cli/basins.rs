@@ -11,7 +11,7 @@ use interwell::system::threads::Pool;
 
 use super::progress::duration;
 use super::support::{
-    Watch, counted, file_name, load_held, manifest_path, mechanism, number, numbers, outputs, pool, warn,
+    Watch, counted, file_name, load_held, manifest_path, mechanism, numbers, outputs, pool, warn,
 };
 use super::{
     Common, Failure, Output, Outputs, Picture, PlotOptions, caption, interrupt, refuse, say, with_bar,
@@ -179,8 +179,10 @@ fn starts(options: &Arguments) -> Result<Starts, Failure> {
         let (x_mm, v) = (x_mm?, v?);
         return Starts::grid(&x_mm, &v).map_err(|problem| wrong("--x-mm and --v", "", &problem));
     };
-    let whole =
-        |option: &str, text: &str| number(option, text, |_: &u64| true, "give a whole number, such as 1000");
+    let whole = |option: &str, text: &str| {
+        let wrong = || format!("{option} {text}: give a whole number, such as 1000");
+        text.trim().parse::<u64>().map_err(|_| Failure::argument(wrong()))
+    };
     let count = whole("--random", text)?;
     let seed = options.seed.as_deref().map_or(Ok(0), |text| whole("--seed", text))?;
     let [x_mm, v] = texts.map(|(option, text)| {

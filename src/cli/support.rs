@@ -1,14 +1,13 @@
 //! Steps that several commands share: loading a scene, building its mechanism and its model, reading numbers.
 
 use std::path::{Path, PathBuf};
-use std::str::FromStr;
 use std::sync::Arc;
 
 use interwell::dynamics::Model;
 use interwell::mechanics::Mechanism;
 use interwell::output::{Provenance, is_regular};
 use interwell::questions::{Error, Simulation, check_until_settled};
-use interwell::scene::{Document, SceneError};
+use interwell::scene::{Document, SceneError, read_number};
 use interwell::system::clock::{ProcessClock, WallClock};
 use interwell::system::threads::{Pool, processors};
 
@@ -148,29 +147,28 @@ pub fn warn(document: &Document, common: &Common, warnings: &[String], mechanism
     of_tables.for_each(|warning| common.say(&format!("warning: {}: {warning}", document.name)));
 }
 
-/// The numbers of `A,B,C` as given to `option`. NaN and infinities are accepted; the caller must check them.
+/// The numbers of `A,B,C` as given to `option`, each plain or as arithmetic. NaN and infinities are accepted;
+/// the caller must check them.
 pub fn numbers(option: &str, text: &str, separator: char) -> Result<Vec<f64>, Failure> {
-    let number = |part: &str| {
-        let wrong = || Failure::argument(format!("{option} {text}: `{part}` is not a number"));
-        part.trim().parse().map_err(|_| wrong())
-    };
-    text.split(separator).map(number).collect()
+    let wrong = |problem| Failure::argument(format!("{option} {text}: {problem}"));
+    text.split(separator).map(|part| read_number(part).map_err(wrong)).collect()
 }
 
-/// The number in `text`, as given to `option`; an error with this remedy if it is no number that `fits`.
-pub fn number<T: FromStr>(
+/// The number in `text`, plain or as arithmetic, as given to `option`; an error with this remedy if it is no
+/// number that `fits`.
+pub fn number(
     option: &str,
     text: &str,
-    fits: impl FnOnce(&T) -> bool,
+    fits: impl FnOnce(&f64) -> bool,
     remedy: &str,
-) -> Result<T, Failure> {
-    let number = text.trim().parse().ok().filter(fits);
+) -> Result<f64, Failure> {
+    let number = read_number(text).ok().filter(fits);
     number.ok_or_else(|| Failure::argument(format!("{option} {text}: {remedy}")))
 }
 
 /// The finite number in `text`, as given to `option`.
 pub fn finite(option: &str, text: &str, remedy: &str) -> Result<f64, Failure> {
-    number(option, text, |value: &f64| value.is_finite(), remedy)
+    number(option, text, |value| value.is_finite(), remedy)
 }
 
 /// Whether a value is finite and above 0.

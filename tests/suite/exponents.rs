@@ -8,7 +8,7 @@ use std::sync::atomic::AtomicBool;
 use interwell::dynamics::{EventKind, Jacobian, Model, STANDARD_GRAVITY};
 use interwell::study::{ExponentOptions, Exponents, NoExponents, average_exponents, exponents};
 
-use crate::support::{model, near, near_relative, of_kind, preset, run, unit_well};
+use crate::support::{build, documented, model, near, near_relative, of_kind, preset, run, unit_well};
 
 static NEVER: AtomicBool = AtomicBool::new(false);
 
@@ -235,17 +235,10 @@ fn by_runge_kutta(f: [f64; 2], (c, a): (f64, f64), periods: usize) -> (f64, f64)
 #[test]
 fn exponents_of_forced_oscillators_are_those_of_another_integrator() {
     // the strange attractors of Ueda (1979) and of the double well (Holmes 1979)
-    for (f, c, force) in [([0.0, 1.0], 0.05, 7.5), ([-1.0, 1.0], 0.25, 0.4)] {
-        let model = model(&format!(
-            "mass_g: 1000, mechanism: Polynomial(coefficients_si: [0, {}, 0, {}]), \
-             damping: Coefficient(c_n_s_per_m: {c:?}), \
-             excitation: Sine(frequency_hz: {:?}, amplitude_g: {:?}), start: At(x_mm: 500, v_m_per_s: 0), \
-             run: (duration_s: 1000, tolerance: 1e-9)",
-            f[0],
-            f[1],
-            1.0 / TAU,
-            force / STANDARD_GRAVITY
-        ));
+    for (title, f, c, force) in
+        [("Hard spring of Ueda", [0.0, 1.0], 0.05, 7.5), ("Double well of Holmes", [-1.0, 1.0], 0.25, 0.4)]
+    {
+        let model = build(&documented(title));
         let found = over(&model, 20_000);
         let (other, error) = by_runge_kutta(f, (c, force), 20_000);
         println!("{other} +- {error}, {found:?}");

@@ -126,6 +126,18 @@ fn a_step_begins_with_the_changes_before_it_and_without_the_solutions() {
 }
 
 #[test]
+fn a_lesson_takes_arithmetic() {
+    let steps =
+        |bound: &str| format!("Do(ask: \"Do.\", goal: Between(\"scene.mass_g\", 1, {bound}), solution: []),");
+    let more = "speed: 1/(2*5), set: [(\"mass_g\", \"9/4\")],";
+    let lesson = read(&text(&steps("sqrt(2)*3"), more)).unwrap();
+    assert_eq!((lesson.lesson.speed, lesson.begin(0).scene.mass_g), (Some(0.1), 2.25));
+    assert!(met(&text(&steps("sqrt(2)*3"), more)) && !met(&text(&steps("1 + 1"), more)));
+    let error = read(&text(&steps("2*mass"), more)).unwrap_err().to_string();
+    assert!(error.starts_with("box.ron:10:65: ") && error.contains("`2*mass`: `mass` is unknown"), "{error}");
+}
+
+#[test]
 fn each_condition_holds_where_it_should() {
     // between its walls the mass has 25 impacts in 10 s and ends where it began: 0.5 m of way from x = 0
     for (condition, expected) in [

@@ -2,6 +2,7 @@
 
 use interwell::scene::*;
 
+mod arithmetic;
 mod checking;
 mod files;
 mod flexures;

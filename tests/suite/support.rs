@@ -16,6 +16,15 @@ pub fn unit_well(rest: &str) -> Model {
     model(&format!("mass_g: 1000, mechanism: Cubic(linear_n_per_m: -1, cubic_n_per_m3: 1), {rest}"))
 }
 
+/// The scene with this title in docs/scene.md.
+#[track_caller]
+pub fn documented(title: &str) -> Document {
+    let blocks = include_str!("../../docs/scene.md").split("```ron\n").skip(1);
+    let mut texts = blocks.map(|block| block.split("```").next().unwrap());
+    let text = texts.find(|text| text.contains(&format!("title: \"{title}\""))).expect(title);
+    Document::from_text(title, text, Files::default()).unwrap_or_else(|e| panic!("{e}"))
+}
+
 /// A run with events and ledger.
 pub fn run(model: &Model) -> Run {
     run_at(model, &[])

@@ -2,10 +2,11 @@
 //!
 //! Even steps are counted in whole units of the last decimal of their three numbers, in 128-bit integers, and
 //! every value is the double nearest to its decimal: 0.58 is 0.58, whereas repeated addition of 0.02 would
-//! give 0.5800000000000001.
+//! give 0.5800000000000001. Arithmetic counts as the shortest decimal of its value.
 
 use std::collections::HashSet;
 
+use super::arithmetic::{evaluate, is_arithmetic};
 use super::data::{Scene, SweepAxis};
 use super::error::clip;
 use super::field_table::FieldInfo;
@@ -32,7 +33,7 @@ pub struct Axis {
 }
 
 impl Axis {
-    /// Parses `FIELD=FROM:TO:STEP` or `FIELD=a,b,c` for a scene. Values are exact decimals; the
+    /// Parses `FIELD=FROM:TO:STEP` or `FIELD=a,b,c` for a scene. Values are exact decimals or arithmetic; the
     /// error is a sentence without the argument, which the caller knows.
     pub fn parse(argument: &str, scene: &Scene) -> Result<Self, String> {
         let Some((field, values)) = argument.split_once('=') else {
@@ -42,8 +43,15 @@ impl Axis {
         };
         let (field, values) = (field.trim(), values.trim());
         let spec = numeric(scene, field)?;
-        let read = |text: &str| {
+        let mut is_exact = true;
+        let mut read = |text: &str| {
             let text = text.trim();
+            if is_arithmetic(text) {
+                is_exact = false;
+                let wrong = |what: &str| format!("`{}`: {what}; {}", clip(text), spec.remedy);
+                let value = evaluate(text).map_err(|problem| wrong(&problem.what))?;
+                return Decimal::shortest(value).ok_or_else(|| wrong("no finite number"));
+            }
             let finite = Decimal::parse(text).filter(|decimal| decimal.value().is_finite());
             let hint = if spec.range.high == f64::INFINITY { "; inf stands in a list alone" } else { "" };
             finite.ok_or_else(|| {
@@ -59,7 +67,7 @@ impl Axis {
             };
             let parts = [read(from)?, read(to)?, read(step)?];
             steps = Some(parts.map(Decimal::value));
-            even_steps(parts)?
+            if is_exact { even_steps(parts)? } else { rounded_steps(parts)? }
         } else {
             // infinity is valid for some fields, as for an open circuit
             let is_infinite = |text: &str| text.trim() == "inf" && spec.range.high == f64::INFINITY;
@@ -105,7 +113,7 @@ impl Axis {
         };
         let parts = [read("from", axis.from)?, read("to", axis.to)?, read("step", axis.step)?];
         let part = if axis.step > 0.0 && axis.to < axis.from { "to" } else { "step" };
-        let values = even_steps(parts).map_err(|problem| (part, problem))?;
+        let values = rounded_steps(parts).map_err(|problem| (part, problem))?;
         let part = if spec.range.contains(axis.from) { "to" } else { "from" };
         with(values, Some([axis.from, axis.to, axis.step])).within(spec).map_err(|problem| (part, problem))
     }
@@ -214,6 +222,22 @@ fn even_steps(parts: [Decimal; 3]) -> Result<Vec<f64>, String> {
         Ok(count) if count <= MAX_AXIS_VALUES => Ok((0..count).map(value).collect()),
         _ => Err(too_long(count)),
     }
+}
+
+/// The steps between three doubles, given by their shortest decimals. Where a step misses the last value by
+/// no more than the rounding of the three, as pi/8 misses 2 pi, it reaches it.
+fn rounded_steps(parts: [Decimal; 3]) -> Result<Vec<f64>, String> {
+    let values = even_steps(parts)?;
+    let [from, to, step] = parts.map(Decimal::value);
+    let count = ((to - from) / step).round();
+    let missed = (to - from) - count * step;
+    let rounding = 4.0 * f64::EPSILON * (from.abs() + to.abs());
+    let is_near = missed.abs() <= rounding && rounding < 1e-3 * step;
+    if !is_near || count + 1.0 > MAX_AXIS_VALUES as f64 || values.last() == Some(&to) {
+        return Ok(values);
+    }
+    let share = |i: usize| if i == count as usize { to } else { from + (to - from) * i as f64 / count };
+    Ok((0..=count as usize).map(share).collect())
 }
 
 fn too_long(count: impl std::fmt::Display) -> String {

@@ -12,8 +12,9 @@ use super::link::is_link;
 use super::manifest::{self, SweepRequest};
 use super::presets::{self, PRESETS};
 use super::record;
-use super::scanner::Places;
+use super::scanner::{Place, Places};
 use super::text::{self, MAX_SCENE_BYTES};
+use super::written::{Written, covers};
 use crate::numeric::number_text;
 use crate::system::files;
 
@@ -57,6 +58,8 @@ pub struct Document {
     assigned: Vec<Assignment>,
     /// Faults of recorded accelerations that could not be read.
     record_faults: Vec<Fault>,
+    /// Numbers that were written as arithmetic.
+    written: Written,
 }
 
 #[derive(Debug, Clone)]
@@ -141,11 +144,37 @@ impl Document {
             scene.title = stem.to_string_lossy().into_owned();
         }
         let record_faults = record::attach(&mut scene.excitation, "excitation", &files);
+        let mut written = Written::default();
+        written.update("", text.trim_start_matches('\u{feff}'));
         let (name, text, source) = (name.to_owned(), text.to_owned(), Source::Text);
-        Ok(Self { scene, source, name, text, files, swept: None, assigned: Vec::new(), record_faults })
+        Ok(Self {
+            scene,
+            source,
+            name,
+            text,
+            files,
+            swept: None,
+            assigned: Vec::new(),
+            record_faults,
+            written,
+        })
     }
 
-    /// Applies `FIELD=VALUE` as given to `--set`: a number, or any value in RON
+    /// The text of `scene`, this one or one made from it. A number that this scene has as arithmetic is
+    /// written as it was, unless `scene` has another value in its place.
+    pub fn write(&self, scene: &Scene) -> Result<String, ron::Error> {
+        Ok(self.written.restored("", text::write(scene)?))
+    }
+
+    /// `FIELD=VALUE` with the arithmetic that the field was written as, if it has this value still.
+    pub(super) fn written(&self, change: String) -> String {
+        match change.split_once('=') {
+            Some((field, value)) => format!("{field}={}", self.written.restored(field, value.to_owned())),
+            None => change,
+        }
+    }
+
+    /// Applies `FIELD=VALUE` as given to `--set`: a number, arithmetic, or any value in RON
     /// (`stops=Rigid(travel_limit_mm: 4, restitution: 0.36)`, `run.settle_s=None`). The quotes of a text may
     /// be left out.
     pub fn set(&mut self, argument: &str) -> Result<(), ArgumentError> {
@@ -172,6 +201,7 @@ impl Document {
         match FieldPath::new(field).follow(&mut self.scene, |found| replace(found, value)) {
             Some(Ok(())) => {
                 let (field, argument) = (field.to_owned(), clip(argument));
+                self.written.update(&field, value);
                 self.assigned.push(Assignment { field, argument, change: None });
                 if is_excitation {
                     self.record_faults =
@@ -308,7 +338,10 @@ impl Document {
     /// Adds to faults from any check the place where their value was written.
     pub fn error_from(&self, faults: Vec<Fault>) -> SceneError {
         let places = Places::of(self.text.strip_prefix('\u{feff}').unwrap_or(&self.text));
-        let place = |fault: Fault| {
+        let place = |mut fault: Fault| {
+            if let Some(shown) = self.written.shown(&fault.field, &fault.value) {
+                fault.value = shown;
+            }
             let origin = match self.argument_for(&fault.field) {
                 Some(argument) => Origin::Argument(argument.to_owned()),
                 None => places.find(&fault.field).map_or(Origin::Unwritten, Origin::Text),
@@ -323,9 +356,6 @@ impl Document {
     /// The last argument that set this field or a field around it; if there is none, the last argument that
     /// set a field inside it.
     fn argument_for(&self, field: &str) -> Option<&str> {
-        let covers = |outer: &str, inner: &str| {
-            inner.strip_prefix(outer).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
-        };
         let written = self.assigned.iter().rev();
         written
             .clone()
@@ -360,20 +390,24 @@ pub(super) fn structure_error<E: ToString>(
 ) -> SceneError {
     /// Largest number of unknown names that are removed.
     const MAX_UNKNOWN: usize = 20;
-    let message = |parse_error: &text::ParseError| {
-        let text::ParseError { place, problem, .. } = parse_error;
-        format!("{name}:{}:{}: {problem}", place.line, place.column)
-    };
+    let message = |place: Place, problem: &str| format!("{name}:{}:{}: {problem}", place.line, place.column);
     let lines = |error: &E| error.to_string().lines().map(str::to_owned).collect::<Vec<_>>();
     let (place, problem) = (parse_error.place, parse_error.problem.clone());
-    let (mut more, mut text) = (Vec::new(), text.strip_prefix('\u{feff}').unwrap_or(text).to_owned());
+    let arithmetic = |parse_error: &text::ParseError| -> Vec<String> {
+        parse_error.wrong.iter().map(|(place, problem)| message(*place, problem)).collect()
+    };
+    let mut more: Vec<String> = arithmetic(&parse_error).into_iter().skip(1).collect();
+    let mut text = text.strip_prefix('\u{feff}').unwrap_or(text).to_owned();
     while let Some(without) = parse_error.without_unknown(&text).filter(|_| more.len() < MAX_UNKNOWN) {
         text = without;
         match parse(&text) {
             // A field that is missing now may be the one that the unknown name was meant to be.
-            Some(next) if next.unknown.is_none() => break,
+            Some(next) if next.unknown.is_none() => {
+                more.extend(arithmetic(&next));
+                break;
+            }
             Some(next) => {
-                more.push(message(&next));
+                more.push(message(next.place, &next.problem));
                 parse_error = next;
             }
             None => {

@@ -3,6 +3,7 @@
 //! Paths are compared during the [traversal](super::walk), which skips branches that do not match. Setting a
 //! number takes about ten string comparisons and no allocation, which matters for a sweep of a million cells.
 
+use super::arithmetic::{evaluate, is_arithmetic};
 use super::data::Scene;
 use super::error::clip;
 use super::field_table::FieldInfo;
@@ -179,41 +180,54 @@ fn paths(scene: &Scene, is_listed: fn(&str, Field<'_>) -> bool) -> Vec<String> {
 /// Assigns the text `value` to a field; the error is a sentence.
 pub(super) fn replace(found: Field<'_>, value: &str) -> Result<(), String> {
     let message = |parse_error: ParseError| format!("`{}`: {}", clip(value), parse_error.problem);
-    let written =
-        |value: &str| text::options().from_str(value).map_err(|e| message(text::parse_error(value, &e)));
     match found {
         Field::Number(spec, Slot::Required(number)) => {
-            let read = parse_number(value).ok_or_else(|| no_number(value, "is not a number", spec))?;
-            *number = unless_overflow(read, value, spec)?;
+            *number = unless_overflow(number_in(value, "is not a number", spec)?, value, spec)?;
             Ok(())
         }
         Field::Number(spec, Slot::Optional(number)) => {
-            let none = || text::options().from_str(value).ok();
-            let read = parse_number(value).map(Some).or_else(none);
-            let read = read.ok_or_else(|| no_number(value, "is neither a number nor None", spec))?;
+            let read = match number_in(value, "is neither a number nor None", spec) {
+                Ok(read) => Some(read),
+                Err(problem) => text::value(value).map_err(|_| problem)?,
+            };
             *number = unless_overflow(read, value, spec)?;
             Ok(())
         }
         Field::Number(spec, Slot::Whole(number)) => {
-            let whole = value.trim().parse().ok();
-            *number = whole.ok_or_else(|| no_number(value, "is not a whole number from 0 up", spec))?;
+            let what = "is not a whole number from 0 up";
+            *number = match value.trim().parse() {
+                Ok(whole) => whole,
+                Err(_) if is_arithmetic(value) => {
+                    let read = number_in(value, what, spec)?;
+                    let problem = || format!("`{}` = {read} {what}; {}", clip(value), spec.remedy);
+                    read.to_string().parse().map_err(|_| problem())?
+                }
+                Err(_) => return Err(no_number(value, what, spec)),
+            };
             Ok(())
         }
         Field::Text(text) => {
             let quoted = ["\"", "r\"", "r#"].iter().any(|first| value.starts_with(first));
-            *text = if quoted { written(value)? } else { value.to_owned() };
+            *text = if quoted { text::value(value).map_err(message)? } else { value.to_owned() };
             Ok(())
         }
         Field::Value(whole) => {
             text::overflow(value).map_or(Ok(()), |overflow| Err(message(overflow)))?;
-            whole.assign(value).map_err(|error| message(text::parse_error(value, &error)))
+            whole.assign(value).map_err(message)
         }
     }
 }
 
-/// Parses a number in the notation of RON or Rust: `4`, `.5`, `1e-9`, `-inf`.
-fn parse_number(text: &str) -> Option<f64> {
-    text.parse().ok().or_else(|| text::options().from_str(text).ok())
+/// Reads a number in the notation of RON or Rust (`4`, `.5`, `1e-9`, `-inf`) or arithmetic. `what` says what
+/// any other text is not.
+fn number_in(value: &str, what: &str, spec: &FieldInfo) -> Result<f64, String> {
+    match value.parse() {
+        Ok(plain) => Ok(plain),
+        Err(_) if is_arithmetic(value) => {
+            evaluate(value).map_err(|problem| format!("`{}`: {}; {}", clip(value), problem.what, spec.remedy))
+        }
+        Err(_) => text::options().from_str(value).map_err(|_| no_number(value, what, spec)),
+    }
 }
 
 /// Returns `read` unless the text `value` is a decimal that overflows to infinity.

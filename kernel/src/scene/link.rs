@@ -18,7 +18,6 @@ use super::arguments::arguments;
 use super::document::{Document, Source};
 use super::error::{SceneError, clip};
 use super::files::Files;
-use super::text;
 
 /// Largest link in bytes; browsers take about as much.
 const MAX_LINK: usize = 64 << 10;
@@ -100,10 +99,11 @@ impl Document {
             Source::File(_) | Source::Text => None,
         };
         if let Some((preset, scene)) = &built_in {
-            payload.set = arguments(scene, &self.scene);
+            let changes = arguments(scene, &self.scene);
+            payload.set = changes.into_iter().map(|change| self.written(change)).collect();
             name = preset;
         } else {
-            payload.text = text::write(&self.scene).map_err(|_| LinkError::Scene)?;
+            payload.text = self.write(&self.scene).map_err(|_| LinkError::Scene)?;
         }
         for path in self.paths() {
             let read = self.files.read(&path).map_err(|error| LinkError::Unreadable(error.to_string()))?;

@@ -27,6 +27,7 @@
 //! ```
 
 mod arguments;
+mod arithmetic;
 mod axis;
 mod check;
 mod columns;
@@ -53,8 +54,10 @@ mod timing;
 mod transducer;
 mod unit;
 mod walk;
+mod written;
 
 pub use arguments::arguments;
+pub use arithmetic::read_number;
 pub use axis::{Axis, MAX_AXES, MAX_AXIS_VALUES, column_names};
 pub(crate) use check::is_sound;
 pub use check::{Checked, check, corners};

@@ -1,4 +1,4 @@
-//! Scanner for RON texts that finds fields and their places, comments and overflowing numbers.
+//! Scanner for RON texts that finds fields and their places, comments and numbers.
 //!
 //! serde keeps no positions. This is not a second parser, which could disagree with RON: it only follows
 //! brackets, strings, comments and `name:`, and never fails. It makes one pass and takes linear time. In a
@@ -6,6 +6,8 @@
 //! text it finds some of the fields, enough to name the field near which a parser stopped.
 
 use std::ops::Range;
+
+use super::arithmetic;
 
 /// One part of a path.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -43,25 +45,77 @@ struct Found {
     end: usize,
 }
 
+/// A number in a text.
+#[derive(Debug, Clone)]
+pub(super) struct Number {
+    /// Index of the field that it belongs to.
+    field: Option<usize>,
+    pub bytes: Range<usize>,
+    /// Whether it is written as arithmetic.
+    pub is_arithmetic: bool,
+}
+
 pub(super) struct Scanner<'t> {
+    whole: &'t str,
     text: &'t [u8],
     at: usize,
     /// The fields in the order of the text.
     found: Vec<Found>,
     comments: bool,
-    /// The bytes of the first decimal number that exceeds the largest double.
-    pub overflow: Option<Range<usize>>,
+    /// The numbers in the order of the text, but not the words `inf` and `NaN`.
+    pub numbers: Vec<Number>,
+}
+
+/// The first byte from `at` on that is neither blank nor in a comment, and whether there was a comment.
+pub(super) fn skip_blank(text: &[u8], mut at: usize) -> (usize, bool) {
+    let starts = |at: usize, with: &[u8]| text[at..].starts_with(with);
+    let mut comments = false;
+    while let Some(byte) = text.get(at) {
+        if byte.is_ascii_whitespace() {
+            at += 1;
+        } else if starts(at, b"//") {
+            comments = true;
+            at += text[at..].iter().position(|byte| *byte == b'\n').map_or(text.len() - at, |end| end + 1);
+        } else if starts(at, b"/*") {
+            comments = true;
+            at += 2;
+            let mut open = 1;
+            while open > 0 && at < text.len() {
+                match (starts(at, b"/*"), starts(at, b"*/")) {
+                    (true, _) => (open, at) = (open + 1, at + 2),
+                    (_, true) => (open, at) = (open - 1, at + 2),
+                    _ => at += 1,
+                }
+            }
+        } else {
+            break;
+        }
+    }
+    (at, comments)
 }
 
 impl<'t> Scanner<'t> {
     /// Scans a text to its end.
     pub fn over(text: &'t str) -> Self {
-        let text = text.as_bytes();
-        let mut scanner = Self { text, at: 0, found: Vec::new(), comments: false, overflow: None };
+        let (found, numbers) = (Vec::new(), Vec::new());
+        let mut scanner = Self { whole: text, text: text.as_bytes(), at: 0, found, comments: false, numbers };
         scanner.header();
         scanner.value(None, 0);
         scanner.blank();
         scanner
+    }
+
+    /// The bytes of the first decimal number that exceeds the largest double.
+    pub fn overflow(&self) -> Option<Range<usize>> {
+        let is_over = |number: &&Number| {
+            !number.is_arithmetic && overflows(&String::from_utf8_lossy(&self.text[number.bytes.clone()]))
+        };
+        self.numbers.iter().find(is_over).map(|number| number.bytes.clone())
+    }
+
+    /// The path of the field that a number belongs to; empty for the value of the whole text.
+    pub fn path(&self, number: &Number) -> String {
+        number.field.map_or(String::new(), |field| path(&self.found, field))
     }
 
     fn peek(&self) -> Option<u8> {
@@ -91,27 +145,8 @@ impl<'t> Scanner<'t> {
     }
 
     fn blank(&mut self) {
-        while let Some(byte) = self.peek() {
-            if byte.is_ascii_whitespace() {
-                self.at += 1;
-            } else if self.starts(b"//") {
-                self.comments = true;
-                self.skip_to(b"\n");
-            } else if self.starts(b"/*") {
-                self.comments = true;
-                self.at += 2;
-                let mut open = 1;
-                while open > 0 && self.at < self.text.len() {
-                    match (self.starts(b"/*"), self.starts(b"*/")) {
-                        (true, _) => (open, self.at) = (open + 1, self.at + 2),
-                        (_, true) => (open, self.at) = (open - 1, self.at + 2),
-                        _ => self.at += 1,
-                    }
-                }
-            } else {
-                return;
-            }
-        }
+        let (at, comments) = skip_blank(self.text, self.at);
+        (self.at, self.comments) = (at, self.comments || comments);
     }
 
     fn string(&mut self) {
@@ -155,6 +190,14 @@ impl<'t> Scanner<'t> {
 
     fn value(&mut self, around: Option<usize>, depth: usize) {
         self.blank();
+        let begin = self.at;
+        if self.peek().is_some_and(|byte| byte.is_ascii_digit() || b"-.(pgs".contains(&byte))
+            && let Some(end) = arithmetic::end(self.whole, begin)
+        {
+            self.at = end;
+            self.numbers.push(Number { field: around, bytes: begin..end, is_arithmetic: true });
+            return;
+        }
         match self.peek() {
             None => {}
             Some(b'"') => self.string(),
@@ -169,14 +212,12 @@ impl<'t> Scanner<'t> {
                         self.inside(b')', &variant, around, depth);
                     }
                 } else {
-                    let begin = self.at;
                     while self.peek().is_some_and(|byte| !b",()[]{}/\" \t\r\n".contains(&byte)) {
                         self.at += 1;
                     }
-                    if self.overflow.is_none()
-                        && overflows(&String::from_utf8_lossy(&self.text[begin..self.at]))
-                    {
-                        self.overflow = Some(begin..self.at);
+                    if begin < self.at {
+                        let bytes = begin..self.at;
+                        self.numbers.push(Number { field: around, bytes, is_arithmetic: false });
                     }
                 }
             }
@@ -244,6 +285,19 @@ impl<'t> Scanner<'t> {
         self.at = begin;
         None
     }
+}
+
+/// The dotted path of a field.
+fn path(fields: &[Found], field: usize) -> String {
+    let outwards = std::iter::successors(Some(field), |field| fields[*field].around);
+    let mut parts: Vec<String> = outwards
+        .map(|field| match &fields[field].part {
+            Part::Name(name) => name.clone(),
+            Part::Index(index) => index.to_string(),
+        })
+        .collect();
+    parts.reverse();
+    parts.join(".")
 }
 
 /// Whether a text is a decimal number that exceeds the largest double; `inf` is not.
@@ -316,16 +370,8 @@ impl<'t> Places<'t> {
     /// The path of the last field that begins at or before a place.
     pub fn last_before(&self, place: Place) -> Option<String> {
         let at = place.byte(self.text);
-        let last = self.fields.iter().rev().find(|field| field.at <= at)?;
-        let outwards = std::iter::successors(Some(last), |field| field.around.map(|i| &self.fields[i]));
-        let mut parts: Vec<String> = outwards
-            .map(|field| match &field.part {
-                Part::Name(name) => name.clone(),
-                Part::Index(index) => index.to_string(),
-            })
-            .collect();
-        parts.reverse();
-        Some(parts.join("."))
+        let last = self.fields.iter().rposition(|field| field.at <= at)?;
+        Some(path(&self.fields, last))
     }
 
     /// Whether a field has this path, compared from its end, where most paths differ.
@@ -358,7 +404,7 @@ mod tests {
 
     #[test]
     fn numbers_beyond_the_largest_are_found() {
-        let overflow = |text: &str| Scanner::over(text).overflow.map(|bytes| text[bytes].to_owned());
+        let overflow = |text: &str| Scanner::over(text).overflow().map(|bytes| text[bytes].to_owned());
         for text in ["(a: 1, b: [2, -1e400])", "-1e400", "X(a: -1e400 /* 1e500 */)", "[(-1e400)]"] {
             assert_eq!(overflow(text).as_deref(), Some("-1e400"), "{text}");
         }

@@ -2,11 +2,17 @@
 //!
 //! The extension `implicit_some` is on, so that `settle_s: 5` needs no `Some`. A parse error is reported with
 //! its place, its field and, for an unknown name, the known names.
+//!
+//! Arithmetic is replaced by its value before RON reads the text, wherever a value stands.
+
+use std::borrow::Cow;
+use std::ops::Range;
 
 use ron::error::{Error as Ron, SpannedError};
 use ron::extensions::Extensions;
 use serde::de::DeserializeOwned;
 
+use super::arithmetic::evaluate;
 use super::data::*;
 use super::error::clip;
 use super::mechanism::Mechanism;
@@ -30,12 +36,18 @@ pub(super) struct ParseError {
     pub problem: String,
     /// The name of an unknown field, if that is the error.
     pub unknown: Option<String>,
+    /// All errors of arithmetic, if the first of them is that error.
+    pub wrong: Vec<(Place, String)>,
 }
 
 impl ParseError {
     /// An error of the whole text.
     pub(super) fn at_start(problem: impl Into<String>) -> Self {
-        Self { place: Place { line: 1, column: 1 }, problem: problem.into(), unknown: None }
+        Self::new(Place { line: 1, column: 1 }, problem.into())
+    }
+
+    fn new(place: Place, problem: String) -> Self {
+        Self { place, problem, unknown: None, wrong: Vec::new() }
     }
 
     /// The text with the unknown field replaced by blanks, so that further errors can be found
@@ -73,8 +85,81 @@ pub(super) fn read<T: DeserializeOwned>(text: &str) -> Result<T, ParseError> {
         let problem = format!("{} bytes are more than are read ({MAX_SCENE_BYTES})", text.len());
         return Err(ParseError::at_start(problem));
     }
-    let read = options().from_str(text).map_err(|error| parse_error(text, &error))?;
+    let read = value(text)?;
     overflow(text).map_or(Ok(read), Err)
+}
+
+/// Reads a RON value whose numbers may be arithmetic.
+pub(super) fn value<T: DeserializeOwned>(text: &str) -> Result<T, ParseError> {
+    let evaluated = Evaluated::of(text);
+    let read = options().from_str(&evaluated.text).map_err(|error| evaluated.parse_error(text, &error));
+    match (read, evaluated.wrong.first().cloned()) {
+        // what comes before a broken expression may be why it is taken for one
+        (Err(error), Some((place, _))) if error.place < place => Err(error),
+        (_, Some((place, problem))) => {
+            Err(ParseError { wrong: evaluated.wrong, ..ParseError::new(place, problem) })
+        }
+        (read, None) => read,
+    }
+}
+
+/// A RON text with its arithmetic replaced by values.
+struct Evaluated<'t> {
+    text: Cow<'t, str>,
+    /// The bytes of each value here, and those of its arithmetic in the text before.
+    replaced: Vec<(Range<usize>, Range<usize>)>,
+    /// The first errors.
+    wrong: Vec<(Place, String)>,
+}
+
+impl<'t> Evaluated<'t> {
+    fn of(text: &'t str) -> Self {
+        /// Largest number of errors.
+        const MAX_WRONG: usize = 50;
+        let scanned = Scanner::over(text);
+        let (mut replaced, mut wrong) = (Vec::new(), Vec::new());
+        let (mut values, mut from) = (String::new(), 0);
+        for number in scanned.numbers.iter().filter(|number| number.is_arithmetic) {
+            let written = &text[number.bytes.clone()];
+            let value = evaluate(written).unwrap_or_else(|problem| {
+                if wrong.len() < MAX_WRONG {
+                    let (path, written) = (clip(&scanned.path(number)), clip(written));
+                    let field = if path.is_empty() { path } else { path + ": " };
+                    let place = Place::of_byte(text, number.bytes.start + problem.at);
+                    wrong.push((place, format!("{field}`{written}`: {}", problem.what)));
+                }
+                0.0
+            });
+            values += &text[from..number.bytes.start];
+            let begin = values.len();
+            // a field of a whole number takes no exponent
+            values += &if value.abs() < 1e17 { value.to_string() } else { format!("{value:e}") };
+            replaced.push((begin..values.len(), number.bytes.clone()));
+            from = number.bytes.end;
+        }
+        let text = if replaced.is_empty() { text.into() } else { (values + &text[from..]).into() };
+        Self { text, replaced, wrong }
+    }
+
+    /// The error of RON with its place in the text `before`.
+    fn parse_error(&self, before: &str, error: &SpannedError) -> ParseError {
+        let place = Place { line: error.span.start.line, column: error.span.start.col };
+        if self.replaced.is_empty() {
+            return parse_error(before, place, error);
+        }
+        let at = place.byte(&self.text);
+        let count = self.replaced.partition_point(|(value, _)| value.start <= at);
+        let Some((value, written)) = count.checked_sub(1).map(|last| &self.replaced[last]) else {
+            return parse_error(before, Place::of_byte(before, at), error);
+        };
+        if at >= value.end {
+            let at = written.end + (at - value.end);
+            return parse_error(before, Place::of_byte(before, at), error);
+        }
+        let mut found = parse_error(before, Place::of_byte(before, written.start), error);
+        found.problem += &format!("; `{}` is {}", clip(&before[written.clone()]), &self.text[value.clone()]);
+        found
+    }
 }
 
 /// Message about a decimal number that overflows a double.
@@ -82,19 +167,18 @@ pub(super) const TOO_LARGE: &str = "is beyond the largest number, 1.8e308";
 
 /// The error for a decimal number that overflows a double; `None` if the text has none.
 pub(super) fn overflow(text: &str) -> Option<ParseError> {
-    let bytes = Scanner::over(text).overflow?;
+    let bytes = Scanner::over(text).overflow()?;
     let place = Place::of_byte(text, bytes.start);
     let field = Places::of(text).last_before(place);
     let field = field.map_or(String::new(), |field| format!("{}: ", clip(&field)));
     let number = clip(&text[bytes]);
     let problem =
         format!("{field}{number} {TOO_LARGE}; write a smaller one, or inf where a field takes that");
-    Some(ParseError { place, problem, unknown: None })
+    Some(ParseError::new(place, problem))
 }
 
-pub(super) fn parse_error(text: &str, error: &SpannedError) -> ParseError {
+fn parse_error(text: &str, place: Place, error: &SpannedError) -> ParseError {
     let trailing = error.code == Ron::TrailingCharacters;
-    let place = Place { line: error.span.start.line, column: error.span.start.col };
     let place = token_at(text, place, trailing);
     let named = matches!(
         error.code,
@@ -120,7 +204,7 @@ pub(super) fn parse_error(text: &str, error: &SpannedError) -> ParseError {
         _ => None,
     };
     let problem = field.map_or(problem.clone(), |field| format!("{}: {problem}", clip(&field)));
-    ParseError { unknown, place, problem }
+    ParseError { unknown, ..ParseError::new(place, problem) }
 }
 
 /// The correct text if the number at `place` has a name and must not have one, such as `Ratio(0.1)` for

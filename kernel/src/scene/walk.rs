@@ -13,7 +13,7 @@ use super::data::*;
 use super::field_table::{FieldInfo, row};
 use super::mechanism::{FlexureGroup, Mechanism};
 use super::stops::Stops;
-use super::text;
+use super::text::{self, ParseError};
 use super::transducer::Transducer;
 
 #[derive(Debug, Clone, Copy)]
@@ -58,15 +58,15 @@ impl Slot<'_> {
 
 /// A value that can be replaced from RON text.
 pub(super) trait Assign {
-    fn assign(&mut self, ron: &str) -> ron::error::SpannedResult<()>;
+    fn assign(&mut self, ron: &str) -> Result<(), ParseError>;
 
     /// The value as a word, for a choice its name; `None` for the choice `None`, an absent option and a list.
     fn word(&self) -> Option<String>;
 }
 
 impl<T: DeserializeOwned + Serialize> Assign for T {
-    fn assign(&mut self, ron: &str) -> ron::error::SpannedResult<()> {
-        *self = text::options().from_str(ron)?;
+    fn assign(&mut self, ron: &str) -> Result<(), ParseError> {
+        *self = text::value(ron)?;
         Ok(())
     }
 

@@ -8,7 +8,7 @@ use std::path::Path;
 use crate::output::write_file;
 use crate::scene::{
     Document, Excitation, FileError, Files, Scene, SceneError, Source, Start, is_link, named_paths,
-    numeric_fields, write,
+    numeric_fields,
 };
 use crate::system;
 
@@ -75,7 +75,7 @@ impl Editor {
     }
 
     pub fn text(&self) -> Result<String, String> {
-        text_of(&self.runnable().scene)
+        text_of(&self.runnable())
     }
 
     /// Whether the file of the scene has comments, which are not part of a scene.
@@ -197,7 +197,7 @@ impl Editor {
         self.end_gesture();
         let mut document = self.document.clone();
         let copied = copy_files(&mut document.scene, &document.files, path)?;
-        document.text = text_of(&runnable(&document).scene)?;
+        document.text = text_of(&runnable(&document))?;
         write_file(path, document.text.as_bytes())?;
         (document.name, document.source) = (path.display().to_string(), Source::File(path.to_owned()));
         let before = std::mem::replace(&mut document.files, Files::beside(path));
@@ -219,8 +219,9 @@ fn runnable(document: &Document) -> Document {
     document
 }
 
-fn text_of(scene: &Scene) -> Result<String, String> {
-    write(scene).map_err(|error| format!("the scene cannot be written as text: {error}"))
+fn text_of(document: &Document) -> Result<String, String> {
+    let text = document.write(&document.scene);
+    text.map_err(|error| format!("the scene cannot be written as text: {error}"))
 }
 
 /// Moves a start that lies beyond a stop to that stop.

@@ -10,6 +10,7 @@ use eframe::egui::{self, Color32, DragValue, Key, Response, RichText, Shape, Sli
 
 use crate::app::words::fields::Reach;
 use crate::app::words::numbers::{decimal, decimals, exact, rounded, shown};
+use crate::scene::read_number;
 
 use super::style::{COMPACT_BELOW, CONTROL, NUMBER, Style};
 use super::widgets::hover_beside;
@@ -189,8 +190,9 @@ impl Knob<'_> {
             return Err(format!("No number was typed: {stays}"));
         }
         let is_number = |value: &f64| value.is_finite() || *value == self.typed.1;
-        let read = |text: &str| text.parse::<f64>().ok().filter(is_number);
-        let Some(value) = read(&with_point(&number)) else {
+        let read = |text: &str| read_number(text).ok().filter(is_number);
+        // the end of arithmetic may look like the unit, as in 0.21/g
+        let Some(value) = read(&with_point(&number)).or_else(|| read(&text.replace('−', "-"))) else {
             let point = match read(&number.replace(',', "")) {
                 Some(_) if number.contains(',') => " Write it with a point or without a comma.",
                 _ => "",
@@ -344,6 +346,20 @@ mod tests {
             [("1,2", 1.2), ("0,125", 0.125), ("-1,5 g", -1.5), ("1,2345", 1.2345), ("2,5e-1", 0.25)]
         {
             assert_eq!(parsed(text), Ok(value));
+        }
+        // arithmetic, with and without the unit, whose letter is also standard gravity
+        for (text, value) in [
+            ("1/3", 1.0 / 3.0),
+            ("sqrt(2)/3 g", 2.0_f64.sqrt() / 3.0),
+            ("0.21/g", 0.21 / 9.80665),
+            ("0.21/g g", 0.21 / 9.80665),
+            ("−(1+2)^2", -9.0),
+            ("1,5/2", 0.75),
+        ] {
+            assert_eq!(parsed(text), Ok(value), "{text}");
+        }
+        for text in ["1/0", "2*x", "1/", "(1+2"] {
+            assert_eq!(parsed(text), Err(format!("“{text}” is no number: amplitude stays 0.9 g.")));
         }
         let with_comma = "is no number: amplitude stays 0.9 g. Write it with a point or without a comma.";
         for (text, why) in [("1,5,2", with_comma), ("1,234", with_comma)]

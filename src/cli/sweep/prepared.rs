@@ -7,7 +7,7 @@ use clap::Args;
 use interwell::mechanics::{BuildError, Mechanism};
 use interwell::output::{Cut, View, can_show, plan};
 use interwell::questions::{Error, column_names};
-use interwell::scene::{Document, is_manifest};
+use interwell::scene::{Document, is_manifest, read_number};
 use interwell::study::{Carry, Grid, Shard, Slice, SummaryField, Sweep, SweepOptions};
 use serde_json::{Value, json};
 
@@ -165,7 +165,7 @@ fn view(options: &Arguments, grid: &Grid) -> Result<View, Failure> {
         let mut fields = grid.axes().iter().zip(grid.columns());
         let place = fields.position(|(axis, column)| axis.field == field || column == field);
         let place = place.ok_or_else(|| wrong(format!("no field of the sweep; these are: {}", known())))?;
-        let value: f64 = value.trim().parse().map_err(|_| form())?;
+        let value = read_number(value).map_err(|_| form())?;
         let column = grid.columns()[place].clone();
         let values = &grid.axes()[place].values;
         if !values.contains(&value) {

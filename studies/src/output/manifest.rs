@@ -128,7 +128,7 @@ impl Manifest<'_> {
             "cpu_s": origin.cpu_s,
             "scene": scene_value(scene),
             // null if it cannot be written, rather than an empty scene
-            "scene_ron": crate::scene::write(scene).ok(),
+            "scene_ron": document.write(scene).ok(),
             "files": document.files.cached,
         });
         extend(&mut all, end);
@@ -189,7 +189,7 @@ pub fn origin(document: &Document, version: &str) -> Map<String, Value> {
         "title": scene.title,
         "tolerance": scene.run.tolerance,
         "seed": seed(scene),
-        "scene_ron": crate::scene::write(scene).ok(),
+        "scene_ron": document.write(scene).ok(),
     });
     if let Value::Object(all) = all { all } else { Map::new() }
 }

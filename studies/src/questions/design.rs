@@ -3,7 +3,9 @@
 use super::grid::drive_alone;
 use super::{Error, Progress, Simulation, check_until_settled};
 use crate::numeric::number_text;
-use crate::scene::{Axis, Document, Excitation, FieldPath, RunSettings, Start, Transducer, is_whole};
+use crate::scene::{
+    Axis, Document, Excitation, FieldPath, RunSettings, Start, Transducer, is_whole, read_number,
+};
 use crate::study::{
     Alternative, BestDesign, BestQuestion, Constraint, DesignRange, Environment, INTERVALS, MOST_FIELDS,
     NoBest, Rated, Read, SUMMARY_FIELDS, SummaryField, Table, Variation, alternatives, best,
@@ -311,7 +313,7 @@ fn ranges(over: &[String], document: &Document) -> Result<Vec<DesignRange>, Erro
             Some(step) => {
                 let fits = |step: &f64| *step > 0.0 && step.is_finite() && (!whole || step.fract() == 0.0);
                 let kind = if whole { "whole number" } else { "number" };
-                let step = step.trim().parse().ok().filter(fits);
+                let step = read_number(step).ok().filter(fits);
                 let step = step.ok_or_else(|| wrong(format!("the step must be a {kind} above 0")))?;
                 let intervals = ((high - low) / step).round();
                 if !(1.0..=1e5).contains(&intervals) {
@@ -360,7 +362,7 @@ fn constraint(text: &str) -> Result<Constraint, Error> {
         (None, Some((name, limit))) => (name, limit, false),
         _ => return Err(wrong()),
     };
-    let limit = limit.trim().parse().ok().filter(|limit: &f64| limit.is_finite()).ok_or_else(wrong)?;
+    let limit = read_number(limit).ok().filter(|limit| limit.is_finite()).ok_or_else(wrong)?;
     Ok(Constraint { of: number("subject_to", text, name.trim())?, at_most, limit })
 }
 
@@ -381,7 +383,7 @@ fn variation(text: &str, document: &Document) -> Result<Variation, Error> {
     }
     let by = by.trim().trim_start_matches("+-").trim_start_matches('\u{b1}');
     let (number, relative) = by.strip_suffix('%').map_or((by, false), |share| (share, true));
-    let number = number.trim().parse().ok().filter(|number: &f64| *number >= 0.0 && number.is_finite());
+    let number = read_number(number).ok().filter(|number| *number >= 0.0 && number.is_finite());
     let number = number.ok_or_else(|| wrong(form))?;
     if relative && value == 0.0 {
         return Err(wrong("a share of 0 is nothing; give the tolerance in the unit of the field"));
@@ -394,7 +396,7 @@ fn variation(text: &str, document: &Document) -> Result<Variation, Error> {
 /// that an error names.
 fn weighted<'a>(text: &'a str, whole: &str) -> Result<(&'a str, f64), Error> {
     let Some((text, weight)) = text.rsplit_once('*') else { return Ok((text.trim(), 1.0)) };
-    let weight = weight.trim().parse().ok().filter(|weight: &f64| *weight > 0.0 && weight.is_finite());
+    let weight = read_number(weight).ok().filter(|weight| *weight > 0.0 && weight.is_finite());
     let problem = "the weight after * must be a number above 0";
     Ok((text.trim(), weight.ok_or_else(|| Error::argument("environment", whole, problem))?))
 }

@@ -38,6 +38,7 @@ pub fn scene(bytes: &[u8]) {
         Err(error) => return in_words(error, NAME),
     };
     reads_back(&document.scene);
+    keeps_arithmetic(&document);
     if let Err(error) = document.axes::<&str>(&[]) {
         in_words(error, NAME);
     }
@@ -140,6 +141,7 @@ pub fn set(bytes: &[u8]) {
         }
     }
     reads_back(&document.scene);
+    keeps_arithmetic(&document);
     match document.check() {
         Ok(_) => can_be_set(&document.scene),
         Err(error) => in_words(error, ""),
@@ -204,9 +206,10 @@ fn harmless(bytes: &[u8]) -> Option<&str> {
 }
 
 /// A built-in scene, named by the first line, and the further lines as arguments; none where one names a
-/// file.
+/// file by a path with folders.
 fn preset_and_arguments(bytes: &[u8]) -> Option<(Document, Vec<&str>)> {
-    let text = std::str::from_utf8(bytes).ok().filter(|text| !text.contains(['/', '\\']))?;
+    let names_a_file = |text: &&str| text.contains("path") && text.contains(['/', '\\']);
+    let text = std::str::from_utf8(bytes).ok().filter(|text| !names_a_file(text))?;
     let mut lines = text.lines();
     let name = lines.next()?;
     let preset = scene::PRESETS.iter().find(|preset| preset.name == name)?;
@@ -260,6 +263,18 @@ fn reads_back(scene: &scene::Scene) {
     if *scene == scene.clone() {
         assert_eq!(again, *scene, "{written}");
     }
+}
+
+/// The text with arithmetic as it was written reads as the same scene, and is written so again.
+#[track_caller]
+fn keeps_arithmetic(document: &Document) {
+    let text = document.write(&document.scene).unwrap();
+    let again = match Document::from_text("written", &text, Files::default()) {
+        Ok(again) => again,
+        Err(error) => panic!("{error}\n{text}"),
+    };
+    assert_eq!(again.write(&again.scene).unwrap(), text);
+    assert_eq!(write(&again.scene).unwrap(), write(&document.scene).unwrap(), "{text}");
 }
 
 /// The arguments that the program offers for a scene make it from another one.

@@ -4,6 +4,7 @@ use eframe::egui::{self, ComboBox, TextStyle, Ui, UiBuilder};
 
 use crate::app::session::accuracy::Accuracy;
 use crate::output::{Chart, Marks, Panel, PlotAxis, Role};
+use crate::scene::read_number;
 use crate::study::Table;
 use crate::study::accuracy::methods::Scheme;
 use crate::study::accuracy::scene::{StepSize, step_name};
@@ -173,16 +174,12 @@ fn rounded(step: f64) -> f64 {
     format!("{step:.1e}").parse().unwrap_or(step).clamp(RANGE.0, RANGE.1)
 }
 
-/// A typed step: a fraction of a second, or a number of ms, µs or s.
+/// A typed step: a number or arithmetic, such as 1/1000, in s, ms or µs.
 fn parsed(text: &str) -> Option<f64> {
     let text = text.trim();
     let units = [("ms", 1e-3), ("µs", 1e-6), ("us", 1e-6), ("s", 1.0), ("", 1.0)];
     let (number, unit) = units.iter().find_map(|(name, unit)| Some((text.strip_suffix(name)?, *unit)))?;
-    let value = match number.split_once('/') {
-        Some((above, below)) => above.trim().parse::<f64>().ok()? / below.trim().parse::<f64>().ok()?,
-        None => number.trim().parse().ok()?,
-    };
-    Some(value * unit).filter(|step| step.is_finite())
+    Some(read_number(number).ok()? * unit).filter(|step| step.is_finite())
 }
 
 /// The run in fixed steps over the true one.
