@@ -1,11 +1,15 @@
 //! `best`: the best design for an environment, one row, with its margins.
 
+use std::path::PathBuf;
+
 use clap::Args;
 use interwell::questions::Best;
+use interwell::scene::Document;
 use interwell::study::{NoBest, Task, best, names, place, quantity, scan_runs};
+use interwell::system::files::is_file;
 
-use super::support::{load, outputs, pool, waits, warn};
-use super::{Common, Failure, Output, bar, interrupt, say};
+use super::support::{inputs, load, pool, waits, warn};
+use super::{Common, Failure, Output, Outputs, bar, interrupt, say};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -76,7 +80,9 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let question = asked.question(&document)?;
     warn(&document, common, &warnings, None);
     let pool = pool(common)?;
-    let mut outputs = outputs(&options.scene, &document, common)?;
+    let environments = environment_files(&options.environment);
+    let read = [inputs(&options.scene, &document), environments.clone()].concat();
+    let mut outputs = Outputs::new(&read).with_rows(Some(common.out()))?.reading(&environments)?;
     let bar = bar(scan_runs(&question), 0, "runs", common);
     // the number of runs after the scan is not known in advance
     let tick = || bar.inc_beyond();
@@ -93,5 +99,18 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let design = found.map_err(|why| asked.no_best(why, &question, &document))?;
     outputs.table(Output::DATA, &design.table(&question))?;
     design.words(&question).iter().for_each(|line| common.say(&format!("{}: {line}", document.name)));
-    outputs.finish()
+    outputs.finish_rows(&document, pool.count())
+}
+
+/// The files that environments are read from: records, and scenes with the files that these name.
+fn environment_files(environments: &[String]) -> Vec<PathBuf> {
+    let file = |text: &String| {
+        let without_weight = text.rsplit_once('*').map_or(&**text, |(name, _)| name).trim();
+        [&**text, without_weight].map(PathBuf::from).into_iter().find(|path| is_file(path))
+    };
+    let mut files: Vec<PathBuf> = environments.iter().filter_map(file).collect();
+    let scenes = files.iter().filter_map(|path| Document::of_argument(&path.to_string_lossy()).ok());
+    let named: Vec<PathBuf> = scenes.flat_map(|document| document.named_files()).collect();
+    files.extend(named);
+    files
 }

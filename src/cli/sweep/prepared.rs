@@ -7,7 +7,7 @@ use clap::Args;
 use interwell::mechanics::{BuildError, Mechanism};
 use interwell::output::{Cut, View, can_show, plan};
 use interwell::questions::{Error, column_names, refuse_electrical_state};
-use interwell::scene::{Document, is_manifest};
+use interwell::scene::Document;
 use interwell::study::{Carry, Grid, Shard, Slice, SummaryField, Sweep, SweepOptions};
 use serde_json::{Value, json};
 
@@ -106,14 +106,14 @@ impl<'a> Prepared<'a> {
     /// Loads the scene, checks the arguments and prints the warnings. An argument overrides a manifest that
     /// is given as the scene.
     pub fn new(options: &'a Arguments, common: &Common) -> Result<Self, Failure> {
-        if options.check && !is_manifest(options.scene.as_ref()) {
+        let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
+        let (mut document, warnings) = load(&options.scene, common, Some(&options.over))?;
+        if options.check && document.swept.is_none() {
             refuse!(
                 "--check {}: give the manifest of a sweep, such as map.csv.json, as the scene",
                 options.scene
             );
         }
-        let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
-        let (mut document, warnings) = load(&options.scene, common, Some(&options.over))?;
         // Rows, plan and manifest then refer to the same bytes, even if the files change during the sweep.
         document.cache_files();
         let swept = document.swept.clone().unwrap_or_default();

@@ -30,7 +30,7 @@ mod text;
 
 pub use csv::{csv, csv_table, header, rows};
 pub use json::{identified, landscape, summary};
-pub use manifest::{Made, Manifest, Provenance, merged_manifest};
+pub use manifest::{Made, Manifest, Provenance, manifest_path, merged_manifest, repeated};
 pub use plan::{plan, plan_checksum, plan_differences};
 pub use plot::{
     Area, Argument, BLACK, Caption, Cell, Cells, Chart, Colours, Column, ComparisonPicture, Cut,
