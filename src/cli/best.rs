@@ -3,13 +3,14 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use interwell::output::{BestPicture, best_chart};
 use interwell::questions::Best;
 use interwell::scene::Document;
 use interwell::study::{NoBest, Task, best, names, place, quantity, scan_runs};
 use interwell::system::files::is_file;
 
 use super::support::{inputs, load, pool, waits, warn};
-use super::{Common, Failure, Output, Outputs, bar, interrupt, say};
+use super::{ChartOptions, Common, Failure, Output, Outputs, Picture, bar, caption, interrupt, say};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -63,10 +64,16 @@ pub struct Arguments {
     /// Seed of the samples of --vary
     #[arg(long, value_name = "SEED", default_value_t = 1)]
     pub seed: u64,
+
+    /// The picture: over one field the values that were tried, over two a map of the scan, over more the
+    /// values in the order in which they were tried.
+    #[command(flatten)]
+    pub chart: ChartOptions,
 }
 
 /// Searches and writes the row.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
+    let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
     let (document, warnings) = load(&options.scene, common, None)?;
     let asked = Best {
         over: options.over.clone(),
@@ -82,7 +89,8 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let pool = pool(common)?;
     let environments = environment_files(&options.environment);
     let read = [inputs(&options.scene, &document), environments.clone()].concat();
-    let mut outputs = Outputs::new(&read).with_rows(Some(common.out()))?.reading(&environments)?;
+    let mut outputs =
+        Outputs::new(&read).with_rows(Some(common.out()))?.reading(&environments)?.with_picture(picture)?;
     let bar = bar(scan_runs(&question), 0, "runs", common);
     // the number of runs after the scan is not known in advance
     let tick = || bar.inc_beyond();
@@ -98,6 +106,10 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     }
     let design = found.map_err(|why| asked.no_best(why, &question, &document))?;
     outputs.table(Output::DATA, &design.table(&question))?;
+    if let Some(picture) = picture {
+        let shown = BestPicture { question: &question, design: &design, ranges: picture.ranges };
+        picture.write(&mut outputs, &best_chart(&shown), &caption(&document))?;
+    }
     design.words(&question).iter().for_each(|line| common.say(&format!("{}: {line}", document.name)));
     outputs.finish_rows(&document, pool.count())
 }

@@ -41,6 +41,7 @@ mod link;
 mod manifest;
 mod measured;
 mod mechanism;
+mod names;
 mod periodic;
 mod pieces;
 mod presets;
@@ -74,6 +75,7 @@ pub use measured::{
     MeasuredError, MeasuredText, read_measured,
 };
 pub use mechanism::{FlexureGroup, ForcePiece, Mechanism};
+pub use names::find_name;
 pub use periodic::{DriveError, PeriodicDrive};
 pub use presets::{EmbeddedTable, PRESETS, Preset, TABLES, export};
 pub use record::{Record, read_record};

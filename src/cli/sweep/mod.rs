@@ -102,7 +102,7 @@ impl Prepared<'_> {
             Some(_) => Overlay::default(),
             None => Overlay::of(scene, self.mechanism.as_deref(), grid, rows),
         };
-        let (quantity, view, ranges) = (&*self.options.quantity, self.view.clone(), picture.ranges);
+        let (quantity, view, ranges) = (self.quantity, self.view.clone(), picture.ranges);
         let shown = SweepPicture { rows, grid, scene, until_settled, quantity, overlay, view, ranges };
         Ok(sweep_chart(&shown)?)
     }

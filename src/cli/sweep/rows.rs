@@ -141,9 +141,9 @@ impl Prepared<'_> {
     fn lacking_column(&self) -> Option<String> {
         self.picture?;
         let table = self.sweep.empty_table();
-        let needed = table.columns().iter().map(|column| &column.name);
-        let mut needed = std::iter::once(&self.options.quantity).chain(needed);
-        needed.find(|name| !self.columns.contains(name)).cloned()
+        let needed = table.columns().iter().map(|column| column.name.as_str());
+        let mut needed = std::iter::once(self.quantity).chain(needed);
+        needed.find(|name| !self.columns.iter().any(|column| column == name)).map(str::to_owned)
     }
 
     /// The manifest of the file, if both exist.
