@@ -35,8 +35,8 @@ pub struct Arguments {
     #[arg(long, value_name = "FIELD=A:B[:STEP]", allow_hyphen_values = true)]
     pub over: Vec<String>,
 
-    /// What is to be largest: a number of the summary. mean_power_w, the power into the load, needs a scene
-    /// with a transducer
+    /// What is to be largest: a number of the summary, whose name may lack its unit. mean_power_w, the power
+    /// into the load, needs a scene with a transducer
     #[arg(long, value_name = "COLUMN", default_value = "rms_velocity_m_per_s", visible_alias = "maximize")]
     pub maximise: String,
 

@@ -182,12 +182,11 @@ impl Sheet {
         let known: Vec<&str> = self.names.iter().map(String::as_str).collect();
         match find_name("column", name, &known) {
             Ok(full) => self.column(full),
-            Err(problem) => Err(ColumnsError::MissingColumn(format!(
-                "line {}: no column {}: {} (separated by commas, semicolons or tabs)",
-                self.line(0),
-                clip(name),
-                clip(&problem)
-            ))),
+            Err(problem) => {
+                let known = clip(problem.trim_start_matches("no such column"));
+                let (line, name) = (self.line(0), clip(name));
+                Err(ColumnsError::MissingColumn(format!("line {line}: no column {name}{known}")))
+            }
         }
     }
 

@@ -25,8 +25,8 @@ pub struct Arguments {
     #[arg(long, value_name = "FIELD=FROM:TO:STEP|a,b,c", allow_hyphen_values = true)]
     pub over: Vec<String>,
 
-    /// Columns after those of the swept fields: names of the summary, or all [default: rms_velocity_m_per_s,
-    /// regime, crossings, impacts, max_abs_x_m, period, outcome]
+    /// Columns after those of the swept fields: names of the summary, which may lack their units, or all
+    /// [default: rms_velocity_m_per_s, regime, crossings, impacts, max_abs_x_m, period, outcome]
     #[arg(long, value_name = "A,B,..|all", allow_hyphen_values = true, value_delimiter = ',')]
     pub columns: Vec<String>,
 
