@@ -7,9 +7,7 @@ use super::drawn::Drawn;
 use super::figure::Point;
 use super::quantity::suited_unit;
 use super::role::Role;
-use crate::study::{
-    BestDesign, BestQuestion, Edges, Tried, label_and_unit, names, place, quantity, scan_places,
-};
+use crate::study::{BestDesign, BestQuestion, Edges, Tried, label_and_unit, names, quantity, scan_places};
 
 /// The data of the picture of a search.
 #[derive(Debug, Clone, Copy)]
@@ -37,8 +35,13 @@ pub fn best_chart(picture: &BestPicture) -> Chart {
     };
     let (count, maximised) = (picture.design.tried.len(), picture.question.maximise.name);
     let optimum = &picture.design.optimum;
-    let at = place(&names(picture.question), &optimum.at);
-    let about = format!("{count} places tried; largest at {at}: {}", quantity(optimum.value, maximised));
+    let fields = names(picture.question).into_iter().zip(&optimum.at);
+    let at = fields.map(|(name, value)| {
+        let (words, unit) = label_and_unit(&name);
+        format!("{words} {value} {unit}").trim_end().to_owned()
+    });
+    let (at, value) = (at.collect::<Vec<_>>().join(", "), quantity(optimum.value, maximised));
+    let about = format!("{count} places tried; largest at {at}: {value}");
     let data = shown.data(&panel);
     Chart::stack(vec![panel], about, data)
 }
@@ -92,12 +95,12 @@ impl<'a> Shown<'a> {
         line.sort_by(|a, b| a.0.total_cmp(&b.0));
         panel.draw(Role::Joined, Marks::Path(line));
         self.designs(&mut panel, |tried, _| tried.at[0]);
-        let optimum = &self.picture.design.optimum;
-        panel.layer(Role::Found, "found", Marks::Points(vec![(optimum.at[0], optimum.value * self.scale)]));
         if let Some((back, _)) = &self.picture.design.stepped_back {
             let points = vec![(back.at[0], back.value * self.scale)];
             panel.layer(Role::SteppedBack, "best worst case", Marks::Points(points));
         }
+        let optimum = &self.picture.design.optimum;
+        panel.layer(Role::Found, "found", Marks::Points(vec![(optimum.at[0], optimum.value * self.scale)]));
         panel
     }
 
@@ -138,11 +141,11 @@ impl<'a> Shown<'a> {
         if !broken.is_empty() {
             panel.layer(Role::Broken, BROKEN, Marks::Points(broken));
         }
-        let found = &self.picture.design.optimum.at;
-        panel.layer(Role::Found, "found", Marks::Points(vec![(found[0], found[1])]));
         if let Some((back, _)) = &self.picture.design.stepped_back {
             panel.layer(Role::SteppedBack, "best worst case", Marks::Points(vec![(back.at[0], back.at[1])]));
         }
+        let found = &self.picture.design.optimum.at;
+        panel.layer(Role::Found, "found", Marks::Points(vec![(found[0], found[1])]));
         panel
     }
 
@@ -182,7 +185,7 @@ impl<'a> Shown<'a> {
         panel.layer(Role::Motion, "tried", Marks::Cloud(self.points(&over, |tried| tried.keeps)));
         let broken = self.points(&over, |tried| !tried.keeps);
         if !broken.is_empty() {
-            panel.layer(Role::Broken, BROKEN, Marks::Points(broken));
+            panel.layer(Role::Broken, BROKEN, Marks::Cloud(broken));
         }
         let missing = self.tried.iter().enumerate().filter(|(_, tried)| tried.value.is_none());
         let missing: Vec<f64> = missing.map(|(i, tried)| over(tried, (i + 1) as f64)).collect();

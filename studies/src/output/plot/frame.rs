@@ -14,7 +14,7 @@ use super::style::{self, Theme};
 /// Half the size of the points of a cloud of few points, and of one of many.
 const CLOUD: (f64, f64) = (6.0, 2.2);
 /// Half the height of a marker in the colour of its value.
-const VALUED: f64 = 3.5;
+const VALUED: f64 = 3.0;
 /// Number of points up to which a cloud has few.
 const FEW: f64 = 100.0;
 /// Number of points from which on it has many.
@@ -167,11 +167,10 @@ impl Frame {
             Marks::Cloud(points) => self.cloud(figure, points, &look, theme),
             Marks::Valued(points, colours) => {
                 for (point, value) in points {
-                    let at = self.inside(&[*point]);
-                    at.into_iter().for_each(|at| {
-                        let ink = colours.ink(*value, theme);
-                        marker(figure, look.marker, at, VALUED, ink, theme.paper);
-                    });
+                    for at in self.inside(&[*point]) {
+                        dot(figure, look.marker, at, VALUED + 0.8, theme.paper);
+                        dot(figure, look.marker, at, VALUED, colours.ink(*value, theme));
+                    }
                 }
             }
             Marks::Sticks(points) => self.sticks(figure, points, &look),
