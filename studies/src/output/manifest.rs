@@ -254,6 +254,8 @@ pub fn repeated(
     let is_repeated = |argument: &Argument| match argument.option.as_deref() {
         None => manifest.is_none(),
         Some(option) if OF_RECORDS.contains(&option) => command == "identify",
+        // the scenes of a comparison have its excitation
+        Some("environment") => command != "compare",
         Some(option) => !NOT_REPEATED.contains(&option) && !SHOWN.contains(&option),
     };
     let scene = manifest.map(|path| path.to_string_lossy().into_owned());
