@@ -164,7 +164,7 @@ impl Manifest<'_> {
             "cpu_s": origin.cpu_s,
             "scene": scene.map(scene_value),
             "scene_ron": scene.and_then(text),
-            "files": document.map(|document| &document.files.cached),
+            "files": document.map_or_else(|| json!({}), |document| json!(document.files.cached)),
         });
         extend(&mut all, end);
         pretty(&all)

@@ -181,6 +181,8 @@ fn what_a_manifest_cannot_do_is_said() {
         command
     };
     run("identify r.csv --of damping --quiet --out ratio.csv").assert().success();
+    // it is replaced as any other manifest
+    run("identify r.csv --of damping --quiet --out ratio.csv").assert().success();
     refused(run("simulate ratio.csv.json"), &["ratio.csv.json", "`identify`", "without a scene", "repeat"]);
     run("threshold linear.ron --of release --quiet --out t.csv").assert().success();
     refused(run("sweep t.csv.json --over mass_g=1,2 --check"), &["--check", "manifest of a sweep"]);
