@@ -656,9 +656,9 @@ class Scene(Mapping[str, Any]):
             Fields by dotted path and their values in the unit of the field, the slowest first. Fields of the
             mechanism may be among them.
         columns : str or sequence of str
-            Columns of the answer, names of the summary, or ``"all"``; by default ``rms_velocity_m_per_s,
-            regime, crossings, impacts, max_abs_x_m, period, outcome``. ``mean_x_m``, ``impact_share`` and
-            energies take longer, since they need the energy ledger.
+            Columns of the answer, names of the summary, whose units may be left out, or ``"all"``; by default
+            ``rms_velocity_m_per_s, regime, crossings, impacts, max_abs_x_m, period, outcome``. ``mean_x_m``,
+            ``impact_share`` and energies take longer, since they need the energy ledger.
         until_settled : float, optional
             Let each run go on until its motion repeats, or up to this time in s.
         carry : str, optional
@@ -1194,7 +1194,7 @@ class Scene(Mapping[str, Any]):
             and the step of the first scan: ``{"stops.travel_limit_mm": (0.5, 7)}``. A smaller step is surer
             to find a narrow maximum, and costs more runs.
         maximise : str
-            The number of the summary that is to be largest, in its unit.
+            The number of the summary that is to be largest, in its unit, which its name may leave out.
         maximize : None
             Refused: the argument is ``maximise``.
         subject_to : str or sequence of str

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _interwell
-from ._check import _entries, _shown, _wrong
+from ._check import _entries, _near, _shown, _wrong
 
 if TYPE_CHECKING:
     import pandas
@@ -153,7 +153,9 @@ class Table(Mapping[str, Array]):
         """
         if name not in self._arrays:
             if name not in self._answer.names:
-                raise KeyError(f"no column {name!r}; there are {self._listed()}")
+                near = _near(str(name), self.columns)
+                there = "There are" if near else "; there are"
+                raise KeyError(f"no column {name!r}{near}{' ' if near else ''}{there} {self._listed()}")
             values = self._answer.values(name)
             if not isinstance(values, np.ndarray):
                 values = _column(name, values)
@@ -298,7 +300,7 @@ class Table(Mapping[str, Array]):
         Parameters
         ----------
         quantity : str, optional
-            Of a grid the column; of a run the panels, such as ``"displacement,power"``; of a spectrum
+            Of a grid the column, whose unit may be left out; of a run the panels, such as ``"displacement,power"``; of a spectrum
             ``"amplitude"`` or ``"psd"``.
         x, y : (float, float), optional
             Ranges of the axes, in their units, the lower end first. Of a run ``x`` is a range of times in s.

@@ -118,6 +118,18 @@ def test_arrays_are_made_once_and_stay(tmp_path: pathlib.Path) -> None:
     assert (tmp_path / "run.csv").read_text() == run.csv()
 
 
+def test_a_column_is_named_without_its_unit_or_by_a_hint() -> None:
+    scene = iw.Scene.preset("nominal-cubic").set({"run.duration_s": 2, "run.settle_s": 1})
+    full = scene.sweep({"mass_g": [10, 12]}, columns=["rms_velocity_m_per_s", "max_abs_x_m"])
+    short = scene.sweep({"mass_g": [10, 12]}, columns=["rms_velocity", "max_abs_x"])
+    assert short.csv() == full.csv()
+    assert "travel_m" in scene.sweep({"mass_g": [10, 12]}, columns="travel").columns
+    with pytest.raises(iw.SceneError, match="did you mean `rms_velocity_m_per_s`"):
+        scene.sweep({"mass_g": [10, 12]}, columns="rms_velocty")
+    with pytest.raises(KeyError, match="did you mean rms_velocity_m_per_s. There are "):
+        full["rms_velocity"]
+
+
 def test_a_scene_is_a_mapping_that_stays() -> None:
     scene = iw.Scene.preset("paper")
     assert "stops" in scene and "stop" not in scene and 3 not in scene

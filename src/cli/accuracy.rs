@@ -5,6 +5,7 @@ use std::path::Path;
 
 use clap::Args;
 use interwell::output::{accuracy_chart, aligned};
+use interwell::scene::Document;
 use interwell::study::Task;
 use interwell::study::accuracy::methods::Scheme;
 use interwell::study::accuracy::scene::{Unfit, scene_table, step_name, step_size, tolerances, trust};
@@ -64,7 +65,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
             names.join(" or ")
         );
     }
-    let mut outputs = Outputs::new(&[]).with(Output::DATA, common.out.as_deref())?.with_picture(picture)?;
+    let mut outputs = Outputs::new(&[]).with_rows(common.out.as_deref())?.with_picture(picture)?;
 
     let template = "{wide_bar} {pos}/{len} parts  {eta} left";
     let bar = bar_on_terminal(Some(selection.parts()), template, common.quiet);
@@ -89,16 +90,21 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     if !report.cases.is_empty() {
         tables.push(aligned(&report.case_table()));
     }
-    finish(outputs, &tables.join("\n"), common)?;
+    finish(outputs, None, &tables.join("\n"), common)?;
     common.say(&format!("{:.1} s", watch.wall_s()));
     verdict(&report)
 }
 
-/// Finishes the outputs and writes a text to standard output, or to standard error if standard output has the
-/// data.
-fn finish(mut outputs: Outputs, text: &str, common: &Common) -> Result<(), Failure> {
+/// Finishes the outputs of this scene, if there is one, and writes a text to standard output, or to standard
+/// error if standard output has the data.
+fn finish(
+    mut outputs: Outputs,
+    document: Option<&Document>,
+    text: &str,
+    common: &Common,
+) -> Result<(), Failure> {
     let data_on_stdout = outputs.is_stdout(Output::DATA);
-    outputs.finish()?;
+    outputs.finish_rows(document, 1)?;
     if !data_on_stdout {
         return write_alone(Output::DATA, Path::new("-"), text);
     }
@@ -130,7 +136,7 @@ fn list(wanted: &[String]) -> String {
 fn of_scene(spec: &str, options: &Arguments, common: &Common) -> Result<(), Failure> {
     let steps = options.step_s.as_deref().map_or_else(|| Ok(Vec::new()), steps)?;
     let (document, model) = load_model(spec, common)?;
-    let mut outputs = Outputs::new(&inputs(spec, &document)).with(Output::DATA, common.out.as_deref())?;
+    let mut outputs = Outputs::new(&inputs(spec, &document)).with_rows(common.out.as_deref())?;
     let cancel = interrupt::listen();
 
     let trusted = trust(&model, cancel).ok_or_else(Failure::interrupted)?;
@@ -156,7 +162,7 @@ fn of_scene(spec: &str, options: &Arguments, common: &Common) -> Result<(), Fail
     }
     let table = scene_table(&cost, &stepped);
     outputs.table(Output::DATA, &table)?;
-    finish(outputs, &format!("{text}\n{}", aligned(&table)), common)
+    finish(outputs, Some(&document), &format!("{text}\n{}", aligned(&table)), common)
 }
 
 /// The words of `--method`, in the order in which the methods are shown.

@@ -5,14 +5,12 @@ use std::path::PathBuf;
 
 use clap::Args;
 use interwell::numeric::short;
-use interwell::output::{Manifest, basins_chart, can_show_starts, rows};
+use interwell::output::{basins_chart, can_show_starts, rows};
 use interwell::study::{Answer, Basins, EvenRange, NoBasins, Starts, StartsError};
 use interwell::system::threads::Pool;
 
 use super::progress::duration;
-use super::support::{
-    Watch, counted, file_name, load_held, manifest_path, mechanism, numbers, outputs, pool, warn,
-};
+use super::support::{Watch, counted, load, mechanism, numbers, outputs, pool, warn};
 use super::{
     Common, Failure, Output, Outputs, Picture, PlotOptions, caption, interrupt, refuse, say, with_bar,
 };
@@ -62,7 +60,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     if picture.is_some() {
         can_show_starts(&starts)?;
     }
-    let (document, warnings) = load_held(&options.scene, common, None)?;
+    let (document, warnings) = load(&options.scene, common, None)?;
     let mechanism = mechanism(&document)?;
     warn(&document, common, &warnings, Some(&mechanism));
     let count = starts.count() as u64;
@@ -77,10 +75,9 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let pool = pool(common)?;
     let mut outputs = outputs(&options.scene, &document, common)?
         .with_picture(picture)?
-        .with(Output::ATTRACTORS, options.attractors.as_deref())?
-        .with(Output::MANIFEST, manifest_path(common.out()).as_deref())?;
+        .with(Output::ATTRACTORS, options.attractors.as_deref())?;
 
-    let watch = Watch::start();
+    outputs.watch = Watch::start();
     if !common.quiet {
         forecast(&basins).iter().for_each(|line| say(line));
     }
@@ -90,11 +87,8 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     if let Some(picture) = picture {
         picture.write(&mut outputs, &basins_chart(&basins, &answer), &caption(&document))?;
     }
-    if outputs.has(Output::MANIFEST) {
-        let (origin, data) = (watch.origin(pool.count()), file_name(common.out()));
-        let manifest = Manifest { document: &document, origin: &origin, data: &data };
-        outputs.write(Output::MANIFEST, manifest.of_basins(&basins, &answer))?;
-    }
+    outputs.manifest(Some(&document), pool.count(), |manifest| Ok(manifest.of_basins(&basins, &answer)))?;
+    let watch = outputs.watch;
     outputs.finish()?;
     common.say(&outcome(&answer, count, watch.wall_s()));
     Ok(())

@@ -1,11 +1,16 @@
 //! `best`: the best design for an environment, one row, with its margins.
 
-use clap::Args;
-use interwell::questions::Best;
-use interwell::study::{NoBest, Task, best, names, place, quantity, scan_runs};
+use std::path::PathBuf;
 
-use super::support::{load, outputs, pool, waits, warn};
-use super::{Common, Failure, Output, bar, interrupt, say};
+use clap::Args;
+use interwell::output::{BestPicture, best_chart};
+use interwell::questions::Best;
+use interwell::scene::Document;
+use interwell::study::{NoBest, Task, best, names, place, quantity, scan_runs};
+use interwell::system::files::is_file;
+
+use super::support::{inputs, load, pool, waits, warn};
+use super::{ChartOptions, Common, Failure, Output, Outputs, Picture, bar, caption, interrupt, say};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -30,8 +35,8 @@ pub struct Arguments {
     #[arg(long, value_name = "FIELD=A:B[:STEP]", allow_hyphen_values = true)]
     pub over: Vec<String>,
 
-    /// What is to be largest: a number of the summary. mean_power_w, the power into the load, needs a scene
-    /// with a transducer
+    /// What is to be largest: a number of the summary, whose name may lack its unit. mean_power_w, the power
+    /// into the load, needs a scene with a transducer
     #[arg(long, value_name = "COLUMN", default_value = "rms_velocity_m_per_s", visible_alias = "maximize")]
     pub maximise: String,
 
@@ -59,10 +64,16 @@ pub struct Arguments {
     /// Seed of the samples of --vary
     #[arg(long, value_name = "SEED", default_value_t = 1)]
     pub seed: u64,
+
+    /// The picture: over one field the values that were tried, over two a map of the scan, over more the
+    /// values in the order in which they were tried.
+    #[command(flatten)]
+    pub chart: ChartOptions,
 }
 
 /// Searches and writes the row.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
+    let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
     let (document, warnings) = load(&options.scene, common, None)?;
     let asked = Best {
         over: options.over.clone(),
@@ -76,7 +87,10 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let question = asked.question(&document)?;
     warn(&document, common, &warnings, None);
     let pool = pool(common)?;
-    let mut outputs = outputs(&options.scene, &document, common)?;
+    let environments = environment_files(&options.environment);
+    let read = [inputs(&options.scene, &document), environments.clone()].concat();
+    let mut outputs =
+        Outputs::new(&read).with_rows(Some(common.out()))?.reading(&environments)?.with_picture(picture)?;
     let bar = bar(scan_runs(&question), 0, "runs", common);
     // the number of runs after the scan is not known in advance
     let tick = || bar.inc_beyond();
@@ -92,6 +106,23 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     }
     let design = found.map_err(|why| asked.no_best(why, &question, &document))?;
     outputs.table(Output::DATA, &design.table(&question))?;
+    if let Some(picture) = picture {
+        let shown = BestPicture { question: &question, design: &design, ranges: picture.ranges };
+        picture.write(&mut outputs, &best_chart(&shown), &caption(&document))?;
+    }
     design.words(&question).iter().for_each(|line| common.say(&format!("{}: {line}", document.name)));
-    outputs.finish()
+    outputs.finish_rows(&document, pool.count())
+}
+
+/// The files that environments are read from: records, and scenes with the files that these name.
+fn environment_files(environments: &[String]) -> Vec<PathBuf> {
+    let file = |text: &String| {
+        let without_weight = text.rsplit_once('*').map_or(&**text, |(name, _)| name).trim();
+        [&**text, without_weight].map(PathBuf::from).into_iter().find(|path| is_file(path))
+    };
+    let mut files: Vec<PathBuf> = environments.iter().filter_map(file).collect();
+    let scenes = files.iter().filter_map(|path| Document::of_argument(&path.to_string_lossy()).ok());
+    let named: Vec<PathBuf> = scenes.flat_map(|document| document.named_files()).collect();
+    files.extend(named);
+    files
 }

@@ -8,7 +8,7 @@ use interwell::questions::{in_environment, needs_a_sine};
 use interwell::scene::{Document, RunSettings, Stops, Transducer};
 use interwell::study::{Alternative, Rated, alternatives, comparison_parts, comparison_table};
 
-use super::support::{inputs, load, mechanism, model, pool, read, until_settled, warn};
+use super::support::{self, change, check, inputs, mechanism, model, pool, until_settled, warn};
 use super::{Common, Failure, Output, Outputs, Picture, PlotOptions, caption, with_bar};
 
 const EXAMPLES: &str = "\
@@ -44,11 +44,12 @@ pub struct Arguments {
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let picture = Picture::new(&options.plot, common)?;
     let environment = options.environment.as_deref().or(options.scenes.first().map(String::as_str));
-    let environment = read(environment.unwrap_or("paper"), common)?;
+    let environment = support::read(environment.unwrap_or("paper"), common)?;
     let (frequency_hz, amplitude_g) = needs_a_sine(&environment)?;
-    let (mut all, mut files, mut replaced, mut until) = (Vec::new(), Vec::new(), Vec::new(), None);
-    for spec in &options.scenes {
-        let (document, warnings) = load(spec, common, None)?;
+    let (mut all, mut documents, mut read) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut replaced, mut until) = (Vec::new(), None);
+    for (name, spec, mut document) in named(&options.scenes, common)? {
+        let warnings = check(&mut document, None)?;
         let (scene, lent) = (&document.scene, &environment.scene);
         let how = match (scene.excitation != lent.excitation, window(&scene.run) != window(&lent.run)) {
             (true, true) => Some("under the excitation and with the run of"),
@@ -56,23 +57,24 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
             (false, true) => Some("with the run of"),
             (false, false) => None,
         };
-        replaced.extend(how.map(|how| (plain(spec), format!("{how} {}", environment.name))));
+        replaced.extend(how.map(|how| (name.clone(), format!("{how} {}", environment.name))));
         let document = in_environment(&document, &environment);
         document.check()?;
         let mechanism = mechanism(&document)?;
         let model = model(&document, &mechanism)?;
         until = until_settled(options.until_settled.as_deref(), &document, &model)?;
         warn(&document, common, &warnings, Some(&mechanism));
-        files.extend(inputs(spec, &document));
-        let Document { scene, files, .. } = document;
-        all.push(Alternative { name: plain(spec), scene, files, mechanism });
+        read.extend(inputs(spec, &document));
+        let (scene, files) = (document.scene.clone(), document.files.clone());
+        all.push(Alternative { name: name.clone(), scene, files, mechanism });
+        documents.push((name, document));
     }
-    if let [only] = &options.scenes[..] {
-        common.say(&format!("{only}: the only scene; name others to set beside it"));
+    if let [only] = &all[..] {
+        common.say(&format!("{}: the only scene; name others to set beside it", only.name));
     }
     grouped(replaced).iter().for_each(|(names, how)| common.say(&format!("{names}: {how}")));
     let pool = pool(common)?;
-    let mut outputs = Outputs::new(&files).with(Output::DATA, Some(common.out()))?.with_picture(picture)?;
+    let mut outputs = Outputs::new(&read).with_rows(Some(common.out()))?.with_picture(picture)?;
     let rated = with_bar(comparison_parts(&all), "parts", common, |task| {
         alternatives(&all, until, &pool, task).ok_or_else(Failure::interrupted)
     })?;
@@ -89,7 +91,27 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         let shown = ComparisonPicture { rated: &rated, frequency_hz };
         picture.write(&mut outputs, &comparison_chart(&shown), &caption)?;
     }
+    let first = documents.first().map(|(_, document)| document);
+    outputs.manifest(first, pool.count(), |manifest| Ok(manifest.of_scenes(&documents)))?;
     outputs.finish()
+}
+
+/// The scenes of the arguments, each with its name in the table and its argument. The manifest of a
+/// comparison stands for all scenes of that.
+fn named<'a>(specs: &'a [String], common: &Common) -> Result<Vec<(String, &'a str, Document)>, Failure> {
+    let mut all = Vec::new();
+    for spec in specs {
+        let mut document = support::read(spec, common)?;
+        let compared = std::mem::take(&mut document.compared);
+        if compared.is_empty() {
+            all.push((plain(spec), &**spec, document));
+        }
+        for (name, mut document) in compared {
+            change(&mut document, common)?;
+            all.push((plain(&name), &**spec, document));
+        }
+    }
+    Ok(all)
 }
 
 /// Duration of a run, beginning of its settled window, and tolerance.

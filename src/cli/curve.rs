@@ -131,7 +131,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let mut read = inputs(&options.scene, &document);
     read.extend(options.measured.measured.clone());
     let mut outputs = Outputs::new(&read)
-        .with(Output::DATA, Some(common.out()))?
+        .with_rows(Some(common.out()))?
         .with(Output::LANDSCAPE, options.landscape.as_deref())?
         .with(Output::SHAPES, options.shapes.as_deref())?
         .with(Output::CONTACT, options.contact.as_deref())?
@@ -189,7 +189,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
             picture.write(&mut outputs, &chart, &caption(&document))?;
         }
     }
-    outputs.finish()
+    outputs.finish_rows(&document, 1)
 }
 
 /// The table of one impact on the scene's compliant stop over impact speed, and the model.

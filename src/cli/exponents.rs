@@ -11,7 +11,7 @@ use interwell::study::{
 };
 
 use super::grid_job::GridJob;
-use super::support::{counted, load_held, load_model, outputs, pool, until_settled_on_grid, warn};
+use super::support::{counted, load, load_model, outputs, pool, until_settled_on_grid, warn};
 use super::{ChartOptions, Common, Failure, Output, Picture, interrupt, whole};
 
 const EXAMPLES: &str = "\
@@ -70,7 +70,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         _ => Failure::failed(format!("{}: {problem}", document.name)),
     })?;
     outputs.table(Output::DATA, &exponents_row(&found))?;
-    outputs.finish()?;
+    outputs.finish_rows(&document, 1)?;
     common.say(&format!("{}: {}", document.name, about(&found, model.repeats())));
     Ok(())
 }
@@ -110,7 +110,7 @@ fn about(found: &Exponents, forced: bool) -> String {
 
 /// Computes the exponents of every cell of a grid, one row for each.
 fn over(options: &Arguments, common: &Common, picture: Option<Picture>) -> Result<(), Failure> {
-    let (document, warnings) = load_held(&options.scene, common, Some(&options.over))?;
+    let (document, warnings) = load(&options.scene, common, Some(&options.over))?;
     let grid = Grid::new(document.axes(&options.over)?)?;
     let circuits = may_have_circuit(&document, grid.axes());
     if picture.is_some() {
@@ -125,7 +125,7 @@ fn over(options: &Arguments, common: &Common, picture: Option<Picture>) -> Resul
     warn(&document, common, &warnings, cells.first_mechanism().ok().as_deref());
     let outputs = outputs(&options.scene, &document, common)?;
     let grid = cells.grid();
-    let mut job = GridJob::open(&document, common, outputs, picture, Some(common.out()), pool)?;
+    let mut job = GridJob::open(&document, common, outputs, picture, pool)?;
     let (tally, _) = job.stream(&cells, "cells")?;
     let chart = |rows: &Table, picture: &Picture| {
         let shown = ExponentPicture { rows, grid, scene: &document.scene, ranges: picture.ranges };

@@ -1,14 +1,12 @@
 //! Run of a study over a grid by a command: its outputs, progress, rows, picture and manifest.
 
-use std::path::Path;
-
 use interwell::output::{Chart, Manifest, header, rows};
 use interwell::questions::Error;
 use interwell::scene::Document;
 use interwell::study::{GridStudy, IMPACTS, Question, Shard, Slice, SweepEnd, Table, Tally, Task};
 use interwell::system::threads::Pool;
 
-use super::support::{Watch, file_name, manifest_path};
+use super::support::Watch;
 use super::{Common, Failure, Output, Outputs, Picture, bar, caption, interrupt};
 
 /// A study of a grid whose outputs are open.
@@ -19,30 +17,22 @@ pub struct GridJob<'a> {
     document: &'a Document,
     common: &'a Common,
     picture: Option<Picture<'a>>,
-    /// The file with the rows, if a manifest stands beside it.
-    out: Option<&'a Path>,
     pool: Pool,
-    watch: Watch,
 }
 
 impl<'a> GridJob<'a> {
-    /// Opens the picture beside `outputs`, and the manifest beside the rows at `out` if that is a regular
-    /// file.
+    /// Opens the picture beside `outputs`.
     pub fn open(
         document: &'a Document,
         common: &'a Common,
         outputs: Outputs,
         picture: Option<Picture<'a>>,
-        out: Option<&'a Path>,
         pool: Pool,
     ) -> Result<Self, Failure> {
-        let manifest = out.and_then(manifest_path);
-        let mut outputs = outputs.with_picture(picture)?.with(Output::MANIFEST, manifest.as_deref())?;
+        let mut outputs = outputs.with_picture(picture)?;
         // It is opened again to be written, since a killed process would leave an unfinished file behind.
         outputs.leave(Output::MANIFEST);
-        let (shown, watch) = (Table::new(), Watch::start());
-        let out = out.filter(|_| manifest.is_some());
-        Ok(Self { outputs, shown, document, common, picture, out, pool, watch })
+        Ok(Self { outputs, shown: Table::new(), document, common, picture, pool })
     }
 
     /// Checks and runs the rows of a slice from `from` on, each called `unit`, and hands them to `write`,
@@ -56,7 +46,7 @@ impl<'a> GridJob<'a> {
         unit: &str,
         mut write: impl FnMut(&mut Outputs, &Table, &Tally) -> Result<bool, Failure>,
     ) -> Result<Tally, SweepEnd<Failure>> {
-        self.watch = Watch::start();
+        self.outputs.watch = Watch::start();
         let progress = bar(slice.rows(), from, unit, self.common);
         let task = Task { tick: &|| progress.inc(1), cancel: interrupt::listen() };
         let valid = study.validate_rows(slice, from, &self.pool, &task);
@@ -96,13 +86,9 @@ impl<'a> GridJob<'a> {
             let chart = chart(&self.shown, &picture)?;
             picture.write(&mut self.outputs, &chart, &caption(self.document))?;
         }
-        if let Some(out) = self.out {
-            let (origin, data) = (self.watch.origin(self.pool.count()), file_name(out));
-            self.outputs = self.outputs.with(Output::MANIFEST, manifest_path(out).as_deref())?;
-            let made = Manifest { document: self.document, origin: &origin, data: &data };
-            self.outputs.write(Output::MANIFEST, manifest(&made)?)?;
-        }
+        self.outputs.manifest(Some(self.document), self.pool.count(), manifest)?;
+        let watch = self.outputs.watch;
         self.outputs.finish()?;
-        Ok(self.watch.wall_s())
+        Ok(watch.wall_s())
     }
 }

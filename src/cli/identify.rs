@@ -92,8 +92,10 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     question.check()?;
     let watch = Watch::start();
     let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
-    let mut outputs = Outputs::new(&[file.to_path_buf()])
-        .with(Output::DATA, Some(common.out()))?
+    let record = [file.to_path_buf()];
+    let mut outputs = Outputs::new(&record)
+        .with_rows(Some(common.out()))?
+        .reading(&record)?
         .with(Output::SUMMARY, options.summary.as_deref())?
         .with_picture(picture)?;
     let IdentifyAnswer { timing, found, across, values, columns } = question.run(file)?;
@@ -107,7 +109,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         let chart = identified_chart(of, &found, record, values.quantity, picture.ranges);
         picture.write(&mut outputs, &chart, &caption)?;
     }
-    outputs.finish()?;
+    outputs.finish_rows(None, 1)?;
     let sampling = timing.iter().map(Timing::describe);
     let lines = sampling.chain(found.summary.iter().map(Identity::describe)).chain(found.remarks);
     lines.for_each(|line| common.say(&format!("{}: {line}", file.display())));

@@ -4,7 +4,7 @@ use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use interwell::output::{merged_manifest, plan_differences};
+use interwell::output::{manifest_path, merged_manifest, plan_differences};
 use interwell::scene::PROGRAM;
 use interwell::study::{Shard, Slice};
 use interwell::system::checksum::Checksum;
@@ -12,7 +12,7 @@ use interwell::system::files;
 use serde_json::Value;
 
 use super::shard::{PLACE, command, other_name, value};
-use super::support::{Watch, file_name, manifest_path};
+use super::support::arguments;
 use super::{Common, Failure, Output, Outputs, interrupt, refuse};
 
 #[derive(Debug, Args)]
@@ -32,13 +32,11 @@ struct Part {
 }
 
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
-    let watch = Watch::start();
     let mut parts = all(&options.parts)?;
-    let read = parts.iter().flat_map(|part| [Some(part.path.clone()), manifest_path(&part.path)]);
-    let inputs: Vec<PathBuf> = read.flatten().collect();
-    let mut outputs = Outputs::new(&inputs)
-        .with(Output::DATA, Some(common.out()))?
-        .with(Output::MANIFEST, manifest_path(common.out()).as_deref())?;
+    let read = parts.iter().flat_map(|part| [part.path.clone(), manifest_path(&part.path)]);
+    let inputs: Vec<PathBuf> = read.collect();
+    let mut outputs = Outputs::new(&inputs).with_rows(Some(common.out()))?;
+    let watch = outputs.watch;
     let plan = &parts[0].manifest["plan"];
     let (rows, unit) = (plan["rows"].as_u64().unwrap_or(0), plan["unit"].as_u64().unwrap_or(0).max(1));
     let slice = Slice::new(rows, unit, parts[0].shard);
@@ -59,8 +57,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     }
     let sum = whole.text();
     let manifests: Vec<Value> = parts.into_iter().map(|part| part.manifest).collect();
-    let origin = watch.origin(1);
-    let text = merged_manifest(&manifests, &file_name(common.out()), &sum, &origin.arguments);
+    let text = merged_manifest(&manifests, common.out(), &sum, &arguments());
     outputs.write(Output::MANIFEST, &text)?;
     outputs.finish()?;
     common.say(&format!("{rows} rows of {} shards in {:.2} s", manifests.len(), watch.wall_s()));
@@ -134,7 +131,7 @@ impl Part {
         let ends = |ending: &str| path.to_string_lossy().strip_suffix(ending).map(PathBuf::from);
         let path = ends(".json").or_else(|| ends(".part")).unwrap_or_else(|| path.to_owned());
         let name = path.display();
-        let beside = manifest_path(&path).unwrap_or_default();
+        let beside = manifest_path(&path);
         if !files::exists(&path) || !files::exists(&beside) {
             return Ok(None);
         }

@@ -8,6 +8,7 @@ mod compare;
 mod curve;
 mod exponents;
 mod failure;
+mod given;
 mod grid_job;
 mod identify;
 mod interrupt;

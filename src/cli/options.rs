@@ -34,8 +34,8 @@ Examples:
 
 A scene is a .ron file or the name of a built-in one; `presets --write DIR` copies those out.
 A lesson is a .ron file, or the name or number of a built-in one: `interwell 3` opens the third.
-A scene is also the manifest that `sweep --out map.csv` writes beside its rows (map.csv.json), or - for
-standard input.
+A scene is also the manifest that every command writes beside its table (`--out map.csv`: map.csv.json), whose
+`repeat` has the arguments that make the table again, or - for standard input.
 Exit status: 0 done; 1 the run or the writing failed, a case of `accuracy` falls short, or a run of
 `simulate --strict` or `sweep --strict` ended early; 2 the arguments or the scene are wrong.";
 

@@ -89,7 +89,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         }
     };
     outputs.table(Output::DATA, &table)?;
-    outputs.finish()
+    outputs.finish_rows(&document, 1)
 }
 
 /// The field of `--branch FIELD=A:B` and the ends of its range.

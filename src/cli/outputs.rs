@@ -1,13 +1,15 @@
-//! Outputs of a command, opened before any work is done, and finished together.
+//! Outputs of a command, opened before any work is done, and finished together; the manifest beside its rows.
 
 use std::path::{Path, PathBuf};
 
-use interwell::output::{Sink, header, rows, same_target};
-use interwell::scene::{is_manifest, is_scene_file};
+use interwell::output::{Manifest, Sink, header, is_regular, manifest_path, repeated, rows, same_target};
+use interwell::scene::{Document, is_manifest, is_scene_file};
 use interwell::study::Table;
+use interwell::system::checksum::{Checksum, file_checksum};
 use interwell::system::files::{canonical, is_file};
 
-use super::{Failure, interrupt, refuse};
+use super::support::Watch;
+use super::{Failure, given, interrupt, refuse};
 
 /// Rows that are formatted at a time.
 const ROWS: usize = 1 << 15;
@@ -44,8 +46,16 @@ impl Output {
 
 /// The open outputs of a command. What is written to an output that was not requested is dropped.
 pub struct Outputs {
+    /// Time since the work began.
+    pub watch: Watch,
     inputs: Vec<PathBuf>,
     sinks: Vec<(Output, Sink)>,
+    /// The path of the rows, if a manifest stands beside them.
+    out: Option<PathBuf>,
+    /// The checksum of the rows so far.
+    sum: Checksum,
+    /// Files that were read besides the scene, with their checksums.
+    read: Vec<(String, String)>,
 }
 
 impl Outputs {
@@ -54,13 +64,38 @@ impl Outputs {
     pub fn new(inputs: &[PathBuf]) -> Self {
         interrupt::listen();
         let inputs = inputs.iter().filter_map(|input| canonical(input)).collect();
-        Self { inputs, sinks: Vec::new() }
+        let (watch, sum) = (Watch::start(), Checksum::default());
+        Self { watch, inputs, sinks: Vec::new(), out: None, sum, read: Vec::new() }
     }
 
-    /// Opens an output where a `path` is given. It is an error if it is one of the inputs or any other scene,
-    /// if a manifest would replace a file that is no manifest, or if an earlier output is the same.
+    /// Opens an output where a `path` is given.
     pub fn with(mut self, output: Output, path: Option<&Path>) -> Result<Self, Failure> {
-        let (Some(path), option) = (path, output.option()) else { return Ok(self) };
+        path.map_or(Ok(()), |path| self.open(output, path))?;
+        Ok(self)
+    }
+
+    /// Opens the rows where they are wanted, and the manifest beside them if `out` is a regular file.
+    pub fn with_rows(mut self, out: Option<&Path>) -> Result<Self, Failure> {
+        self.out = out.filter(|out| is_regular(out)).map(Path::to_owned);
+        let beside = self.out.as_deref().map(manifest_path);
+        self.with(Output::DATA, out)?.with(Output::MANIFEST, beside.as_deref())
+    }
+
+    /// Notes for the manifest the checksums of `files` that are read besides the scene, where they are files.
+    pub fn reading(mut self, files: &[PathBuf]) -> Result<Self, Failure> {
+        for file in files.iter().filter(|file| self.out.is_some() && is_file(file)) {
+            let name = file.display().to_string();
+            let sum = file_checksum(file)
+                .map_err(|error| Failure::argument(format!("cannot read {name}: {error}")))?;
+            self.read.push((name, sum));
+        }
+        Ok(self)
+    }
+
+    /// Opens an output. It is an error if it is one of the inputs or any other scene, if a manifest would
+    /// replace a file that is no manifest, or if an earlier output is the same.
+    fn open(&mut self, output: Output, path: &Path) -> Result<(), Failure> {
+        let option = output.option();
         let ending = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
         if BINARY_TABLES.contains(&&*ending) {
             refuse!(
@@ -78,7 +113,7 @@ impl Outputs {
         } else if is_scene_file(path) {
             return would_overwrite("a scene");
         } else if output == Output::MANIFEST && is_file(path) && !is_manifest(path) {
-            return would_overwrite("a file that is no manifest of a sweep");
+            return would_overwrite("a file that is no manifest");
         }
         let sink = Sink::open(path)?;
         if let Some((first, _)) = self.sinks.iter().find(|(_, earlier)| same_target(earlier, &sink)) {
@@ -86,7 +121,7 @@ impl Outputs {
             refuse!("{first} and {option} both go to {name}: give each a place of its own");
         }
         self.sinks.push((output, sink));
-        Ok(self)
+        Ok(())
     }
 
     /// Closes an output without a change of its file.
@@ -122,6 +157,9 @@ impl Outputs {
     }
 
     pub fn write(&mut self, output: Output, text: impl AsRef<[u8]>) -> Result<(), Failure> {
+        if output == Output::DATA && self.out.is_some() {
+            self.sum.add(text.as_ref());
+        }
         let Some(sink) = self.sink(output) else { return Ok(()) };
         sink.put_bytes(text.as_ref()).map_err(|error| Failure::writing(sink.name(), error))
     }
@@ -132,6 +170,39 @@ impl Outputs {
         let Some(sink) = self.sink(output) else { return Ok(false) };
         sink.flush().map_err(|error| Failure::writing(sink.name(), error))?;
         Ok(!sink.is_closed())
+    }
+
+    /// Writes the manifest of the rows, if they have one, as `text` makes it. `document` is what was run, if
+    /// the command reads a scene, on `jobs` threads. A manifest that was closed is opened again.
+    pub fn manifest(
+        &mut self,
+        document: Option<&Document>,
+        jobs: usize,
+        text: impl FnOnce(&Manifest) -> Result<String, Failure>,
+    ) -> Result<(), Failure> {
+        let Some(data) = self.out.clone() else { return Ok(()) };
+        let beside = manifest_path(&data);
+        if !self.has(Output::MANIFEST) {
+            self.open(Output::MANIFEST, &beside)?;
+        }
+        let (command, given) = given::arguments();
+        let repeat = repeated(&command, document.map(|_| &*beside), given);
+        let (origin, sha256) = (self.watch.origin(jobs), self.sum.text());
+        let (origin, repeat, data, sha256) = (&origin, &repeat, &data, &sha256);
+        let made = Manifest { document, command: &command, origin, repeat, data, sha256, inputs: &self.read };
+        let text = text(&made)?;
+        self.write(Output::MANIFEST, text)
+    }
+
+    /// Writes the manifest of rows that one run of the command made of `document`, if it reads a scene, and
+    /// gives the outputs their names.
+    pub fn finish_rows<'a>(
+        mut self,
+        document: impl Into<Option<&'a Document>>,
+        jobs: usize,
+    ) -> Result<(), Failure> {
+        self.manifest(document.into(), jobs, |manifest| Ok(manifest.of_table()))?;
+        self.finish()
     }
 
     /// Flushes all outputs, then gives the files their names. If one cannot be written to its end, no new

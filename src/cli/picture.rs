@@ -2,15 +2,11 @@
 
 use std::path::Path;
 
-use clap::parser::ValueSource;
-use clap::{ArgAction, ArgMatches, CommandFactory};
-use interwell::output::{
-    Argument, Caption, Chart, Format, Ranges, Sheet, SheetText, Theme, picture_arguments,
-};
+use interwell::output::{Caption, Chart, Format, Ranges, Sheet, SheetText, Theme, picture_arguments};
 use interwell::scene::Document;
 
 use super::support::range;
-use super::{ChartOptions, Common, Failure, Options, Output, Outputs, PlotOptions, refuse, say};
+use super::{ChartOptions, Common, Failure, Output, Outputs, PlotOptions, given, refuse, say};
 
 /// A requested picture.
 #[derive(Debug, Clone, Copy)]
@@ -83,7 +79,8 @@ impl<'a> Picture<'a> {
         let figure = chart.figure(caption, &self.theme);
         let mut figure = if self.titled { figure } else { figure.without_title() };
         figure.size = self.size;
-        figure.origin.insert("arguments".into(), arguments().into());
+        let (command, given) = given::arguments();
+        figure.origin.insert("arguments".into(), picture_arguments(&command, given).into());
         if let Some(words) = figure.grown().filter(|_| !self.quiet) {
             say(&format!("warning: --plot-height-mm: {words}"));
         }
@@ -101,30 +98,6 @@ impl Outputs {
         let Some(picture) = picture else { return Ok(self) };
         self.with(picture.output, Some(picture.path))?.with(Output::PLOT_DATA, picture.data)
     }
-}
-
-/// The arguments of this call that the pictures depend on, in the order of `--help`.
-fn arguments() -> Vec<String> {
-    let program = Options::command();
-    let Ok(matches) = program.clone().try_get_matches_from(std::env::args_os()) else { return Vec::new() };
-    let Some((word, command)) = matches.subcommand() else { return Vec::new() };
-    let mut all = Vec::new();
-    let arguments = program.find_subcommand(word).into_iter().flat_map(|command| command.get_arguments());
-    for argument in arguments.filter(|argument| argument.get_id() != "headless") {
-        let id = argument.get_id().as_str();
-        let is_given = |matches: &&ArgMatches| {
-            matches.try_contains_id(id).is_ok() && matches.value_source(id) == Some(ValueSource::CommandLine)
-        };
-        // common options may also stand before the command
-        let given = [&matches, command].into_iter().filter(is_given);
-        let is_flag = matches!(argument.get_action(), ArgAction::SetTrue);
-        for value in given.filter_map(|matches| matches.get_raw(id)).flatten() {
-            let option = argument.get_long().map(str::to_owned);
-            let value = (!is_flag).then(|| value.to_string_lossy().into_owned());
-            all.push(Argument { option, value });
-        }
-    }
-    picture_arguments(word, all)
 }
 
 fn sheet(options: &PlotOptions, format: Format) -> Result<Option<Sheet>, Failure> {

@@ -8,7 +8,7 @@ use interwell::study::{
 
 use super::grid_job::GridJob;
 use super::support::{
-    counted, finite, load_held, load_model, outputs, pool, until_settled, until_settled_on_grid, warn,
+    counted, finite, load, load_model, outputs, pool, until_settled, until_settled_on_grid, warn,
 };
 use super::{ChartOptions, Common, Failure, Output, Picture, caption, interrupt, refuse, say, whole};
 
@@ -97,7 +97,7 @@ fn one(options: &Arguments, common: &Common, mut settings: SectionOptions) -> Re
         let shown = SectionPicture { rows: &table, over: None, phase_deg: phase(&settings), stops, ranges };
         picture.write(&mut outputs, &section_chart(&shown), &caption(&document))?;
     }
-    outputs.finish()?;
+    outputs.finish_rows(&document, 1)?;
     if let Some(at) = summary.outcome.ended_at() {
         let name = summary.outcome.name();
         say(&format!("{}: the run ended early at t = {at} s ({name}): the rows end there", document.name));
@@ -112,7 +112,7 @@ fn phase(settings: &SectionOptions) -> Option<f64> {
 /// The sections of all cells, written as they are computed.
 fn diagram(options: &Arguments, common: &Common, settings: SectionOptions) -> Result<(), Failure> {
     let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
-    let (document, warnings) = load_held(&options.scene, common, Some(&options.over))?;
+    let (document, warnings) = load(&options.scene, common, Some(&options.over))?;
     let grid = Grid::new(document.axes(&options.over)?)?;
     let fields = grid.axes().len();
     if picture.is_some() && fields > 1 {
@@ -129,7 +129,7 @@ fn diagram(options: &Arguments, common: &Common, settings: SectionOptions) -> Re
     warn(&document, common, &warnings, first.as_ref().map(|model| &**model.mechanism()));
     let pool = pool(common)?;
     let outputs = outputs(&options.scene, &document, common)?;
-    let mut job = GridJob::open(&document, common, outputs, picture, Some(common.out()), pool)?;
+    let mut job = GridJob::open(&document, common, outputs, picture, pool)?;
     let (tally, count) = job.stream(&sections, "runs")?;
     let chart = |rows: &Table, picture: &Picture| {
         let over = sections.grid().columns().first().map(String::as_str);
@@ -138,7 +138,7 @@ fn diagram(options: &Arguments, common: &Common, settings: SectionOptions) -> Re
         Ok(section_chart(&shown))
     };
     let grid = sections.grid();
-    let wall_s = job.finish(chart, |manifest| Ok(manifest.of_rows("section", grid, &tally, None)))?;
+    let wall_s = job.finish(chart, |manifest| Ok(manifest.of_rows(grid, &tally, None)))?;
     if tally.cells == sections.rows() {
         common.say(&format!("{count} rows of {} in {wall_s:.2} s", runs(&tally)));
     }

@@ -92,7 +92,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let mut read = inputs(&options.scene, &document);
     read.extend(options.measured.measured.clone());
     let mut outputs = Outputs::new(&read)
-        .with(Output::DATA, Some(common.out()))?
+        .with_rows(Some(common.out()))?
         .with(Output::EVENTS, options.events.as_deref())?
         .with(Output::SUMMARY, options.summary.as_deref())?
         .with_picture(picture)?
@@ -128,7 +128,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     if let Some(found) = &compared {
         outputs.table(Output::COMPARISON, &found.table)?;
     }
-    outputs.finish()?;
+    outputs.finish_rows(&document, 1)?;
     if let Some((measured, found)) = record.as_ref().zip(compared.as_ref()).filter(|_| !common.quiet) {
         measured.report(found);
     }

@@ -85,7 +85,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         let chart = spectrum_chart(&found, quantity, picture.ranges);
         picture.write(&mut outputs, &chart, &caption(document))?;
     }
-    outputs.finish()?;
+    outputs.finish_rows(document, 1)?;
     common.say(&format!("{}: {}", document.name, found.describe()));
     Ok(())
 }

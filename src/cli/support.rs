@@ -1,6 +1,6 @@
 //! Steps that several commands share: loading a scene, building its mechanism and its model, reading numbers.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use interwell::dynamics::Model;
@@ -11,7 +11,7 @@ use interwell::scene::{Document, SceneError, read_number};
 use interwell::system::clock::{ProcessClock, WallClock};
 use interwell::system::threads::{Pool, processors};
 
-use super::{Common, Failure, Output, Outputs, refuse};
+use super::{Common, Failure, Outputs, refuse};
 
 /// Wall-clock and CPU time since a command began its work.
 #[derive(Debug, Clone, Copy)]
@@ -69,30 +69,25 @@ pub fn check(document: &mut Document, over: Option<&[String]>) -> Result<Vec<Str
     Ok(moved.into_iter().chain(first_cell.check()?).collect())
 }
 
-/// The same for a command that writes a manifest beside its rows if they go to a regular file: the scene then
-/// holds its files.
-pub fn load_held(
-    spec: &str,
-    common: &Common,
-    over: Option<&[String]>,
-) -> Result<(Document, Vec<String>), SceneError> {
-    let (mut document, warnings) = load(spec, common, over)?;
-    if is_regular(common.out()) {
-        document.cache_files();
-    }
-    Ok((document, warnings))
-}
-
-/// The scene without the check.
+/// The scene without the check. It holds its files if a manifest stands beside the rows.
 pub fn read(spec: &str, common: &Common) -> Result<Document, SceneError> {
     let mut document = Document::of_argument(spec)?;
+    change(&mut document, common)?;
+    Ok(document)
+}
+
+/// Applies `--set` and `--tolerance` to a scene that was read.
+pub fn change(document: &mut Document, common: &Common) -> Result<(), SceneError> {
     for argument in &common.set {
         document.set(argument)?;
     }
     if let Some(tolerance) = &common.tolerance {
         document.assign("run.tolerance", tolerance, &format!("--tolerance {tolerance}"))?;
     }
-    Ok(document)
+    if is_regular(common.out()) {
+        document.cache_files();
+    }
+    Ok(())
 }
 
 /// The files that a scene is read from: its file and the files that it names.
@@ -102,9 +97,9 @@ pub fn inputs(spec: &str, document: &Document) -> Vec<PathBuf> {
     inputs
 }
 
-/// The outputs of a command that reads one scene, with `--out` open.
+/// The outputs of a command that reads one scene, with its rows open.
 pub fn outputs(spec: &str, document: &Document, common: &Common) -> Result<Outputs, Failure> {
-    Outputs::new(&inputs(spec, document)).with(Output::DATA, Some(common.out()))
+    Outputs::new(&inputs(spec, document)).with_rows(Some(common.out()))
 }
 
 /// The scene's mechanism.
@@ -211,20 +206,6 @@ pub fn until_settled_on_grid(
     first: Option<&Model>,
 ) -> Result<Option<f64>, Failure> {
     first.map_or_else(|| waits(text), |model| until_settled(text, document, model))
-}
-
-/// The path of the manifest beside the rows at `out`. Returns `None` if `out` is no regular file.
-pub fn manifest_path(out: &Path) -> Option<PathBuf> {
-    is_regular(out).then(|| {
-        let mut name = out.as_os_str().to_owned();
-        name.push(".json");
-        name.into()
-    })
-}
-
-/// The name of the file with the rows.
-pub fn file_name(out: &Path) -> String {
-    out.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned())
 }
 
 /// The pool of `--jobs` threads.

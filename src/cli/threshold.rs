@@ -115,7 +115,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         let shown = ThresholdPicture { rows, grid, scene, field, onset, ranges: picture.ranges };
         picture.write(&mut outputs, &threshold_chart(&shown)?, &caption(&document))?;
     }
-    outputs.finish()
+    outputs.finish_rows(&document, pool.count())
 }
 
 /// The clause "`count` of `all` rows" with the singular or plural of a verb. Returns `None` if `count` is 0.

@@ -22,7 +22,7 @@ fn environment(document: &Document) -> Environment {
     }
 }
 
-fn question(document: &Document, over: (&str, f64, f64), intervals: usize) -> BestQuestion {
+pub fn question(document: &Document, over: (&str, f64, f64), intervals: usize) -> BestQuestion {
     let (field, low, high) = over;
     BestQuestion {
         over: vec![DesignRange::new(field, (low, high), intervals)],
@@ -35,20 +35,20 @@ fn question(document: &Document, over: (&str, f64, f64), intervals: usize) -> Be
     }
 }
 
-fn found_by(question: &BestQuestion, threads: usize) -> Result<BestDesign, NoBest> {
+pub fn found_by(question: &BestQuestion, threads: usize) -> Result<BestDesign, NoBest> {
     let task = Task { tick: &|| (), cancel: &AtomicBool::new(false) };
     best(question, &Pool::new(threads).unwrap(), &task, &mut |_| ())
 }
 
 /// A linear oscillator of 2 Hz with a quality of 5, shaken with 1 m/s^2; long enough to be steady.
-fn linear() -> Document {
+pub fn linear() -> Document {
     let text = "(mass_g: 1000, mechanism: Linear(n_per_m: 157.91367041742973), damping: Ratio(0.1),
         excitation: Sine(frequency_hz: 2, amplitude_g: 0.10197162129779283),
         run: (duration_s: 60, settle_s: 40, tolerance: 1e-10))";
     Document::from_text("linear", text, Files::default()).unwrap()
 }
 
-fn at_most(name: &str, limit: f64) -> Constraint {
+pub fn at_most(name: &str, limit: f64) -> Constraint {
     Constraint { of: SummaryField::find(name).unwrap(), at_most: true, limit }
 }
 

@@ -178,7 +178,9 @@ fn the_keys_of_a_manifest_are_documented() {
     let starts = folder.path().join("starts.csv");
     let line = "basins paper --x-mm 0:1:2 --v 0:0:1 --quiet --out";
     headless(line).arg(&starts).assert().success();
-    for name in ["map.csv.json", "starts.csv.json"] {
+    let compared = folder.path().join("compared.csv");
+    headless("compare monostable --quiet --out").arg(&compared).assert().success();
+    for name in ["map.csv.json", "starts.csv.json", "compared.csv.json"] {
         let text = fs::read_to_string(folder.path().join(name)).unwrap();
         let manifest: serde_json::Value = serde_json::from_str(&text).unwrap();
         for key in manifest.as_object().unwrap().keys() {

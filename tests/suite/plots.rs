@@ -6,6 +6,7 @@ mod legends;
 mod lines;
 mod manifests;
 mod paper;
+mod search;
 mod studies;
 
 use std::path::{Path, PathBuf};

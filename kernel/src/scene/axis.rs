@@ -11,6 +11,7 @@ use super::data::{Scene, SweepAxis};
 use super::error::clip;
 use super::field_table::FieldInfo;
 use super::fields::{FieldPath, info_of, numeric_fields};
+use super::names::nearest;
 use crate::numeric::{Decimal, number_text};
 
 /// Largest number of values of one axis, which limits the list of values to 80 MB. The number of cells of a
@@ -174,26 +175,9 @@ pub(super) fn unknown(kind: &str, field: &str, known: &[String]) -> String {
     let more = if more > 0 { format!(" and {more} more") } else { String::new() };
     let list = known.iter().take(MAX_SHOWN).map(String::as_str).collect::<Vec<_>>().join(", ");
     // hints for the window repeat names of the scene's fields
-    let hint = nearest(field, known.iter().filter(|name| !name.starts_with("app.")));
+    let hint = nearest(field, known.iter().map(String::as_str).filter(|name| !name.starts_with("app.")));
     let hint = hint.map_or_else(|| " it".to_owned(), |name| format!(" did you mean `{name}`? It"));
     format!("the scene has no {kind} `{}`;{hint} has: {list}{more}", clip(field))
-}
-
-/// Smallest similarity, by Jaro and Winkler, of a name that may have been meant.
-const SIMILAR: f64 = 0.87;
-
-/// The known name that an unknown one is most similar to, as a whole or in its last part, if any is.
-pub(super) fn nearest<'a>(unknown: &str, known: impl Iterator<Item = &'a String>) -> Option<&'a String> {
-    let last = |name: &str| name.rsplit('.').next().unwrap_or_default().to_owned();
-    let wanted = last(unknown);
-    let similarity = |name: &String| {
-        let (whole, part) = (strsim::jaro_winkler(name, unknown), strsim::jaro_winkler(&last(name), &wanted));
-        // a last part weighs less, so that of several names with the same one the nearest is taken
-        whole.max(0.9 * part + 0.1 * whole)
-    };
-    let rated = known.map(|name| (similarity(name), name));
-    let best = rated.max_by(|a, b| a.0.total_cmp(&b.0)).filter(|best| best.0 >= SIMILAR);
-    best.map(|(_, name)| name)
 }
 
 /// The values from the first decimal up to the second in steps of the third; the second is included if a step

@@ -5,6 +5,7 @@
 //! silently: an invalid value is rejected with its line.
 
 use super::error::clip;
+use super::names::find_name;
 
 /// Largest number of rows that are read.
 pub const MAX_ROWS: usize = 1_000_000;
@@ -173,6 +174,19 @@ impl Sheet {
         match record.iter().any(|value| value.contains('\n')) {
             false => Ok(()),
             true => Err(ColumnsError::OpenQuote { line: self.line(row) }),
+        }
+    }
+
+    /// Index of the column that a person calls `name`, in full or without its unit.
+    pub fn named_column(&self, name: &str) -> Result<usize, ColumnsError> {
+        let known: Vec<&str> = self.names.iter().map(String::as_str).collect();
+        match find_name("column", name, &known) {
+            Ok(full) => self.column(full),
+            Err(problem) => {
+                let known = clip(problem.trim_start_matches("no such column"));
+                let (line, name) = (self.line(0), clip(name));
+                Err(ColumnsError::MissingColumn(format!("line {line}: no column {name}{known}")))
+            }
         }
     }
 

@@ -52,8 +52,10 @@ pub struct Document {
     pub text: String,
     /// Where the files that it names are.
     pub files: Files,
-    /// Options of its sweep, if it came from a manifest.
+    /// Options of its sweep, if it came from the manifest of one.
     pub swept: Option<SweepRequest>,
+    /// All scenes of a comparison with their names, if it came from the manifest of one.
+    pub compared: Vec<(String, Self)>,
     /// Changes by arguments; the last one of each field counts.
     assigned: Vec<Assignment>,
     /// Faults of recorded accelerations that could not be read.
@@ -72,8 +74,8 @@ struct Assignment {
 }
 
 impl Document {
-    /// The scene in an argument of a command: anything that [`load`](Self::load) takes, the manifest of a
-    /// sweep, or `-` for a scene on standard input.
+    /// The scene in an argument of a command: anything that [`load`](Self::load) takes, the manifest of
+    /// rows, or `-` for a scene on standard input.
     pub fn of_argument(spec: &str) -> Result<Self, SceneError> {
         if is_link(spec) {
             return Self::from_link(spec);
@@ -147,17 +149,8 @@ impl Document {
         let mut written = Written::default();
         written.update("", text.trim_start_matches('\u{feff}'));
         let (name, text, source) = (name.to_owned(), text.to_owned(), Source::Text);
-        Ok(Self {
-            scene,
-            source,
-            name,
-            text,
-            files,
-            swept: None,
-            assigned: Vec::new(),
-            record_faults,
-            written,
-        })
+        let (swept, compared, assigned) = (None, Vec::new(), Vec::new());
+        Ok(Self { scene, source, name, text, files, swept, compared, assigned, record_faults, written })
     }
 
     /// The text of `scene`, this one or one made from it. A number that this scene has as arithmetic is

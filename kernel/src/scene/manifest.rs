@@ -1,4 +1,6 @@
-//! Manifest of a sweep, read as a scene with its grid as `sweep` and the files that it used.
+//! Manifest of rows, read as the scene that they were computed from, with the files that it used.
+//!
+//! That of a sweep has its grid as `sweep`, that of a comparison all its scenes.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -15,13 +17,17 @@ pub const PROGRAM: &str = "interwell";
 /// Largest size of a manifest in bytes: it contains tables and its grid.
 pub(super) const MAX_BYTES: usize = 2 * MAX_TABLE_BYTES;
 
-/// The keys of a manifest that are needed to repeat a sweep; a manifest has further keys.
+/// The keys of a manifest that are needed to compute its rows again; a manifest has further keys.
 #[derive(Deserialize)]
 struct Manifest {
     program: String,
-    scene_ron: String,
+    #[serde(default)]
+    command: String,
+    scene_ron: Option<String>,
     #[serde(default)]
     files: BTreeMap<String, String>,
+    #[serde(default)]
+    scenes: Vec<Compared>,
     #[serde(default)]
     plan: SweepRequest,
     #[serde(default)]
@@ -30,6 +36,14 @@ struct Manifest {
     data: String,
     #[serde(default)]
     version: String,
+}
+
+/// A scene of a comparison.
+#[derive(Deserialize)]
+struct Compared {
+    name: String,
+    scene_ron: String,
+    files: BTreeMap<String, String>,
 }
 
 /// Options of a sweep besides its scene; empty if not known.
@@ -69,13 +83,26 @@ pub(super) fn read(name: &str, text: &str, files: Files) -> Result<Document, Sce
     let manifest = parse(text).map_err(|problem| {
         let problem = clip(&problem);
         let problem =
-            format!("is JSON, but no manifest of a sweep: {problem}; give a scene (.ron) or a manifest");
+            format!("is JSON, but no manifest of rows: {problem}; give a scene (.ron) or a manifest");
         SceneError::Unreadable { name: name.to_owned(), problem }
     })?;
-    let files = Files { cached: manifest.files, ..files };
-    let Manifest { shard, data, version, .. } = manifest;
-    let swept = SweepRequest { shard: shard.filter(|shard| shard != "1/1"), data, version, ..manifest.plan };
-    let mut document = Document::from_text(&format!("{name} (scene_ron)"), &manifest.scene_ron, files)?;
-    document.swept = Some(swept);
+    let Some(scene) = manifest.scene_ron else {
+        let command = clip(&manifest.command);
+        let problem = format!(
+            "is a manifest of `{command}` without a scene: its `repeat` is the call that makes the rows again"
+        );
+        return Err(SceneError::Unreadable { name: name.to_owned(), problem });
+    };
+    let with = |cached| Files { cached, ..files.clone() };
+    let mut document = Document::from_text(&format!("{name} (scene_ron)"), &scene, with(manifest.files))?;
+    for Compared { name: scene, scene_ron, files } in manifest.scenes {
+        let shown = format!("{name} (scenes: {})", clip(&scene));
+        document.compared.push((scene, Document::from_text(&shown, &scene_ron, with(files))?));
+    }
+    if manifest.command == "sweep" {
+        let Manifest { shard, data, version, plan, .. } = manifest;
+        let shard = shard.filter(|shard| shard != "1/1");
+        document.swept = Some(SweepRequest { shard, data, version, ..plan });
+    }
     Ok(document)
 }

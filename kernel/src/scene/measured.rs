@@ -214,8 +214,8 @@ impl ColumnRequest {
         };
         let given = unit.as_deref().map(of_word).transpose()?;
         let Some(name) = column else { return self.choose_by_unit(sheet, given) };
-        let at = sheet.column(name)?;
-        let in_name = Unit::of_name(name).filter(|unit| self.quantities.contains(&unit.quantity));
+        let at = sheet.named_column(name)?;
+        let in_name = Unit::of_name(&sheet.names[at]).filter(|unit| self.quantities.contains(&unit.quantity));
         let unit = given.or(in_name).ok_or_else(|| {
             MeasuredError::Unusable(format!(
                 "column {}: its name ends with no unit of {quantity}; give it by {unit_option} ({units})",

@@ -42,6 +42,7 @@ mod link;
 mod manifest;
 mod measured;
 mod mechanism;
+mod names;
 mod periodic;
 mod pieces;
 mod presets;
@@ -77,6 +78,7 @@ pub use measured::{
     MeasuredError, MeasuredText, read_measured,
 };
 pub use mechanism::{FlexureGroup, ForcePiece, Mechanism, Moments};
+pub use names::find_name;
 pub use periodic::{DriveError, PeriodicDrive};
 pub use presets::{EmbeddedTable, PRESETS, Preset, TABLES, export};
 pub use record::{Record, read_record};

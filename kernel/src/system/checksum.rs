@@ -1,6 +1,11 @@
 //! SHA-256 checksums in the format of `sha256sum`.
 
+use std::io::Read;
+use std::path::Path;
+
 use sha2::{Digest, Sha256};
+
+use super::files;
 
 /// A checksum of bytes that are added one after another.
 #[derive(Debug, Clone, Default)]
@@ -23,6 +28,17 @@ pub fn checksum(bytes: &[u8]) -> String {
     let mut sum = Checksum::default();
     sum.add(bytes);
     sum.text()
+}
+
+/// The checksum of the file at `path`, in hexadecimal digits.
+pub fn file_checksum(path: &Path) -> std::io::Result<String> {
+    let (mut file, mut sum, mut bytes) = (files::open(path)?, Checksum::default(), vec![0; 1 << 16]);
+    loop {
+        match file.read(&mut bytes)? {
+            0 => return Ok(sum.text()),
+            n => sum.add(&bytes[..n]),
+        }
+    }
 }
 
 #[cfg(test)]

@@ -24,8 +24,8 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     }
     let Prepared { document, out, sweep, slice, picture, plan, .. } = &prepared;
     let out = Some(&**out).filter(|_| !options.check);
-    let outputs = Outputs::new(&inputs(&options.scene, document)).with(Output::DATA, out)?;
-    let mut job = GridJob::open(document, common, outputs, *picture, out, pool)?;
+    let outputs = Outputs::new(&inputs(&options.scene, document)).with_rows(out)?;
+    let mut job = GridJob::open(document, common, outputs, *picture, pool)?;
     let opened = prepared.open_rows(&mut job.outputs)?;
     let Some((mut rows_out, mut all)) = opened else { return prepared.has_all_rows(common) };
     let from = all.cells;
@@ -48,7 +48,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let wall_s = job.finish(chart, |manifest| {
         let sha256 = rows_out.close()?;
         let made = Made { plan, shard: slice.shard(), sha256: &sha256 };
-        Ok(manifest.of_rows("sweep", sweep.grid(), &all, Some(made)))
+        Ok(manifest.of_rows(sweep.grid(), &all, Some(made)))
     })?;
     // The rows get their name last: until then --resume can continue them.
     rows_out.finish()?;
@@ -102,7 +102,7 @@ impl Prepared<'_> {
             Some(_) => Overlay::default(),
             None => Overlay::of(scene, self.mechanism.as_deref(), grid, rows),
         };
-        let (quantity, view, ranges) = (&*self.options.quantity, self.view.clone(), picture.ranges);
+        let (quantity, view, ranges) = (self.quantity, self.view.clone(), picture.ranges);
         let shown = SweepPicture { rows, grid, scene, until_settled, quantity, overlay, view, ranges };
         Ok(sweep_chart(&shown)?)
     }

@@ -7,7 +7,7 @@ use clap::Args;
 use interwell::mechanics::{BuildError, Mechanism};
 use interwell::output::{Cut, View, can_show, plan};
 use interwell::questions::{Error, column_names};
-use interwell::scene::{Document, is_manifest, read_number};
+use interwell::scene::{Document, find_name, read_number};
 use interwell::study::{Carry, Grid, Shard, Slice, SummaryField, Sweep, SweepOptions};
 use serde_json::{Value, json};
 
@@ -25,8 +25,8 @@ pub struct Arguments {
     #[arg(long, value_name = "FIELD=FROM:TO:STEP|a,b,c", allow_hyphen_values = true)]
     pub over: Vec<String>,
 
-    /// Columns after those of the swept fields: names of the summary, or all [default: rms_velocity_m_per_s,
-    /// regime, crossings, impacts, max_abs_x_m, period, outcome]
+    /// Columns after those of the swept fields: names of the summary, which may lack their units, or all
+    /// [default: rms_velocity_m_per_s, regime, crossings, impacts, max_abs_x_m, period, outcome]
     #[arg(long, value_name = "A,B,..|all", allow_hyphen_values = true, value_delimiter = ',')]
     pub columns: Vec<String>,
 
@@ -99,6 +99,8 @@ pub struct Prepared<'a> {
     /// All that decides the bytes of the rows.
     pub plan: Value,
     pub picture: Option<Picture<'a>>,
+    /// The full name of the column that it shows.
+    pub quantity: &'a str,
     pub view: View,
 }
 
@@ -106,14 +108,16 @@ impl<'a> Prepared<'a> {
     /// Loads the scene, checks the arguments and prints the warnings. An argument overrides a manifest that
     /// is given as the scene.
     pub fn new(options: &'a Arguments, common: &Common) -> Result<Self, Failure> {
-        if options.check && !is_manifest(options.scene.as_ref()) {
+        let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
+        // a name that is none is reported by `can_show`, with those that there are
+        let quantity = SummaryField::named(&options.quantity).map_or(&*options.quantity, |field| field.name);
+        let (mut document, warnings) = load(&options.scene, common, Some(&options.over))?;
+        if options.check && document.swept.is_none() {
             refuse!(
                 "--check {}: give the manifest of a sweep, such as map.csv.json, as the scene",
                 options.scene
             );
         }
-        let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
-        let (mut document, warnings) = load(&options.scene, common, Some(&options.over))?;
         // Rows, plan and manifest then refer to the same bytes, even if the files change during the sweep.
         document.cache_files();
         let swept = document.swept.clone().unwrap_or_default();
@@ -131,20 +135,33 @@ impl<'a> Prepared<'a> {
         let until = options.until_settled.clone().or(swept.until_settled.map(|limit| limit.to_string()));
         let until_settled = until_settled_on_grid(until.as_deref(), &document, first.as_ref())?;
         // the quantity of the picture is computed even if its column is not written
-        let shown = picture.map(|_| &options.quantity).filter(|name| !columns.contains(name));
-        let fields = columns.iter().chain(shown).filter_map(|name| SummaryField::find(name)).collect();
+        let shown = picture.map(|_| quantity).filter(|name| !columns.iter().any(|column| column == name));
+        let fields = columns.iter().map(String::as_str).chain(shown).filter_map(SummaryField::find).collect();
         let sweep = sweep.with(SweepOptions { columns: fields, until_settled, carry });
         let slice = sweep.slice(shard);
         warn(&document, common, &warnings, mechanism.as_deref());
         let view = view(options, sweep.grid())?;
         if picture.is_some() {
-            can_show(sweep.grid(), &options.quantity, &view, &sweep.empty_table())?;
+            can_show(sweep.grid(), quantity, &view, &sweep.empty_table())?;
         }
         let data = Path::new(&options.scene).with_file_name(swept.data);
         let fixed = sweep.grid().columns().len() + usize::from(carry.is_some());
         let mut plan = plan(&document, &sweep, &columns[fixed..], env!("CARGO_PKG_VERSION"));
         (plan["rows"], plan["unit"]) = (json!(sweep.rows()), json!(slice.unit()));
-        Ok(Self { options, document, out, data, sweep, slice, mechanism, columns, plan, picture, view })
+        Ok(Self {
+            options,
+            document,
+            out,
+            data,
+            sweep,
+            slice,
+            mechanism,
+            columns,
+            plan,
+            picture,
+            quantity,
+            view,
+        })
     }
 }
 
@@ -162,9 +179,12 @@ fn view(options: &Arguments, grid: &Grid) -> Result<View, Failure> {
         let form = || wrong(format!("write FIELD=VALUE with a field of the sweep: {}", known()));
         let (field, value) = text.split_once('=').ok_or_else(form)?;
         let field = field.trim();
-        let mut fields = grid.axes().iter().zip(grid.columns());
-        let place = fields.position(|(axis, column)| axis.field == field || column == field);
-        let place = place.ok_or_else(|| wrong(format!("no field of the sweep; these are: {}", known())))?;
+        let place = grid.axes().iter().position(|axis| axis.field == field);
+        let columns: Vec<&str> = grid.columns().iter().map(String::as_str).collect();
+        let field =
+            place.map_or_else(|| find_name("field of the sweep", field, &columns), |at| Ok(columns[at]));
+        let field = field.map_err(wrong)?;
+        let place = columns.iter().position(|column| *column == field).unwrap_or(0);
         let value = read_number(value).map_err(|_| form())?;
         let column = grid.columns()[place].clone();
         let values = &grid.axes()[place].values;

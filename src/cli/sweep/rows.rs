@@ -3,14 +3,13 @@
 use std::io::{BufReader, Read};
 use std::path::Path;
 
-use interwell::output::{csv_table, plan_differences};
+use interwell::output::{csv_table, manifest_path, plan_differences};
 use interwell::study::{SweepEnd, Table, Tally};
-use interwell::system::checksum::Checksum;
+use interwell::system::checksum::file_checksum;
 use interwell::system::clock::WallClock;
 use interwell::system::{Opened, Part, PartError, files};
 use serde_json::{Value, json};
 
-use super::super::support::manifest_path;
 use super::super::{Failure, Output, Outputs, refuse};
 use super::prepared::{Arguments, Prepared};
 
@@ -142,14 +141,14 @@ impl Prepared<'_> {
     fn lacking_column(&self) -> Option<String> {
         self.picture?;
         let table = self.sweep.empty_table();
-        let needed = table.columns().iter().map(|column| &column.name);
-        let mut needed = std::iter::once(&self.options.quantity).chain(needed);
-        needed.find(|name| !self.columns.contains(name)).cloned()
+        let needed = table.columns().iter().map(|column| column.name.as_str());
+        let mut needed = std::iter::once(self.quantity).chain(needed);
+        needed.find(|name| !self.columns.iter().any(|column| column == name)).map(str::to_owned)
     }
 
     /// The manifest of the file, if both exist.
     fn manifest(&self) -> Option<Value> {
-        let text = files::bytes(&manifest_path(&self.out)?).ok().filter(|_| files::exists(&self.out));
+        let text = files::bytes(&manifest_path(&self.out)).ok().filter(|_| files::exists(&self.out));
         text.and_then(|text| serde_json::from_slice::<Value>(&text).ok())
     }
 
@@ -164,7 +163,7 @@ impl Prepared<'_> {
         self.manifest().is_some_and(|manifest| {
             manifest["plan"] == self.plan
                 && manifest["shard"].as_str() == Some(&self.slice.shard().to_string())
-                && manifest["sha256"].as_str() == file_checksum(&self.out).as_deref()
+                && manifest["sha256"].as_str() == file_checksum(&self.out).ok().as_deref()
         })
     }
 }
@@ -174,16 +173,6 @@ fn plan_with_shard(head: &Value) -> Value {
     let mut plan = head["plan"].clone();
     plan["shard"] = head["shard"].clone();
     plan
-}
-
-fn file_checksum(path: &Path) -> Option<String> {
-    let (mut file, mut sum, mut bytes) = (files::open(path).ok()?, Checksum::default(), vec![0; 1 << 16]);
-    loop {
-        match file.read(&mut bytes).ok()? {
-            0 => return Some(sum.text()),
-            n => sum.add(&bytes[..n]),
-        }
-    }
 }
 
 fn refused(error: PartError) -> Failure {

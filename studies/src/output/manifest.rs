@@ -1,9 +1,12 @@
-//! Manifests of a sweep, of exponents over a grid and of a map of basins, and the provenance of a result.
+//! Manifests of the rows that a command writes, and the provenance of a result.
+
+use std::path::{Path, PathBuf};
 
 use serde_json::{Map, Value, json};
 
 use super::json::pretty;
 use super::plan::plan_checksum;
+use super::plot::Argument;
 use crate::scene::{Document, Excitation, PROGRAM, Scene};
 use crate::study::{Answer, Basins, Grid, Shard, Tally};
 
@@ -34,24 +37,50 @@ pub struct Made<'a> {
 }
 
 /// Data that all manifests contain.
+///
+/// The scene is its text `scene_ron`, with all arguments applied, beside `files`, the texts of the tables and
+/// records that it reads, by their paths in it. With the arguments of `repeat` the manifest, read as a scene,
+/// gives the same rows.
 #[derive(Debug, Clone, Copy)]
 pub struct Manifest<'a> {
-    /// The document that was run, which holds its files.
-    pub document: &'a Document,
+    /// The document that was run, which holds its files; `None` of a command that reads no scene.
+    pub document: Option<&'a Document>,
+    /// The command.
+    pub command: &'a str,
     /// The provenance of the rows.
     pub origin: &'a Provenance,
-    /// The name of the file with the rows.
-    pub data: &'a str,
+    /// The arguments that write the same rows to standard output, with the manifest as the scene.
+    pub repeat: &'a [String],
+    /// The file with the rows.
+    pub data: &'a Path,
+    /// The checksum of that file.
+    pub sha256: &'a str,
+    /// Paths and checksums of the files that were read besides the scene and its files.
+    pub inputs: &'a [(String, String)],
 }
 
 impl Manifest<'_> {
-    /// The manifest of the grid that `command` swept, as text. A sweep of the manifest, or of a scene file
-    /// with the text `scene_ron` beside the `files`, gives the same rows. In `scene_ron` all arguments are
-    /// applied, swept fields have their values from the scene, and `sweep` is the grid that was run. `files`
-    /// are the texts of the tables and records that the scene reads, by their paths in it.
+    /// The manifest of rows that have no further entries, as text.
+    pub fn of_table(&self) -> String {
+        self.written(self.document.map(|document| &document.scene), json!({}))
+    }
+
+    /// The manifest of a comparison of these scenes, by their names in the table, as text. Each has its
+    /// files; the document is the first of them.
+    pub fn of_scenes(&self, scenes: &[(String, Document)]) -> String {
+        let scenes = scenes.iter().map(|(name, document)| {
+            json!({ "name": name, "scene_ron": text(document, &document.scene), "files": document.files.cached })
+        });
+        let more = json!({ "scenes": scenes.collect::<Vec<_>>() });
+        self.written(self.document.map(|document| &document.scene), more)
+    }
+
+    /// The manifest of the grid that the command ran, as text. A sweep of the manifest, or of a scene file
+    /// with the text `scene_ron` beside the `files`, gives the same rows. In `scene_ron` swept fields have
+    /// their values from the scene, and `sweep` is the grid that was run.
     ///
     /// `made` describes the file with the rows, if it may be a shard.
-    pub fn of_rows(&self, command: &str, grid: &Grid, tally: &Tally, made: Option<Made>) -> String {
+    pub fn of_rows(&self, grid: &Grid, tally: &Tally, made: Option<Made>) -> String {
         let mut more = json!({
             "cells": tally.cells,
             "mechanisms": made.map_or(tally.mechanisms, |_| grid.mechanisms()),
@@ -64,7 +93,7 @@ impl Manifest<'_> {
             more["plan_sha256"] = json!(plan_checksum(plan));
             more["plan"] = plan.clone();
         }
-        self.swept(command, grid, more)
+        self.swept(grid, more)
     }
 
     /// The manifest of exponents over a grid as text. It is that of a sweep with the numbers of cells that
@@ -75,19 +104,22 @@ impl Manifest<'_> {
             "resting": tally.resting,
             "without_exponents": tally.without_exponents,
         });
-        self.swept("exponents", grid, more)
+        self.swept(grid, more)
     }
 
     /// The manifest of rows over a grid, with `more` entries of the command.
-    fn swept(&self, command: &str, grid: &Grid, more: Value) -> String {
+    fn swept(&self, grid: &Grid, more: Value) -> String {
         let axes = grid.axes().iter().zip(grid.columns());
         let axes = axes.map(|(axis, column)| {
             json!({ "field": axis.field, "column": column, "values": numbers(&axis.values) })
         });
         let mut all = json!({ "grid": axes.collect::<Vec<_>>() });
         extend(&mut all, more);
-        let sweep = grid.axes().iter().map(|axis| axis.to_scene(&self.document.scene)).collect();
-        self.written(&Scene { sweep, ..self.document.scene.clone() }, command, all)
+        let scene = self.document.map(|document| {
+            let sweep = grid.axes().iter().map(|axis| axis.to_scene(&document.scene)).collect();
+            Scene { sweep, ..document.scene.clone() }
+        });
+        self.written(scene.as_ref(), all)
     }
 
     /// The manifest of a map of basins as text. It is that of a sweep with the starts in place of the grid.
@@ -104,36 +136,44 @@ impl Manifest<'_> {
             "length_scale_m": length,
             "speed_scale_m_per_s": speed,
         });
-        self.written(&self.document.scene, "basins", more)
+        self.written(self.document.map(|document| &document.scene), more)
     }
 
     /// A manifest with `more` entries of the command; `scene` is the scene that ran.
-    fn written(&self, scene: &Scene, command: &str, more: Value) -> String {
-        let Self { document, origin, data } = self;
+    fn written(&self, scene: Option<&Scene>, more: Value) -> String {
+        let Self { document, command, origin, repeat, data, sha256, inputs } = self;
+        let inputs = inputs.iter().map(|(path, sum)| (path.clone(), json!(sum)));
         let mut all = json!({
             "program": PROGRAM,
             "version": origin.version,
             "command": command,
             "arguments": origin.arguments,
-            "data": data,
-            "scene_name": document.name,
-            "title": scene.title,
-            "tolerance": scene.run.tolerance,
-            "seed": seed(scene),
+            "repeat": repeat,
+            "data": file_name(data),
+            "sha256": sha256,
+            "inputs": inputs.collect::<Map<_, _>>(),
+            "scene_name": document.map(|document| &document.name),
+            "title": scene.map(|scene| &scene.title),
+            "tolerance": scene.map(|scene| scene.run.tolerance),
+            "seed": scene.map(seed),
         });
         extend(&mut all, more);
         let end = json!({
             "jobs": origin.jobs,
             "wall_s": origin.wall_s,
             "cpu_s": origin.cpu_s,
-            "scene": scene_value(scene),
-            // null if it cannot be written, rather than an empty scene
-            "scene_ron": document.write(scene).ok(),
-            "files": document.files.cached,
+            "scene": scene.map(scene_value),
+            "scene_ron": document.zip(scene).and_then(|(document, scene)| text(document, scene)),
+            "files": document.map_or_else(|| json!({}), |document| json!(document.files.cached)),
         });
         extend(&mut all, end);
         pretty(&all)
     }
+}
+
+/// The text of a scene, this document's or one made from it; `None` if it cannot be written, rather than that of an empty scene.
+fn text(document: &Document, scene: &Scene) -> Option<String> {
+    document.write(scene).ok()
 }
 
 /// Adds the entries of another object.
@@ -143,10 +183,92 @@ fn extend(all: &mut Value, more: Value) {
     }
 }
 
-/// The manifest of a whole sweep, from the manifests of its shards. `data` is the name of the merged file,
+/// The path of the manifest beside the rows at `out`.
+pub fn manifest_path(out: &Path) -> PathBuf {
+    let mut name = out.as_os_str().to_owned();
+    name.push(".json");
+    name.into()
+}
+
+fn file_name(path: &Path) -> String {
+    path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned())
+}
+
+/// Options on which the rows do not depend, and those whose changes are in the scene of a manifest.
+const NOT_REPEATED: [&str; 36] = [
+    "set",
+    "tolerance",
+    "out",
+    "jobs",
+    "quiet",
+    "strict",
+    "resume",
+    "force",
+    "shard",
+    "check",
+    "events",
+    "summary",
+    "landscape",
+    "shapes",
+    "contact",
+    "attractors",
+    "comparison",
+    "measured",
+    "shift-s",
+    "offset-mm",
+    "time-scale",
+    "inset",
+    "plot",
+    "shapes-plot",
+    "contact-plot",
+    "plot-data",
+    "plot-size",
+    "plot-width-mm",
+    "plot-height-mm",
+    "font-pt",
+    "dpi",
+    "plot-x",
+    "plot-y",
+    "dark",
+    "no-title",
+    "panels",
+];
+
+/// Further ones of a sweep and a spectrum: what a picture shows.
+const SHOWN: [&str; 3] = ["quantity", "surface", "cut"];
+
+/// Columns of a record, which decide the rows of `identify` alone.
+const OF_RECORDS: [&str; 6] = ["time", "time-unit", "column", "unit", "position", "position-unit"];
+
+/// Place of the scene in the arguments of [`repeated`].
+const REPEATED_SCENE: usize = 2;
+
+/// The arguments that write the same rows to standard output, from the arguments `given` to `command` in the
+/// order of `--help`, with the `manifest` in place of the scenes, or with the file that was given where the
+/// command reads no scene.
+pub fn repeated(
+    command: &str,
+    manifest: Option<&Path>,
+    given: impl IntoIterator<Item = Argument>,
+) -> Vec<String> {
+    let is_repeated = |argument: &Argument| match argument.option.as_deref() {
+        None => manifest.is_none(),
+        Some(option) if OF_RECORDS.contains(&option) => command == "identify",
+        // the scenes of a comparison have its excitation
+        Some("environment") => command != "compare",
+        Some(option) => !NOT_REPEATED.contains(&option) && !SHOWN.contains(&option),
+    };
+    let scene = manifest.map(|path| path.to_string_lossy().into_owned());
+    let first = ["--headless".to_owned(), command.to_owned()].into_iter().chain(scene);
+    let options =
+        given.into_iter().filter(is_repeated).flat_map(|argument| argument.words().collect::<Vec<_>>());
+    first.chain(options).chain(["--out".to_owned(), "-".to_owned()]).collect()
+}
+
+/// The manifest of a whole sweep, from the manifests of its shards. `out` is the path of the merged file,
 /// `sha256` its checksum, and `arguments` those of the call that merged it. Counts and CPU times are added;
 /// of the wall-clock times the longest is kept.
-pub fn merged_manifest(shards: &[Value], data: &str, sha256: &str, arguments: &[String]) -> String {
+pub fn merged_manifest(shards: &[Value], out: &Path, sha256: &str, arguments: &[String]) -> String {
     let Some(mut merged) = shards.first().cloned() else { return String::new() };
     for other in &shards[1..] {
         for key in ["cells", "outcomes", "regimes", "cpu_s"] {
@@ -156,7 +278,10 @@ pub fn merged_manifest(shards: &[Value], data: &str, sha256: &str, arguments: &[
             merged["wall_s"] = other["wall_s"].clone();
         }
     }
-    merged["data"] = json!(data);
+    if let Some(scene) = merged.get_mut("repeat").and_then(|words| words.get_mut(REPEATED_SCENE)) {
+        *scene = json!(manifest_path(out).to_string_lossy());
+    }
+    merged["data"] = json!(file_name(out));
     merged["sha256"] = json!(sha256);
     merged["arguments"] = json!(arguments);
     merged["shard"] = json!(Shard::WHOLE.to_string());
@@ -189,7 +314,7 @@ pub fn origin(document: &Document, version: &str) -> Map<String, Value> {
         "title": scene.title,
         "tolerance": scene.run.tolerance,
         "seed": seed(scene),
-        "scene_ron": document.write(scene).ok(),
+        "scene_ron": text(document, scene),
     });
     if let Value::Object(all) = all { all } else { Map::new() }
 }

@@ -4,7 +4,7 @@ use super::grid::drive_alone;
 use super::{Error, Progress, Simulation, check_until_settled};
 use crate::numeric::number_text;
 use crate::scene::{
-    Axis, Document, Excitation, FieldPath, RunSettings, Start, Transducer, is_whole, read_number,
+    Axis, Document, Excitation, FieldPath, RunSettings, Start, Transducer, find_name, is_whole, read_number,
 };
 use crate::study::{
     Alternative, BestDesign, BestQuestion, Constraint, DesignRange, Environment, INTERVALS, MOST_FIELDS,
@@ -343,12 +343,12 @@ const POWER_ALIAS: (&str, &str) = ("mean_power_w", "mean_load_power_w");
 /// The numeric summary field called `name`. `argument` and `value` are those that an error names.
 fn number(argument: &str, value: &str, name: &str) -> Result<&'static SummaryField, Error> {
     let is_number = |field: &&SummaryField| matches!(field.read, Read::Number(_) | Read::Count(_));
-    let column = if name == POWER_ALIAS.0 { POWER_ALIAS.1 } else { name };
-    let found = SummaryField::find(column).filter(is_number);
-    found.ok_or_else(|| {
-        let known: Vec<&str> = SUMMARY_FIELDS.iter().filter(is_number).map(|field| field.name).collect();
+    let known: Vec<&str> = SUMMARY_FIELDS.iter().filter(is_number).map(|field| field.name).collect();
+    let named = if name == POWER_ALIAS.0 { POWER_ALIAS.1 } else { name };
+    let found = find_name("number", named, &known);
+    found.and_then(|column| SummaryField::named(column)).map_err(|problem| {
         let which = if value == name { String::new() } else { format!("{name}: ") };
-        Error::argument(argument, value, format!("{which}no such number; there are {}", known.join(", ")))
+        Error::argument(argument, value, format!("{which}{problem}"))
     })
 }
 

@@ -9,7 +9,7 @@ use crate::dynamics::Model;
 use crate::mechanics::{ForceCurve, Mechanism};
 use crate::numeric::number_text;
 use crate::scene::Mechanism::Linear;
-use crate::scene::{Axis, Damping, Document, Scene, Start, Stops, Transducer, is_whole};
+use crate::scene::{Axis, Damping, Document, Scene, Start, Stops, Transducer, find_name, is_whole};
 use crate::study::{
     self, Carry, DIRECTION, ExponentCells, ExponentOptions, Grid, GridStudy, IMPACTS, MAX_SECTION,
     NoExponents, NoThresholds, Onset, Question, STANDARD_COLUMNS, SUMMARY_FIELDS, Scan, SectionAt,
@@ -128,16 +128,18 @@ pub fn column_names(chosen: &[String], grid: &Grid, carry: Option<Carry>) -> Res
             names.extend(STANDARD_COLUMNS.into_iter().chain(more).map(str::to_owned));
         }
         list => {
+            let fields = SUMMARY_FIELDS.iter().map(|field| field.name);
+            let known: Vec<&str> = ["all"].into_iter().chain(fields).collect();
             for name in list.iter().map(|name| name.trim()) {
-                let Some(field) = SummaryField::find(name) else {
-                    let known: Vec<&str> = SUMMARY_FIELDS.iter().map(|field| field.name).collect();
-                    let problem = format!("no such column; there are all, {}", known.join(", "));
-                    return Err(Error::argument("columns", name, problem));
-                };
-                if names.iter().any(|known| known == field.name) {
-                    return Err(Error::argument("columns", name, "named twice; name it once"));
+                let wrong = |problem: &str| Error::argument("columns", name, problem);
+                let column = find_name("column", name, &known).map_err(|problem| wrong(&problem))?;
+                if column == "all" {
+                    return Err(wrong("stands alone: it has every column"));
                 }
-                names.push(field.name.to_owned());
+                if names.iter().any(|known| known == column) {
+                    return Err(wrong("named twice; name it once"));
+                }
+                names.push(column.to_owned());
             }
         }
     }

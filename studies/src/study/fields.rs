@@ -4,6 +4,7 @@ use Read::{Count, Flag, Number, Word};
 
 use super::Values;
 use crate::dynamics::{First, Firsts, Outcome, Place, Regime, STANDARD_GRAVITY, Summary};
+use crate::scene::find_name;
 
 /// How a field of a summary is read; `None` and an empty word are missing values.
 #[derive(Debug, Clone, Copy)]
@@ -217,6 +218,14 @@ fn amplitude(summary: &Summary, of: fn(&Firsts) -> Option<First>) -> Option<f64>
 }
 
 impl SummaryField {
+    /// The field that a person calls `name`, in full or without its unit; otherwise a sentence that says which
+    /// may have been meant, and which there are.
+    pub fn named(name: &str) -> Result<&'static Self, String> {
+        let known: Vec<&str> = SUMMARY_FIELDS.iter().map(|field| field.name).collect();
+        let found = find_name("column", name, &known)?;
+        Self::find(found).ok_or_else(|| format!("no such column as {found}"))
+    }
+
     /// The field called `name`.
     pub fn find(name: &str) -> Option<&'static Self> {
         SUMMARY_FIELDS.iter().find(|field| field.name == name)

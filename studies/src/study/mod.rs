@@ -70,7 +70,7 @@ pub use amplitudes::{Thresholds, can_cross, stops_that_cross, thresholds};
 pub use basins::{Answer, Attractor, Basins, EvenRange, MAX_STARTS, NoBasins, Shares, Starts, StartsError};
 pub use best::{
     BestDesign, BestQuestion, Constraint, DesignRange, Environment, INTERVALS, MOST_FIELDS, NoBest, Optimum,
-    SAMPLES, Spread, Variation, best, names, place, quantity, scan_runs,
+    SAMPLES, Spread, Tried, Variation, best, names, place, quantity, scan_places, scan_runs,
 };
 pub use contact::{Strikes, contact, strikes, yield_speed, yield_warning};
 pub use curve::{

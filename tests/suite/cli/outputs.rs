@@ -17,7 +17,7 @@ fn a_file_is_written_whole() {
     fs::write(&path, "old").unwrap();
     headless(QUICK).arg("--out").arg(&path).assert().success().stdout("");
     assert_eq!(fs::read_to_string(&path).unwrap(), stdout(QUICK));
-    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1, "nothing else is left there");
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2, "only its manifest is beside it");
 }
 
 #[test]

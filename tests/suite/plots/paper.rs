@@ -124,6 +124,8 @@ fn no_text_lies_on_another_at_any_size() {
         format!("identify {record} --of restitution"),
         "exponents duffing --over excitation.amplitude_g=0.2:0.4:0.1 --periods 20".to_owned(),
         "compare paper uneven-stops".to_owned(),
+        format!("best paper {SHORT} --over stops.travel_limit_mm=1:3:0.5"),
+        format!("best paper {SHORT} --over stops.travel_limit_mm=1:3:1 --over mass_g=10:20:5"),
     ];
     for line in &lines {
         for size in ["", "--plot-width-mm 60 --font-pt 6", PAPER, "--plot-width-mm 170 --font-pt 9"] {

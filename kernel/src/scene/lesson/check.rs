@@ -4,12 +4,13 @@ use super::condition::Condition;
 use super::document::Stage;
 use super::{LESSON_FORMAT, Lesson, MAX_OPTION_LENGTH, MAX_STEP_LENGTH, Step};
 use crate::numeric::number_text;
-use crate::scene::axis::{Axis, nearest};
+use crate::scene::axis::Axis;
 use crate::scene::check::check;
 use crate::scene::data::{Excitation, Scene};
 use crate::scene::error::Fault;
 use crate::scene::field_table::row;
 use crate::scene::fields::{all_fields, numeric_fields};
+use crate::scene::names::nearest;
 
 /// A field of a summary that a lesson may name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -233,7 +234,8 @@ fn union(scenes: &[&Scene], fields: fn(&Scene) -> Vec<String>) -> Vec<String> {
 
 /// The known name that an unknown one may mean, as the end of a sentence.
 fn suggested<'a>(unknown: &str, known: impl Iterator<Item = &'a String>) -> String {
-    nearest(unknown, known).map_or(String::new(), |best| format!("; did you mean {best}?"))
+    nearest(unknown, known.map(String::as_str))
+        .map_or(String::new(), |best| format!("; did you mean {best}?"))
 }
 
 struct Found(Vec<Fault>);

@@ -5,7 +5,7 @@
 //! have a name.
 
 use super::axis::PlotAxis;
-use super::cells::Cells;
+use super::cells::{Cells, Colours};
 use super::figure::Point;
 use super::role::Role;
 use crate::mechanics::{Equilibrium, Landscape};
@@ -96,6 +96,8 @@ pub enum Marks {
     Regimes(Vec<(Point, &'static str)>, bool),
     /// Small markers, whose size decreases with their number.
     Cloud(Vec<Point>),
+    /// Small markers, each in the colour of its value.
+    Valued(Vec<(Point, f64)>, Colours),
     /// A line from the lower edge to each point.
     Sticks(Vec<Point>),
     /// A line from the second to the third value at each x.
@@ -194,6 +196,7 @@ impl Panel {
             Marks::Points(points) | Marks::Cloud(points) => {
                 points.is_empty() || points.iter().any(|point| self.contains(*point))
             }
+            Marks::Valued(points, _) => points.iter().any(|(point, _)| self.contains(*point)),
             Marks::Path(points) | Marks::Trace(points) => is_crossed(points),
             Marks::Sticks(points) => points.iter().any(|point| self.x.contains(point.0)),
             Marks::Intervals(rows) => spans_x(rows),

@@ -13,6 +13,8 @@ use super::style::{self, Theme};
 
 /// Half the size of the points of a cloud of few points, and of one of many.
 const CLOUD: (f64, f64) = (6.0, 2.2);
+/// Half the height of a marker in the colour of its value.
+const VALUED: f64 = 3.0;
 /// Number of points up to which a cloud has few.
 const FEW: f64 = 100.0;
 /// Number of points from which on it has many.
@@ -163,6 +165,14 @@ impl Frame {
             }
             Marks::Regimes(points, on_line) => self.regimes(figure, points, *on_line, theme),
             Marks::Cloud(points) => self.cloud(figure, points, &look, theme),
+            Marks::Valued(points, colours) => {
+                for (point, value) in points {
+                    for at in self.inside(&[*point]) {
+                        dot(figure, look.marker, at, VALUED + 0.8, theme.paper);
+                        dot(figure, look.marker, at, VALUED, colours.ink(*value, theme));
+                    }
+                }
+            }
             Marks::Sticks(points) => self.sticks(figure, points, &look),
             Marks::Intervals(rows) => {
                 for [x, low, high] in rows {

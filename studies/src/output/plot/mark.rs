@@ -23,6 +23,8 @@ pub enum Marker {
     DoubleArrow,
     /// A triangle on its base.
     Triangle,
+    /// Two bars across each other.
+    Cross,
 }
 
 /// The regimes with a colour of their own, in the order of [`Theme::regimes`], and their markers.
@@ -58,6 +60,13 @@ pub fn dot(figure: &mut Figure, marker: Marker, (x, y): Point, size: f64, ink: I
         Marker::Triangle => {
             let (wide, low) = (1.15 * size, 0.85 * size);
             figure.polygon(polygon(&[(0.0, -1.2 * size), (wide, low), (-wide, low)]), ink);
+        }
+        Marker::Cross => {
+            let (near, far) = (0.55 * size, 0.95 * size);
+            for way in [1.0, -1.0] {
+                let bar = [(-far, -near), (-near, -far), (far, near), (near, far)];
+                figure.polygon(polygon(&bar.map(|(dx, dy)| (way * dx, dy))), ink);
+            }
         }
         Marker::DoubleArrow => {
             let (tip, neck, bar) = (1.6 * size, 0.35 * size, 0.32 * size);

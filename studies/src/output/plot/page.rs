@@ -299,7 +299,7 @@ impl<'a> Legend<'a> {
 fn sample(layer: &Layer, theme: &Theme) -> Sample {
     let look = theme.look(layer.role);
     match &layer.marks {
-        Marks::Points(_) | Marks::Cloud(_) | Marks::Regimes(..) => Sample::Marker(look),
+        Marks::Points(_) | Marks::Cloud(_) | Marks::Valued(..) | Marks::Regimes(..) => Sample::Marker(look),
         Marks::Ticks(..) => Sample::Ticks(look.ink),
         Marks::Wall(..) => Sample::Patch(Look { ink: theme.wall_fill(), ..look }),
         Marks::Spans(_) => Sample::Patch(Look { hatch: None, ..look }),

@@ -74,6 +74,12 @@ pub enum Role {
     Best,
     /// One of several that is not the best.
     Other,
+    /// The design that a search found.
+    Found,
+    /// A safer design beside it.
+    SteppedBack,
+    /// A design that breaks a constraint.
+    Broken,
     /// Motions with impacts.
     Impacts,
     /// A threshold above which there are gaps.
@@ -197,6 +203,15 @@ impl Theme {
             Role::Transient => of(self.rest_hatch),
             Role::Best => of(self.stable),
             Role::Other => of(self.soft.over(self.paper, 0.35)),
+            Role::Found => Look {
+                size: style::MARKER + 2.0,
+                halo: Some(self.paper),
+                ..marked(self.stable, Marker::Diamond)
+            },
+            Role::SteppedBack => {
+                Look { size: style::MARKER, halo: Some(self.paper), ..marked(self.stable, Marker::Square) }
+            }
+            Role::Broken => marked(self.unstable, Marker::Cross),
             Role::Method(place) => {
                 let inks = [self.regimes[3], self.regimes[1], self.unstable, self.regimes[2], self.second];
                 Look {

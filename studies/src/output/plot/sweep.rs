@@ -10,7 +10,7 @@ use super::role::Role;
 use super::surface::MAX_SURFACE_CELLS;
 use super::swept::{SweepPicture, View, ascending, cells, drawn, marks, of_each, swept_axis};
 use crate::numeric::short;
-use crate::scene::{Excitation, Scene, Start};
+use crate::scene::{Excitation, Scene, Start, find_name};
 use crate::study::{DIRECTION, Direction, Grid, SUMMARY_FIELDS, Table};
 
 /// Largest number of cells in a picture: more than its pixels can distinguish.
@@ -55,26 +55,32 @@ pub enum NoPicture {
     #[error("--surface shows at most {MAX_SURFACE_CELLS} cells, not {0}: take longer steps, or leave it out")]
     SurfaceCells(u64),
     /// No column that can be shown.
-    #[error("--quantity {name}: no such column to show; there are: {known}")]
+    #[error("--quantity {name}: {problem}")]
     Quantity {
         /// The column as given.
         name: String,
-        /// The columns that exist.
-        known: String,
+        /// What may have been meant, and the columns that exist.
+        problem: String,
     },
 }
 
-/// Checks that the column `quantity` of a sweep of this grid can be shown in this way; `table` is that of its
-/// rows, which may still be empty.
-pub fn can_show(grid: &Grid, quantity: &str, view: &View, table: &Table) -> Result<(), NoPicture> {
-    if !quantities(table, grid).any(|column| column == quantity) {
-        let mut known: Vec<&str> = quantities(table, grid).collect();
-        let more = SUMMARY_FIELDS.iter().map(|field| field.name).filter(|name| !known.contains(name));
-        let more: Vec<&str> = more.collect();
-        known.extend(more);
-        let known = known.join(", ");
-        return Err(NoPicture::Quantity { name: quantity.to_owned(), known });
-    }
+/// Checks that the column that a person calls `quantity`, of a sweep of this grid, can be shown in this way,
+/// and returns its full name; `table` is that of its rows, which may still be empty.
+pub fn can_show<'a>(
+    grid: &'a Grid,
+    quantity: &str,
+    view: &View,
+    table: &'a Table,
+) -> Result<&'a str, NoPicture> {
+    let shown: Vec<&str> = quantities(table, grid).collect();
+    let quantity = find_name("column to show", quantity, &shown).map_err(|problem| {
+        let known = shown.iter().copied();
+        let more = SUMMARY_FIELDS.iter().map(|field| field.name).filter(|name| !shown.contains(name));
+        let known: Vec<&str> = known.chain(more).collect();
+        // a name that the rows lack may be that of a column that was not computed
+        let problem = find_name("column to show", quantity, &known).err().unwrap_or(problem);
+        NoPicture::Quantity { name: quantity.to_owned(), problem }
+    })?;
     if *view != View::Top {
         let lengths = || grid.axes().iter().map(|axis| axis.values.len());
         match (view, grid.cells()) {
@@ -89,7 +95,7 @@ pub fn can_show(grid: &Grid, quantity: &str, view: &View, table: &Table) -> Resu
     }
     match grid.axes().len() {
         1 | 2 if grid.cells() > MAX_PICTURE_CELLS => Err(NoPicture::Cells(grid.cells())),
-        1 | 2 => Ok(()),
+        1 | 2 => Ok(quantity),
         n => Err(NoPicture::Fields(n)),
     }
 }
@@ -110,7 +116,8 @@ const VISIBLE: f64 = 2e-3;
 /// with few values.
 pub fn sweep_chart(picture: &SweepPicture) -> Result<Chart, NoPicture> {
     let SweepPicture { rows, grid, scene, until_settled, .. } = *picture;
-    can_show(grid, picture.quantity, &picture.view, rows)?;
+    let quantity = can_show(grid, picture.quantity, &picture.view, rows)?;
+    let picture = &SweepPicture { quantity, ..picture.clone() };
     let ways = rows.words(DIRECTION);
     let walked = [Direction::Up, Direction::Down].into_iter().filter(|way| ways.contains(&way.name()));
     let walked: Vec<Direction> = walked.collect();

@@ -1,8 +1,8 @@
 //! Runs of designs in their environments, several at a time.
 
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
-use super::{BestQuestion, DesignRange, NoBest, Optimum};
+use super::{BestQuestion, DesignRange, NoBest, Optimum, Tried};
 use crate::dynamics::{Model, Outcome, Request, Run, Summary};
 use crate::mechanics::{BuildError, Mechanism};
 use crate::scene::{Fault, FieldPath, Scene, check, is_whole};
@@ -17,8 +17,8 @@ pub(super) enum Judged {
     Invalid(Vec<Fault>),
     /// A result is missing, or a run ended early.
     Missing,
-    /// Constraints are violated: the sum of the relative violations, and the results.
-    Broken(f64, Vec<f64>),
+    /// Constraints are violated: the sum of the relative violations, the results, and the value.
+    Broken(f64, Vec<f64>, f64),
     Value(f64, Vec<f64>),
 }
 
@@ -50,6 +50,8 @@ pub(super) struct Evaluator<'a> {
     varied: Vec<FieldPath>,
     /// The mechanism of each environment's scene, if it could be built.
     mechanisms: Vec<Option<Arc<Mechanism>>>,
+    /// The designs that were judged so far, without those that vary.
+    tried: Mutex<Vec<Tried>>,
 }
 
 impl<'a> Evaluator<'a> {
@@ -78,6 +80,7 @@ impl<'a> Evaluator<'a> {
             paths: question.over.iter().map(|range| path(&range.field)).collect(),
             varied: question.vary.iter().map(|variation| path(&variation.field)).collect(),
             mechanisms,
+            tried: Mutex::default(),
         })
     }
 
@@ -89,8 +92,23 @@ impl<'a> Evaluator<'a> {
     }
 
     pub fn judge(&self, designs: &[Vec<f64>]) -> Result<Vec<Judged>, NoBest> {
-        let designs: Vec<Design> = designs.iter().map(|at| (at.clone(), Vec::new())).collect();
-        self.judge_varied(&designs)
+        let varied: Vec<Design> = designs.iter().map(|at| (at.clone(), Vec::new())).collect();
+        let judged = self.judge_varied(&varied)?;
+        let tried = designs.iter().zip(&judged).map(|(at, judged)| {
+            let (value, keeps) = match judged {
+                Judged::Invalid(_) | Judged::Missing => (None, true),
+                Judged::Broken(_, _, value) => (Some(*value), false),
+                Judged::Value(value, _) => (Some(*value), true),
+            };
+            Tried { at: at.clone(), value, keeps }
+        });
+        self.tried.lock().unwrap_or_else(PoisonError::into_inner).extend(tried);
+        Ok(judged)
+    }
+
+    /// All designs that were judged, in order.
+    pub fn into_tried(self) -> Vec<Tried> {
+        self.tried.into_inner().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// The results of varied designs.
@@ -161,12 +179,10 @@ impl<'a> Evaluator<'a> {
         let of_each: Option<Vec<f64>> =
             summaries.iter().map(|summary| self.question.maximise.number(summary)).collect();
         let Some(of_each) = of_each else { return Judged::Missing };
-        if broken > 0.0 {
-            return Judged::Broken(broken, results);
-        }
         let weights = self.question.environments.iter().map(|environment| environment.weight);
         let sum: f64 = of_each.iter().zip(weights.clone()).map(|(value, weight)| value * weight).sum();
-        Judged::Value(sum / weights.sum::<f64>(), of_each)
+        let value = sum / weights.sum::<f64>();
+        if broken > 0.0 { Judged::Broken(broken, results, value) } else { Judged::Value(value, of_each) }
     }
 }
 

@@ -115,6 +115,18 @@ pub struct Optimum {
     pub of_each: Vec<f64>,
 }
 
+/// A design that was tried.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Tried {
+    /// The fields' values.
+    pub at: Vec<f64>,
+    /// The mean of the maximised result; `None` if a run ended early, a result is missing, or the design is
+    /// no valid scene.
+    pub value: Option<f64>,
+    /// Whether no constraint is known to be violated.
+    pub keeps: bool,
+}
+
 /// The value under variation. NaN if a sample has no value.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Spread {
@@ -142,6 +154,9 @@ pub struct BestDesign {
     pub stepped_back: Option<(Optimum, Spread)>,
     /// Whether all designs that were tried have the same value.
     pub flat: bool,
+    /// The designs that were tried, in order: first those of the scan, [`scan_places`] of them, then those
+    /// nearer to the best ones and those beside the optimum. Samples of what varies are left out.
+    pub tried: Vec<Tried>,
 }
 
 /// Why there is no best design.
@@ -216,11 +231,16 @@ pub fn best(
         margins,
         spread,
         stepped_back,
+        tried: evaluator.into_tried(),
     })
 }
 
 /// Number of runs of the scan of the whole range.
 pub fn scan_runs(question: &BestQuestion) -> u64 {
-    let places: u64 = question.over.iter().map(|range| range.intervals as u64 + 1).product();
-    places * question.environments.len() as u64
+    scan_places(question) * question.environments.len() as u64
+}
+
+/// Number of designs of the scan of the whole range.
+pub fn scan_places(question: &BestQuestion) -> u64 {
+    question.over.iter().map(|range| range.intervals as u64 + 1).product()
 }

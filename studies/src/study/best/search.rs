@@ -159,7 +159,7 @@ fn around(area: &Closer, over: &[DesignRange], grid: &[Vec<usize>], half: &[f64]
 /// Why no design has a value.
 fn none(places: &[Vec<f64>], judged: &[Judged]) -> NoBest {
     let broken = places.iter().zip(judged).filter_map(|(at, design)| match design {
-        Judged::Broken(by, results) => Some((by, at, results)),
+        Judged::Broken(by, results, _) => Some((by, at, results)),
         _ => None,
     });
     if let Some((_, nearest, results)) = broken.min_by(|a, b| a.0.total_cmp(b.0)) {
