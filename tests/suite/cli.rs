@@ -22,7 +22,7 @@ use predicates::prelude::*;
 use predicates::str::contains;
 
 /// The words of all commands, in the order of `--help`.
-const COMMANDS: [&str; 17] = [
+const COMMANDS: [&str; 18] = [
     "presets",
     "check",
     "curve",
@@ -37,6 +37,7 @@ const COMMANDS: [&str; 17] = [
     "basins",
     "orbit",
     "exponents",
+    "escape",
     "identify",
     "lesson",
     "accuracy",
