@@ -113,6 +113,15 @@ class Simulation:
         threads: int | None = None,
         progress: _Told = None,
     ) -> Answer: ...
+    def escape(
+        self,
+        over: _Over,
+        runs: int | None = None,
+        within: float | None = None,
+        until: str = "well",
+        threads: int | None = None,
+        progress: _Told = None,
+    ) -> Answer: ...
     def threshold(
         self,
         over: _Over,

@@ -1054,6 +1054,68 @@ class Scene(Mapping[str, Any]):
             )
         return Grid(answer, arrays) if arrays else Table(answer)
 
+    def escape(
+        self,
+        over: Over | None = None,
+        *,
+        runs: int | None = None,
+        within: float | None = None,
+        until: str = "well",
+        threads: int | None = None,
+        progress: Progress = False,
+    ) -> Table:
+        """Return how often, and after which time, a motion under noise leaves its well.
+
+        Parameters
+        ----------
+        over : mapping of str to array_like of float, optional
+            Fields and their values: a row for each cell.
+        runs : int, optional
+            Runs of each cell, 1 to 1e6, by default 100; run number i, from 0, has the seed of the scene
+            plus i.
+        within : float, optional
+            Time in s at which a run without an escape ends; by default the duration of the scene's run.
+        until : str
+            ``"well"``: the mass first reaches the well behind the barrier, or the middle between the barrier
+            and a stop before it. ``"crossing"``: it first crosses the top, from which it may fall back.
+        threads, progress
+            See :meth:`sweep`.
+
+        Returns
+        -------
+        Table or Grid
+            ``runs``, ``escaped`` and ``ended_early`` (counts), ``observed_s``; ``escape_rate_per_s``,
+            ``escape_rate_low_per_s`` and ``escape_rate_high_per_s`` (a 95 % interval);
+            ``mean_first_passage_s`` with ``mean_first_passage_low_s`` and ``mean_first_passage_high_s``;
+            ``median_first_passage_s``; ``kramers_rate_per_s``, NaN where it does not hold; each float64. A
+            :class:`Grid` with ``over``.
+
+        Raises
+        ------
+        SceneError
+            If an argument is wrong, the scene has no noise or one well, or its start lies on the barrier.
+
+        Notes
+        -----
+        The rate is the number of escapes over the time observed, runs without an escape included, with an
+        interval from chi-squared quantiles (Garwood 1936; Epstein and Sobel 1953; Cox 1953). The median is
+        that of Kaplan and Meier (1958), Kramers' rate that of Hänggi, Talkner and Borkovec (1990, equation
+        4.33) with the factor of Mel'nikov and Meshkov (1986) for weak damping.
+
+        Examples
+        --------
+        >>> noisy = scene.set(excitation="Noise(rms_g: 1, low_hz: 0.5, high_hz: 10, seed: 5)")
+        >>> table = noisy.escape(runs=8, within=4)
+        >>> bool(table["escape_rate_low_per_s"][0] <= table["escape_rate_high_per_s"][0])
+        True
+        """
+        axes, arrays = _over(over)
+        with _Told(progress, "runs") as told:
+            answer = self._simulation.escape(
+                axes, _count("runs", runs), within, until, _count("threads", threads), told
+            )
+        return Grid(answer, arrays) if arrays else Table(answer)
+
     def spectrum(
         self,
         of: str = "x",

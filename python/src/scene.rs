@@ -8,17 +8,17 @@ use interwell_kernel::mechanics::{FitReport, ForceCurve};
 use interwell_kernel::numeric::Taper;
 use interwell_kernel::scene::{Excitation, FieldPath, PRESETS, all_fields, write};
 use interwell_studies::output::{
-    Caption, ComparisonPicture, ExponentPicture, Overlay, Provenance, Ranges, RunPanel, SectionPicture,
-    SpectrumQuantity, SweepPicture, ThresholdPicture, View, basins_chart, branch_chart, comparison_chart,
-    curve_chart, exponents_chart, identified, identified_chart, run_chart, section_chart, spectrum_chart,
-    summary, sweep_chart, threshold_chart,
+    Caption, ComparisonPicture, EscapePicture, ExponentPicture, Overlay, Provenance, Ranges, RunPanel,
+    SectionPicture, SpectrumQuantity, SweepPicture, ThresholdPicture, View, basins_chart, branch_chart,
+    comparison_chart, curve_chart, escape_chart, exponents_chart, identified, identified_chart, run_chart,
+    section_chart, spectrum_chart, summary, sweep_chart, threshold_chart,
 };
 use interwell_studies::questions::{
-    self, Basins, Best, Branch, Compare, Curve, Error, Exponents, Identify, Orbit, Section, Spectrum, Sweep,
-    Threshold, WhatToIdentify, needs_a_sine,
+    self, Basins, Best, Branch, Compare, Curve, Error, Escape, Exponents, Identify, Orbit, Section, Spectrum,
+    Sweep, Threshold, WhatToIdentify, needs_a_sine,
 };
 use interwell_studies::study::{
-    Carry, ExponentOptions, Identity, Keep, Onset, Sampling, SectionAt, SectionOptions, Signal, Table,
+    Carry, ExponentOptions, Identity, Keep, Onset, Sampling, SectionAt, SectionOptions, Signal, Table, Until,
     sample_times, simulate_with_trace, stop_positions,
 };
 use pyo3::exceptions::PyValueError;
@@ -377,6 +377,33 @@ impl Simulation {
         }))
     }
 
+    #[pyo3(signature = (over, runs=None, within=None, until="well", threads=None, progress=None))]
+    #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
+    fn escape(
+        &self,
+        py: Python<'_>,
+        over: Over,
+        runs: Option<u64>,
+        within: Option<f64>,
+        until: &str,
+        threads: Option<usize>,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Answer> {
+        let until = named(py, "until", until, &Until::ALL, Until::name)?;
+        let question = Escape { over, runs: runs.unwrap_or(Escape::RUNS), within, until };
+        let table = work(py, &Way { threads, progress }, |progress| question.run(&self.inner, progress))?;
+        let answer = Answer::new(py, table, self.caption());
+        if question.over.is_empty() {
+            return Ok(answer);
+        }
+        let grid = checked(py, self.inner.grid(&question.over))?;
+        let options = checked(py, question.options(self.inner.document(), &grid))?;
+        Ok(answer.drawn(move |rows, asked| {
+            let picture = EscapePicture { rows, grid: &grid, options: &options, ranges: asked.ranges };
+            escape_chart(&picture).map_err(|problem| problem.to_string())
+        }))
+    }
+
     #[pyo3(signature = (over, field, of, resolution=None, until_settled=None, threads=None, progress=None))]
     #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
     fn threshold(
@@ -391,7 +418,7 @@ impl Simulation {
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Answer> {
         let of = named(py, "of", of, &Onset::ALL, Onset::name)?;
-        let question = Threshold { over, field, of, resolution, until_settled };
+        let question = Threshold { over, field, of, resolution, until_settled, melnikov: false };
         let table = work(py, &Way { threads, progress }, |progress| question.run(&self.inner, progress))?;
         let answer = Answer::new(py, table, self.caption());
         if question.over.is_empty() {

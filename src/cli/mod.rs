@@ -6,6 +6,7 @@ mod best;
 mod check;
 mod compare;
 mod curve;
+mod escape;
 mod exponents;
 mod failure;
 mod given;

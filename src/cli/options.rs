@@ -28,6 +28,7 @@ Examples:
   interwell --headless section paper --over excitation.amplitude_g=0.5:1.5:0.005 --plot diagram.png
   interwell --headless basins --x-mm -1.5:1.5:101 --v -0.5:0.5:101 --out basins.csv --plot basins.png
   interwell --headless exponents duffing-chaos --quiet
+  interwell --headless escape paper --set 'excitation=Noise(rms_g:0.8,low_hz:0.5,high_hz:20,seed:1)' --runs 50
   interwell --headless orbit impact-oscillator --branch excitation.amplitude_g=0.05:0.06 --plot branch.png
   interwell --headless accuracy --plot accuracy.png
   interwell --headless accuracy nominal-cubic --method rk4 --step-s 1/60,1/600
@@ -154,6 +155,8 @@ commands! {
     orbit Orbit " [SCENE]" ignores "jobs";
     /// Lyapunov exponents of the settled motion, with their standard errors, sum and dimension
     exponents Exponents " [SCENE]";
+    /// How often motions under noise leave their well: rate and mean time with intervals, and Kramers' rate
+    escape Escape " [SCENE]";
     /// Damping ratio, restitution or force curve from a measured record, each number with its interval
     identify Identify " FILE --of damping|restitution|force" refuses "set" "tolerance" ignores "jobs";
     /// List the lessons; print, check or begin one

@@ -3,12 +3,17 @@
 use clap::Args;
 use interwell::numeric::extent;
 use interwell::output::{ThresholdPicture, can_show_thresholds, threshold_chart};
-use interwell::questions::{Error, Threshold, drive_alone};
+use interwell::questions::{
+    Escape, NO_MELNIKOV, ProbableThreshold, Threshold, drive_alone, no_table, refuse_searched,
+};
 use interwell::scene::Document;
-use interwell::study::{Grid, NoThresholds, Onset, Scan, Table, can_cross, threshold_table};
+use interwell::study::{
+    Chance, Grid, Onset, Scan, Table, can_cross, probable_threshold_table, suits_melnikov, threshold_table,
+    with_melnikov,
+};
 
 use super::support::{finite, load, mechanism, outputs, pool, until_settled, warn};
-use super::{ChartOptions, Common, Failure, Output, Picture, caption, refuse, with_bar};
+use super::{ChartOptions, Common, Failure, Output, Picture, caption, refuse, whole, with_bar};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -17,7 +22,11 @@ Examples:
   interwell --headless threshold paper --over stops.travel_limit_mm=0.5:6.5:0.25 --plot cross.png
   interwell --headless threshold paper --field stops.travel_limit_mm=0.5:3:0.05 --of interwell
   interwell --headless threshold paper --over excitation.frequency_hz=2,3,4 \\
-      --over stops.travel_limit_mm=0.5:6:0.25 --plot lines.png";
+      --over stops.travel_limit_mm=0.5:6:0.25 --plot lines.png
+  interwell --headless threshold duffing --field excitation.amplitude_g=0:0.1 --melnikov \\
+      --over excitation.frequency_hz=0.1:0.3:0.02 --plot melnikov.png
+  interwell --headless threshold my-noise.ron --field excitation.rms_g=0:2 --probability 0.5 --runs 50 \\
+      --within 20 --over stops.travel_limit_mm=1:6:1 --plot half.png";
 
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
@@ -51,6 +60,25 @@ pub struct Arguments {
     #[arg(long, value_name = "MAX_S", allow_hyphen_values = true)]
     pub until_settled: Option<String>,
 
+    /// Under a noise: search the value at which this share of the runs, each with another seed, crosses the
+    /// barrier within a time, such as 0.5 for half of them
+    #[arg(long, value_name = "P", allow_hyphen_values = true, conflicts_with_all = ["of", "until_settled"])]
+    pub probability: Option<String>,
+
+    /// With --probability: number of runs, 1 to 1000000 [default: 100]
+    #[arg(long, value_name = "N", allow_hyphen_values = true, requires = "probability",
+          value_parser = whole::<u64>(1..=1_000_000))]
+    pub runs: Option<u64>,
+
+    /// With --probability: the time in s within which a run is to cross [default: the duration of the
+    /// scene's run]
+    #[arg(long, value_name = "SECONDS", allow_hyphen_values = true, requires = "probability")]
+    pub within: Option<String>,
+
+    /// Add the column melnikov_g: Melnikov's threshold of the amplitude of a sine, from quadrature
+    #[arg(long, conflicts_with = "probability")]
+    pub melnikov: bool,
+
     /// One row for each value of another field (repeatable, the first is the slowest)
     #[arg(long, value_name = "FIELD=FROM:TO:STEP|a,b,c", allow_hyphen_values = true)]
     pub over: Vec<String>,
@@ -61,6 +89,28 @@ pub struct Arguments {
     pub chart: ChartOptions,
 }
 
+/// What is searched: its range and resolution, and what is asked of runs under noise.
+fn search(options: &Arguments, document: &Document, grid: &Grid) -> Result<(Scan, Option<Chance>), Failure> {
+    let number = |option: &str, text: &Option<String>, remedy: &str| {
+        text.as_deref().map(|text| finite(option, text, remedy)).transpose()
+    };
+    let remedy = "give a number above 0, in the unit of the field";
+    let resolution = number("--resolution", &options.resolution, remedy)?;
+    let probability = number("--probability", &options.probability, "give a share, such as 0.5")?;
+    let within = number("--within", &options.within, "give a time in s, such as 100")?;
+    let field = options.field.clone();
+    let Some(probability) = probability else {
+        let scan = Threshold { field, resolution, ..Threshold::default() }.scan(document)?;
+        if options.melnikov && !suits_melnikov(&document.scene, &scan.field) {
+            refuse!("--melnikov with --field {}: {NO_MELNIKOV}", scan.field);
+        }
+        return Ok((scan, None));
+    };
+    let runs = options.runs.unwrap_or(Escape::RUNS);
+    let question = ProbableThreshold { field, probability, runs, within, resolution, over: Vec::new() };
+    Ok((question.scan(document)?, Some(question.chance(document, grid)?)))
+}
+
 /// Searches and writes the table.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
@@ -68,18 +118,12 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let over = Some(options.over.as_slice()).filter(|over| !over.is_empty());
     let (document, warnings) = load(&options.scene, common, over)?;
     let onset = Onset::named(&options.of).unwrap_or(Onset::Crossing);
-    let remedy = "give a number above 0, in the unit of the field";
-    let resolution = options.resolution.as_deref();
-    let resolution = resolution.map(|text| finite("--resolution", text, remedy)).transpose()?;
-    let field = options.field.clone();
-    let mut scan = Threshold { field, of: onset, resolution, ..Threshold::default() }.scan(&document)?;
     let grid = match over {
         None => Grid::of_one(),
         Some(over) => Grid::new(document.axes(over)?)?,
     };
-    if grid.axes().iter().any(|axis| axis.field == scan.field) {
-        refuse!("--over {}: the threshold is over it; sweep another field", scan.field);
-    }
+    let (mut scan, chance) = search(options, &document, &grid)?;
+    refuse_searched(&grid, &scan)?;
     if picture.is_some() {
         can_show_thresholds(&grid)?;
     }
@@ -93,14 +137,21 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let pool = pool(common)?;
     let mut outputs = outputs(&options.scene, &document, common)?.with_picture(picture)?;
     let Document { scene, files, name, .. } = &document;
-    let values = grid.cells() * scan.values.len() as u64;
-    let found = with_bar(values, "values", common, |task| {
-        threshold_table(scene, files, &grid, &scan, onset, &pool, task)
+    let (parts, unit) = match chance {
+        Some(chance) => (chance.runs, "runs"),
+        None => (scan.values.len() as u64, "values"),
+    };
+    let found = with_bar(grid.cells() * parts, unit, common, |task| match chance {
+        Some(chance) => probable_threshold_table(scene, files, &grid, &scan, &chance, &pool, task),
+        None => {
+            let table = threshold_table(scene, files, &grid, &scan, onset, &pool, task)?;
+            if !options.melnikov {
+                return Ok(table);
+            }
+            with_melnikov(table, scene, files, &grid, &pool, task)
+        }
     });
-    let table = found.map_err(|end| match end {
-        NoThresholds::Cancelled => Error::Cancelled,
-        NoThresholds::Wrong(cells) => Error::cells_of(&document, cells),
-    })?;
+    let table = found.map_err(|end| no_table(&document, end))?;
     outputs.table(Output::DATA, &table)?;
     let fixed = !grid.axes().iter().map(|axis| &axis.field).chain([&scan.field]).any(|field| is_limit(field));
     let blocked = mechanism.filter(|mechanism| fixed && !can_cross(scene, mechanism));
@@ -108,7 +159,11 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         None => "there is no barrier between two wells",
         Some(_) => "no barrier lies between the stops",
     });
-    let remarks = [missing(&table, &scan, onset, &grid, blocked), undecided(&table)];
+    let missing = match chance {
+        Some(chance) => too_few(&table, &scan, &chance),
+        None => missing(&table, &scan, onset, &grid, blocked),
+    };
+    let remarks = [missing, undecided(&table)];
     remarks.iter().flatten().for_each(|words| common.say(&format!("{name}: {words}")));
     if let Some(picture) = picture {
         let (rows, grid, field) = (&table, &grid, &*scan.field);
@@ -125,6 +180,19 @@ fn of_rows(count: usize, all: usize, verbs: [&str; 2]) -> Option<String> {
         (1, 1) => Some(format!("the row {}", verbs[0])),
         (count, all) => Some(format!("{count} of {all} rows {}", verbs[1])),
     }
+}
+
+/// Explains an empty `value` of a threshold in probability, if a row has one.
+fn too_few(table: &Table, scan: &Scan, chance: &Chance) -> Option<String> {
+    let values = table.numbers("value")?;
+    let count = values.iter().filter(|value| value.is_nan()).count();
+    let rows = of_rows(count, values.len(), ["has no value", "have no value"])?;
+    let (last, Chance { probability, within, .. }) = (scan.values.last()?, chance);
+    Some(format!(
+        "{rows}: at {} = {last} less than a share {probability} of the runs crosses within {within} s; give \
+         --field a wider range, or --within a longer time",
+        scan.field
+    ))
 }
 
 /// Explains `undecided`, if it is true in a row.

@@ -24,7 +24,7 @@ use predicates::prelude::*;
 use predicates::str::contains;
 
 /// The words of all commands, in the order of `--help`.
-const COMMANDS: [&str; 17] = [
+const COMMANDS: [&str; 18] = [
     "presets",
     "check",
     "curve",
@@ -39,6 +39,7 @@ const COMMANDS: [&str; 17] = [
     "basins",
     "orbit",
     "exponents",
+    "escape",
     "identify",
     "lesson",
     "accuracy",

@@ -137,6 +137,12 @@ fn every_column_and_word_of_the_output_is_documented() {
         format!("curve paper --out /dev/null --contact - {hertz}"),
         "threshold paper --of release".to_owned(),
         "exponents paper --quiet".to_owned(),
+        "escape paper --runs 1 --within 1 --set excitation=Noise(rms_g:1,low_hz:1,high_hz:9,seed:1) --quiet"
+            .to_owned(),
+        "threshold paper --probability 0.5 --runs 1 --within 1 --field excitation.rms_g=0:1 \
+         --set excitation=Noise(rms_g:1,low_hz:1,high_hz:9,seed:1) --quiet"
+            .to_owned(),
+        "threshold duffing --field excitation.amplitude_g=0:0.1:0.1 --melnikov --quiet".to_owned(),
         "spectrum paper --rate-hz 30 --quiet".to_owned(),
         "section paper --over excitation.amplitude_g=1 --carry up --quiet".to_owned(),
         "section paper --at impacts".to_owned(),

@@ -12,6 +12,7 @@ mod compliant;
 mod convergence;
 mod documents;
 mod drives;
+mod escape;
 mod examples;
 mod exponents;
 mod impacts;

@@ -234,6 +234,21 @@ impl ForceCurve {
         self.inside(x).map_or(f64::NAN, |p| p.potential(x))
     }
 
+    /// Potential at `b` less that at `a`, in J, both in m inside the domain, summed over the pieces between
+    /// them; as accurate as [`Piece::potential_change`].
+    pub fn potential_change(&self, a: f64, b: f64) -> f64 {
+        if a > b {
+            return -self.potential_change(b, a);
+        }
+        let (first, last) = (self.piece_index(a), self.piece_index(b));
+        let change = |i: usize| {
+            let (left, right) = self.piece_interval(i);
+            let from = if i == first { a } else { left };
+            self.pieces[i].potential_change(from, if i == last { b } else { right })
+        };
+        (first..=last).map(change).sum()
+    }
+
     /// Stiffness at `x` in N/m; on a break that of the piece towards x = 0; beyond the domain, NaN.
     pub fn stiffness(&self, x: f64) -> f64 {
         self.inside(x).map_or(f64::NAN, |p| p.stiffness(x))

@@ -43,6 +43,7 @@ pub mod round;
 mod scalar;
 pub(crate) mod single_root;
 mod sum;
+mod survival;
 mod text;
 mod turns;
 
@@ -62,6 +63,7 @@ pub use quadrature::{GaussLegendre, MAX_POINTS, even_half};
 pub use roots::{MAX_DEGREE, PolynomialRoots};
 pub use scalar::{Number, Scalar};
 pub use sum::CompensatedSum;
+pub use survival::{QuantileRanks, Rate, Waiting, median};
 pub use text::{decimals, number_text, push_number, short};
 pub use turns::{Turn, extent, turns};
 

@@ -4,7 +4,7 @@ use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 use super::motion::{may_have_circuit, phase};
-use super::{Error, Progress, Simulation, check_until_settled};
+use super::{Error, Progress, Simulation, check_until_settled, no_table, refuse_searched};
 use crate::dynamics::Model;
 use crate::mechanics::{ForceCurve, Mechanism};
 use crate::numeric::number_text;
@@ -12,17 +12,17 @@ use crate::scene::Mechanism::Linear;
 use crate::scene::{Axis, Damping, Document, Scene, Start, Stops, Transducer, find_name, is_whole};
 use crate::study::{
     self, Carry, DIRECTION, ExponentCells, ExponentOptions, Grid, GridStudy, IMPACTS, MAX_SECTION,
-    NoExponents, NoThresholds, Onset, Question, STANDARD_COLUMNS, SUMMARY_FIELDS, Scan, SectionAt,
-    SectionOptions, Sections, SummaryField, SweepEnd, SweepOptions, Table, Task, drive_fault, exponents,
-    exponents_row, section, threshold_table,
+    NoExponents, Onset, Question, STANDARD_COLUMNS, SUMMARY_FIELDS, Scan, SectionAt, SectionOptions,
+    Sections, SummaryField, SweepEnd, SweepOptions, Table, Task, drive_fault, exponents, exponents_row,
+    section, suits_melnikov, threshold_table, with_melnikov,
 };
 
 /// Fields, each with its values.
-type Over = Vec<(String, Vec<f64>)>;
+pub(super) type Over = Vec<(String, Vec<f64>)>;
 
 /// `count` evenly spaced values over a range, each rounded to 15 significant digits, so that 0.58 is 0.58 and
 /// not 0.5800000000000001.
-fn even(range: RangeInclusive<f64>, count: usize) -> Vec<f64> {
+pub(super) fn even(range: RangeInclusive<f64>, count: usize) -> Vec<f64> {
     let (from, to) = (*range.start(), *range.end());
     let last = count.saturating_sub(1).max(1) as f64;
     let value = |i: usize| {
@@ -64,6 +64,7 @@ macro_rules! over_fields {
 }
 
 over_fields!(Sweep Section Exponents Threshold);
+pub(super) use over_fields;
 
 /// What the settled motion does in each cell of a grid over fields: one run and one row per cell.
 ///
@@ -311,14 +312,21 @@ pub struct Threshold {
     pub resolution: Option<f64>,
     /// Each run continues until its motion repeats, at most up to this time in s.
     pub until_settled: Option<f64>,
+    /// Whether the column `melnikov_g` is added: Melnikov's threshold, in closed form up to quadrature
+    /// ([`melnikov_threshold`](crate::study::melnikov_threshold)). It needs a sine and its amplitude as field.
+    pub melnikov: bool,
 }
 
 impl Default for Threshold {
     fn default() -> Self {
-        let field = DEFAULT_FIELD.to_owned();
-        Self { over: Vec::new(), field, of: Onset::Crossing, resolution: None, until_settled: None }
+        let (field, of) = (DEFAULT_FIELD.to_owned(), Onset::Crossing);
+        Self { over: Vec::new(), field, of, resolution: None, until_settled: None, melnikov: false }
     }
 }
+
+/// Why there is no Melnikov's threshold of a field.
+pub const NO_MELNIKOV: &str =
+    "it is an amplitude of one sine: take a Sine, and search excitation.amplitude_g";
 
 /// The field and range of the default question.
 const DEFAULT_FIELD: &str = "excitation.amplitude_g=0:2";
@@ -331,14 +339,14 @@ impl Threshold {
     pub fn run(&self, simulation: &Simulation, progress: &Progress) -> Result<Table, Error> {
         let document = simulation.document();
         let mut scan = self.scan(document)?;
+        if self.melnikov && !suits_melnikov(&document.scene, &scan.field) {
+            return Err(Error::argument("melnikov", &scan.field, NO_MELNIKOV));
+        }
         let grid = match self.over.is_empty() {
             true => Grid::of_one(),
             false => simulation.grid(&self.over)?,
         };
-        if grid.axes().iter().any(|axis| axis.field == scan.field) {
-            let problem = "the threshold is over it; sweep another field";
-            return Err(Error::argument("over", &scan.field, problem));
-        }
+        refuse_searched(&grid, &scan)?;
         if self.until_settled.is_some() {
             let mut first = document.scene.clone();
             grid.apply(0, &mut first);
@@ -348,13 +356,12 @@ impl Threshold {
         let values = grid.cells() * scan.values.len() as u64;
         let (scene, files) = (&document.scene, &document.files);
         let found = progress.pool(|pool| {
-            progress
-                .task(Some(values), |task| threshold_table(scene, files, &grid, &scan, self.of, pool, task))
+            progress.task(Some(values), |task| {
+                let table = threshold_table(scene, files, &grid, &scan, self.of, pool, task)?;
+                if self.melnikov { with_melnikov(table, scene, files, &grid, pool, task) } else { Ok(table) }
+            })
         })?;
-        found.map_err(|end| match end {
-            NoThresholds::Cancelled => Error::Cancelled,
-            NoThresholds::Wrong(cells) => Error::cells_of(document, cells),
-        })
+        found.map_err(|end| no_table(document, end))
     }
 
     /// The values of the scan, and the resolution of the threshold.

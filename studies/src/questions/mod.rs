@@ -12,6 +12,8 @@
 //! | [`Sweep`] | what the settled motion does in each cell of a grid; with `carry`, hysteresis | [`Table`] |
 //! | [`Section`] | states once per period or at impacts; over a field a bifurcation diagram | [`Table`] |
 //! | [`Threshold`] | the smallest value of a field that releases the mass or makes it cross | [`Table`] |
+//! | [`ProbableThreshold`] | the value of a field at which a share of the runs under noise crosses | [`Table`] |
+//! | [`Escape`] | how often a motion under noise leaves its well, beside Kramers' rate | [`Table`] |
 //! | [`Exponents`] | Lyapunov exponents: whether the motion is chaotic | [`Table`] |
 //! | [`Orbit`] | the periodic orbit near the motion, with its multipliers | `study::Orbit` |
 //! | [`Branch`] | how an orbit goes on over a field, with folds, flips and grazings | `study::Branch` |
@@ -58,6 +60,7 @@
 
 mod design;
 mod error;
+mod escape;
 mod grid;
 mod motion;
 mod progress;
@@ -66,7 +69,8 @@ mod simulation;
 
 pub use design::{Best, BestAnswer, Compare, in_environment, needs_a_sine};
 pub use error::{Error, FaultAt, check_until_settled};
-pub use grid::{Exponents, Section, Sweep, Threshold, column_names, drive_alone};
+pub use escape::{Escape, ProbableThreshold, no_table, refuse_searched};
+pub use grid::{Exponents, NO_MELNIKOV, Section, Sweep, Threshold, column_names, drive_alone};
 pub use motion::{
     Basins, BasinsAnswer, Branch, Curve, Orbit, Spectrum, can_have_orbits, may_have_circuit, no_orbit,
 };
@@ -76,5 +80,5 @@ pub use simulation::{Recorded, Simulation};
 
 pub use crate::study::{
     Answer, BestDesign, BestQuestion, Carry, Column, EvenRange, ExponentOptions, Grid, Identified, Onset,
-    Rated, Sampling, SectionAt, SectionOptions, Signal, Table, Values,
+    Rated, Sampling, SectionAt, SectionOptions, Signal, Table, Until, Values,
 };

@@ -10,7 +10,9 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::walk::Walk;
-use super::{Carry, Cell, CellFaults, Direction, Grid, Shard, Slice, SweepEnd, Table, Tally, Task};
+use super::{
+    Cancelled, Carry, Cell, CellFaults, Direction, Grid, Shard, Slice, SweepEnd, Table, Tally, Task,
+};
 use crate::dynamics::{Model, Request, Run};
 use crate::mechanics::{BuildError, Mechanism};
 use crate::scene::{Fault, Files, Scene};
@@ -122,6 +124,28 @@ impl Cells {
             *place = build();
         }
         place.clone()
+    }
+
+    /// The cells in which `faults` finds any, or whose mechanism is wrong, each with its faults. A mechanism
+    /// that is not solved is no fault.
+    pub fn wrong(
+        &self,
+        pool: &Pool,
+        task: &Task,
+        faults: impl Fn(&Scene, &Arc<Mechanism>) -> Option<Vec<Fault>> + Sync,
+    ) -> Result<Vec<CellFaults>, Cancelled> {
+        let check = |scene: &mut Scene, index: usize| {
+            task.check_cancelled()?;
+            let built = self.mechanism(index as u64, scene, task.cancel).ok_or(Cancelled)?;
+            let faults = match built {
+                Ok(mechanism) => faults(scene, &mechanism),
+                Err(BuildError::Unsolved(_)) => None,
+                Err(BuildError::Wrong(fault)) => Some(vec![fault]),
+            };
+            Ok(faults.map(|faults| CellFaults { cell: self.grid.describe(index as u64), faults }))
+        };
+        let wrong = pool.map(self.grid.cells() as usize, || self.base.clone(), check)?;
+        Ok(wrong.into_iter().flatten().collect())
     }
 
     /// The model of a cell, or its faults; `None` if its mechanism was not solved, or if cancelled.

@@ -40,6 +40,7 @@ mod best;
 mod bisection;
 mod contact;
 mod curve;
+mod escape;
 mod exponents;
 mod fields;
 mod grid;
@@ -49,6 +50,7 @@ mod inspect;
 mod lesson;
 mod map;
 mod measured;
+mod melnikov;
 mod models;
 mod orbit;
 mod section;
@@ -78,6 +80,9 @@ pub use curve::{
     flexures_at, full_curve, metres, shapes, small_amplitude_frequency, states, stop_positions,
     stress_warning,
 };
+pub use escape::{
+    Chance, EscapeOptions, Until, depopulation, escape_table, kramers_rate, probable_threshold_table,
+};
 pub use exponents::{
     Estimate, ExponentCells, ExponentOptions, Exponents, NoExponents, average_exponents, drive_fault,
     exponents, exponents_row,
@@ -97,6 +102,7 @@ pub use map::{Edges, first_crossing, first_crossing_edge, line_meets, release_li
 pub use measured::{
     Comparison, ForceComparison, MeasuredMotion, NoComparison, OffTheCurve, compare, compare_force,
 };
+pub use melnikov::{melnikov_threshold, suits_melnikov, with_melnikov};
 pub use models::Held;
 pub use orbit::{Branch, BranchEnd, BranchEvent, NoOrbit, Orbit, branch, orbit, orbit_near, orbit_table};
 pub use section::{IMPACTS, MAX_SECTION, SectionAt, SectionOptions, Sections, section};

@@ -16,7 +16,7 @@ use super::settled::{followed, runs_from};
 use super::walk::excitation_fault;
 use super::{Cancelled, CellFaults, Family, Grid, NoModel, Table, Task};
 use crate::dynamics::{Outcome, Regime, Run, Summary};
-use crate::mechanics::{BuildError, Mechanism};
+use crate::mechanics::Mechanism;
 use crate::scene::{Fault, Files, Scene, Start};
 use crate::system::threads::{Pool, Queue, UnderWay};
 
@@ -70,13 +70,13 @@ pub fn threshold(
     search.found(scene, mechanism, scan).ok()
 }
 
-/// Why there is no table of thresholds.
+/// Why there is no table of thresholds or of escapes.
 #[derive(Debug, Clone, PartialEq)]
 pub enum NoThresholds {
     /// It was cancelled.
     Cancelled,
-    /// Cells in which no value gives a valid model, or none whose drive repeats, which interwell motion
-    /// needs.
+    /// Cells in which no value gives a valid model, or none that can have the motion: whose drive repeats, for
+    /// interwell motion, or is a noise, for an escape.
     Wrong(Vec<CellFaults>),
 }
 
@@ -95,19 +95,10 @@ pub fn threshold_table(
     let cells = Cells::new(scene, files, grid.clone());
     let count = grid.cells() as usize;
     let begin = || cells.base.clone();
-    let check = |scene: &mut Scene, index: usize| {
-        task.check_cancelled()?;
-        let built = cells.mechanism(index as u64, scene, task.cancel).ok_or(Cancelled)?;
-        let faults = match built {
-            Ok(mechanism) => faults(&from_rest(scene), &mechanism, files, scan, onset),
-            Err(BuildError::Unsolved(_)) => None,
-            Err(BuildError::Wrong(fault)) => Some(vec![fault]),
-        };
-        Ok(faults.map(|faults| CellFaults { cell: grid.describe(index as u64), faults }))
-    };
     let cancelled = |Cancelled| NoThresholds::Cancelled;
-    let wrong: Vec<CellFaults> =
-        pool.map(count, begin, check).map_err(cancelled)?.into_iter().flatten().collect();
+    let check =
+        |scene: &Scene, mechanism: &Arc<Mechanism>| faults(&from_rest(scene), mechanism, files, scan, onset);
+    let wrong = cells.wrong(pool, task, check).map_err(cancelled)?;
     if !wrong.is_empty() {
         return Err(NoThresholds::Wrong(wrong));
     }
@@ -136,7 +127,7 @@ pub fn threshold_table(
         .each("windows", &found, |found| found.value.map(|_| found.windows)))
 }
 
-fn from_rest(scene: &Scene) -> Scene {
+pub(super) fn from_rest(scene: &Scene) -> Scene {
     Scene { start: Start::Rest, ..scene.clone() }
 }
 

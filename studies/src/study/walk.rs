@@ -145,8 +145,13 @@ pub(super) fn without_a_period(model: &Model, scene: &Scene, what: &str) -> Opti
 
 /// A fault of a scene's excitation, named by its kind.
 pub(super) fn excitation_fault(scene: &Scene, problem: String) -> Fault {
-    let kind = FieldPath::new("excitation").word(scene);
-    Fault { field: "excitation".into(), value: kind.unwrap_or_else(|| "None".to_owned()), problem }
+    choice_fault(scene, "excitation", problem)
+}
+
+/// A fault of a choice of a scene, such as its excitation, named by its kind.
+pub(super) fn choice_fault(scene: &Scene, field: &str, problem: String) -> Fault {
+    let kind = FieldPath::new(field).word(scene);
+    Fault { field: field.into(), value: kind.unwrap_or_else(|| "None".to_owned()), problem }
 }
 
 /// Largest number of stroboscopic states that are kept of one run.

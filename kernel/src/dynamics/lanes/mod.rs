@@ -147,7 +147,8 @@ impl<'a> Source<'a> for Runs<'a, '_, '_> {
         let slot = self.slots.as_slice().first()?;
         loop {
             let (place, model, request) = (self.next)(under_way)?;
-            let lists = request.ledger || request.events || !request.sample_times.is_empty();
+            let listed = request.ledger || request.events || request.until_crossing;
+            let lists = listed || !request.sample_times.is_empty();
             let shares = !lists && model.compliant.is_none() && !model.motionless;
             let unit = model.scales.unit();
             match shares.then(|| form(&model, &clock(&model, unit))) {

@@ -182,6 +182,11 @@ impl Model {
         Self { stops: None, compliant: None, ..self.clone() }
     }
 
+    /// The same model, which counts a crossing at another displacement in m than the barrier.
+    pub fn with_crossing_level(&self, level: f64) -> Self {
+        Self { crossing_level: Some(level), ..self.clone() }
+    }
+
     /// The same model with recurrence on or off.
     pub fn with_recurrence(&self, recurrence: bool) -> Self {
         Self { recurrence, ..self.clone() }

@@ -19,6 +19,8 @@ pub(crate) struct Recorder<'a, T: Copy> {
     pub base: &'a dyn Base<T>,
     /// Whether work, damping, impacts and stored energy are summed over the whole run.
     pub ledger: bool,
+    /// Whether the run ends with the step of the first crossing.
+    pub until_crossing: bool,
     pub unit: f64,
     pub times: &'a [f64],
     pub next_time: usize,
@@ -101,6 +103,7 @@ impl<'a, T: Scalar> Recorder<'a, T> {
             clock,
             base,
             ledger: request.ledger,
+            until_crossing: request.until_crossing,
             unit,
             times: request.sample_times,
             next_time: 0,
@@ -163,7 +166,7 @@ impl<'a, T: Scalar> Recorder<'a, T> {
     }
 
     pub(crate) fn lists_crossings(&self) -> bool {
-        self.events.is_some() || self.classifier.times_all_crossings()
+        self.events.is_some() || self.until_crossing || self.classifier.times_all_crossings()
     }
 
     #[inline]

@@ -170,10 +170,11 @@ impl<'a, T: Scalar> Recorder<'a, T> {
         self.window.1
     }
 
-    /// Whether the motion has reached its goal.
+    /// Whether the motion has reached its goal, or the crossing that ends the run.
     #[inline]
     pub fn has_arrived(&self) -> bool {
         self.goal.as_ref().is_some_and(|goal| goal.reached.is_some())
+            || self.until_crossing && self.counts.total_crossings > 0
     }
 
     pub fn arrival(&mut self) -> Option<Arrival> {

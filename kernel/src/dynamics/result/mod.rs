@@ -32,6 +32,8 @@ pub struct Request<'a> {
     pub section: Option<f64>,
     /// Whether to keep the state from which another run can continue ([`Run::carried`]).
     pub carry: bool,
+    /// Whether the run ends with the step in which the mass first crosses the barrier.
+    pub until_crossing: bool,
 }
 
 /// Everything a run returns.

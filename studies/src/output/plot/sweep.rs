@@ -34,6 +34,9 @@ pub enum NoPicture {
     /// Exponents of a single motion, or over several fields.
     #[error("--plot shows exponents over one field, not over {0}: name it with --over FIELD=FROM:TO:STEP")]
     Exponents(usize),
+    /// One escape, or over several fields.
+    #[error("--plot shows escapes over one field, not over {0}: name it with --over FIELD=FROM:TO:STEP")]
+    Escapes(usize),
     /// Finer than a picture.
     #[error(
         "--plot shows at most {MAX_PICTURE_CELLS} cells, not {0}: take longer steps, or sweep without --plot"

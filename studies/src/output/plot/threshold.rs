@@ -8,6 +8,7 @@ use super::map::map;
 use super::role::Role;
 use super::sweep::{NoPicture, each_line, few_lines};
 use super::swept::{Overlay, SweepPicture, View, ascending, swept_axis};
+use crate::numeric::short;
 use crate::scene::{Scene, column_names};
 use crate::study::{Column, Grid, Onset, Table, Values};
 
@@ -27,6 +28,9 @@ pub struct ThresholdPicture<'a> {
     /// Ranges of the axes; over one field, the vertical axis is that of the threshold.
     pub ranges: Ranges,
 }
+
+/// The column of Melnikov's threshold.
+const MELNIKOV: &str = "melnikov_g";
 
 /// Whether thresholds over this grid can be shown.
 pub fn can_show_thresholds(grid: &Grid) -> Result<(), NoPicture> {
@@ -58,17 +62,22 @@ pub fn threshold_chart(picture: &ThresholdPicture) -> Result<Chart, NoPicture> {
         }
     };
     let names = grid.columns().iter().map(String::as_str);
-    let mut drawn = Drawn::new(names.chain([&*least, "low", "high", "windows"]), &[]);
-    let windows = rows.column("windows").and_then(as_numbers).unwrap_or_default();
-    let of_row = |name: &str, row: usize| rows.numbers(name).map(|values| values[row]);
-    for (row, &windows) in windows.iter().enumerate() {
-        let fields = grid.columns().iter().map(String::as_str);
-        let columns = fields.chain(["value", "low", "high"]).filter_map(|name| of_row(name, row));
-        let numbers: Vec<f64> = columns.chain([windows]).collect();
+    let more: Vec<&str> =
+        ["windows", MELNIKOV].into_iter().filter(|name| rows.column(name).is_some()).collect();
+    let all = names.chain([&*least, "low", "high"]).chain(more.iter().copied());
+    let mut drawn = Drawn::new(all, &[]);
+    let fields = grid.columns().iter().map(String::as_str);
+    let columns = fields.chain(["value", "low", "high"]).chain(more.iter().copied());
+    let columns: Vec<_> = columns.filter_map(|name| rows.column(name).and_then(as_numbers)).collect();
+    for row in 0..rows.rows() {
+        let numbers: Vec<f64> = columns.iter().map(|column| column[row]).collect();
         drawn.put("threshold", &numbers, &[]);
     }
     chart.data = drawn.table();
-    about(onset).clone_into(&mut chart.subtitle);
+    chart.subtitle = match rows.numbers("probability").and_then(|shares| shares.first()) {
+        Some(share) => format!("the value at which {} % of the runs under noise cross", short(100.0 * share)),
+        None => about(onset).to_owned(),
+    };
     Ok(chart)
 }
 
@@ -90,16 +99,23 @@ fn lines(picture: &ThresholdPicture, x: &str, series: Option<&str>, up: &str) ->
     let (places, values, low, high) = (numbers(x), numbers("value"), numbers("low"), numbers("high"));
     let windows = rows.column("windows").and_then(as_numbers).unwrap_or_default();
     let has_gaps = |row: usize| windows.get(row).is_some_and(|count| *count > 0.0);
-    let undecided = rows.words("undecided");
+    let (undecided, estimated) = (rows.words("undecided"), rows.column("probability").is_some());
     let bars: Vec<[f64; 3]> = (0..rows.rows())
-        .filter(|row| undecided.get(*row) == Some(&"true"))
+        .filter(|row| estimated || undecided.get(*row) == Some(&"true"))
         .map(|row| [places[row], low[row], high[row]])
+        .filter(|bar| !estimated || bar.iter().all(|end| end.is_finite()))
         .collect();
-    let from_zero = values.iter().copied().chain(bars.iter().flat_map(|bar| [bar[1], bar[2]])).chain([0.0]);
+    let melnikov = rows.numbers(MELNIKOV).unwrap_or_default();
+    let ends = bars.iter().flat_map(|bar| [bar[1], bar[2]]);
+    let from_zero = values.iter().copied().chain(ends).chain(melnikov.iter().copied()).chain([0.0]);
     let upward = PlotAxis::around(from_zero, 0.05, up).or_given(ranges.y);
     let mut panel = Panel::new(swept_axis(rows, x, ranges.x), upward);
     if !bars.is_empty() {
-        panel.layer(Role::Joined, "undecided between", Marks::Intervals(bars));
+        let (role, name) = match estimated {
+            true => (Role::Interval, "95 % interval"),
+            false => (Role::Joined, "undecided between"),
+        };
+        panel.layer(role, name, Marks::Intervals(bars));
     }
     let missing = ascending(places, |row| !values[row].is_finite());
     if !missing.is_empty() {
@@ -119,6 +135,13 @@ fn lines(picture: &ThresholdPicture, x: &str, series: Option<&str>, up: &str) ->
         };
         panel.draw(line.role, Marks::Points(of(false)));
         panel.layer(Role::Gaps, if any_gap { "gaps above" } else { "" }, Marks::Points(of(true)));
+    }
+    if !melnikov.is_empty() {
+        for line in each_line(rows, series) {
+            let order = ascending(places, |row| line.has(row) && melnikov[row].is_finite());
+            let points = order.iter().map(|&row| (places[row], melnikov[row])).collect();
+            panel.layer(Role::Envelope, "Melnikov's threshold", Marks::Path(points));
+        }
     }
     Chart::stack(vec![panel], "", Table::new())
 }

@@ -1,0 +1,107 @@
+//! `escape`: rates at which motions under noise leave their well, a row for each cell of a grid.
+
+use clap::Args;
+use interwell::output::{EscapePicture, can_show_escapes, escape_chart};
+use interwell::questions::{Escape, no_table};
+use interwell::scene::Document;
+use interwell::study::{Grid, Table, Until, Values, escape_table};
+
+use super::support::{counted, finite, load, mechanism, outputs, pool, warn};
+use super::{ChartOptions, Common, Failure, Output, Picture, caption, whole, with_bar};
+
+const EXAMPLES: &str = "\
+Examples:
+  interwell --headless escape paper --set 'excitation=Noise(rms_g:0.8,low_hz:0.5,high_hz:20,seed:1)' --runs 50
+  interwell --headless escape my-noise.ron --runs 200 --within 100 --over excitation.rms_g=0.2:0.6:0.05 \\
+      --plot rate.png
+  interwell --headless escape my-noise.ron --until crossing --over stops.travel_limit_mm=2:6:0.5 --out e.csv
+
+Run number i, from 0, has the seed of the scene plus i: `simulate --set excitation.seed=..` repeats one.";
+
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub struct Arguments {
+    /// Scene file or built-in scene; its excitation is a noise, or a sum with one
+    #[arg(value_name = "SCENE", default_value = "paper")]
+    pub scene: String,
+
+    /// Runs of each cell, each with another seed of the noise, 1 to 1000000
+    #[arg(long, value_name = "N", allow_hyphen_values = true, default_value = "100",
+          value_parser = whole::<u64>(1..=1_000_000))]
+    pub runs: u64,
+
+    /// Time in s at which a run without an escape ends [default: the duration of the scene's run]
+    #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
+    pub within: Option<String>,
+
+    /// What ends a run: well (the mass first reaches the well behind the barrier, or the middle between the
+    /// barrier and a stop before it) or crossing (it first crosses the top of the barrier, from which it may
+    /// fall back)
+    #[arg(long, value_name = "ESCAPE", default_value = "well", value_parser = ["well", "crossing"])]
+    pub until: String,
+
+    /// One row for each value of a field (repeatable, the first is the slowest)
+    #[arg(long, value_name = "FIELD=FROM:TO:STEP|a,b,c", allow_hyphen_values = true)]
+    pub over: Vec<String>,
+
+    /// The picture, with --over one field: the rate with its interval on a logarithmic axis, and Kramers' rate.
+    #[command(flatten)]
+    pub chart: ChartOptions,
+}
+
+/// Runs all cells and writes the table.
+pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
+    let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
+    // without --over the sweep in the scene is ignored
+    let over = Some(options.over.as_slice()).filter(|over| !over.is_empty());
+    let (document, warnings) = load(&options.scene, common, over)?;
+    let grid = match over {
+        None => Grid::of_one(),
+        Some(over) => Grid::new(document.axes(over)?)?,
+    };
+    if picture.is_some() {
+        can_show_escapes(&grid)?;
+    }
+    let within = options.within.as_deref();
+    let within = within.map(|text| finite("--within", text, "give a time in s, such as 100")).transpose()?;
+    let until = Until::named(&options.until).unwrap_or(Until::Well);
+    let question = Escape { runs: options.runs, within, until, ..Escape::default() };
+    let settings = question.options(&document, &grid)?;
+    let mechanism = (!grid.changes_mechanism()).then(|| mechanism(&document)).transpose()?;
+    warn(&document, common, &warnings, mechanism.as_deref());
+    let pool = pool(common)?;
+    let mut outputs = outputs(&options.scene, &document, common)?.with_picture(picture)?;
+    let Document { scene, files, name, .. } = &document;
+    let found = with_bar(grid.cells() * settings.runs, "runs", common, |task| {
+        escape_table(scene, files, &grid, &settings, &pool, task)
+    });
+    let table = found.map_err(|end| no_table(&document, end))?;
+    outputs.table(Output::DATA, &table)?;
+    common.say(&format!("{name}: {}", about(&table)));
+    if let Some(picture) = picture {
+        let shown = EscapePicture { rows: &table, grid: &grid, options: &settings, ranges: picture.ranges };
+        picture.write(&mut outputs, &escape_chart(&shown)?, &caption(&document))?;
+    }
+    outputs.finish_rows(&document, pool.count())
+}
+
+/// What came out, in a sentence.
+fn about(table: &Table) -> String {
+    let total = |name: &str| match table.column(name).map(|column| &column.values) {
+        Some(Values::Counts(counts)) => counts.iter().flatten().sum::<u64>(),
+        _ => 0,
+    };
+    let (runs, escaped, early) = (total("runs"), total("escaped"), total("ended_early"));
+    let mut text = format!("{escaped} of {} escaped", counted(runs, "run"));
+    if early > 0 {
+        text += &format!(
+            "; {early} ended before their time without an escape (they left the table of the force, or used \
+             up a budget), so that the rate is that of the time up to there"
+        );
+    }
+    let kramers = table.numbers("kramers_rate_per_s").unwrap_or_default();
+    if kramers.iter().any(|rate| rate.is_nan()) {
+        text += "; kramers_rate_per_s is missing where it does not hold (see docs/output.md)";
+    }
+    text
+}

@@ -1,0 +1,225 @@
+//! Questions about rare events under noise: escapes from a well, and thresholds in probability.
+
+use std::ops::RangeInclusive;
+
+use super::grid::{Over, even, over_fields};
+use super::{Error, Progress, Simulation, Threshold};
+use crate::scene::{Document, field_info};
+use crate::study::{
+    Chance, EscapeOptions, Grid, NoThresholds, Scan, Table, Until, escape_table, probable_threshold_table,
+};
+
+/// How often, and after which time, a motion under noise leaves its well: runs that differ in the seed of the
+/// noise, for one scene or in every cell of a grid.
+///
+/// Columns: the fields, `runs`, `escaped`, `ended_early`, `observed_s`, then `escape_rate_per_s`,
+/// `mean_first_passage_s` (its inverse), both with `low` and `high` of a 95 % interval,
+/// `median_first_passage_s` and `kramers_rate_per_s`. Without an escape, the rate is 0, and the mean time and
+/// the upper end of its interval are missing.
+///
+/// Method: the rate is the number of escapes over the time observed in all runs, those without an escape
+/// included, which is the estimate of largest likelihood for exponential waiting times; its interval is that
+/// of chi-squared quantiles (Garwood 1936; Epstein and Sobel 1953; Cox 1953). The median is that of Kaplan
+/// and Meier (1958). Kramers' rate is that of [`kramers_rate`](crate::study::kramers_rate), missing where it
+/// does not hold. Run number i, from 0, has the seed of the scene plus i. The relative width of the interval
+/// falls with the square root of the number of escapes.
+///
+/// Errors: [`Error::Argument`] for a wrong number of runs or time; [`Error::Cells`] for cells without noise,
+/// with one well, or whose start lies on the barrier.
+///
+/// ```
+/// use interwell_studies::questions::{Escape, Progress, Simulation};
+///
+/// let simulation = Simulation::from_text("example.ron", r#"(
+///     title: "Two wells under noise",
+///     mass_g: 10.0,
+///     mechanism: DoubleWell(equilibrium_mm: 1.0, barrier_mj: 0.00123),
+///     damping: Coefficient(c_n_s_per_m: 0.314),
+///     excitation: Noise(rms_g: 0.05, low_hz: 0.0, high_hz: 60.0, seed: 1, lines: 200),
+///     run: (duration_s: 20.0, tolerance: 1e-6),
+/// )"#)?;
+/// let table = Escape { runs: 20, ..Escape::default() }.run(&simulation, &Progress::none())?;
+/// let number = |name: &str| table.numbers(name).unwrap()[0];
+/// assert!(number("escape_rate_low_per_s") < number("kramers_rate_per_s"));
+/// assert!(number("kramers_rate_per_s") < number("escape_rate_high_per_s"));
+/// # Ok::<(), interwell_studies::questions::Error>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Escape {
+    /// The fields of the grid, the slowest first; if there are none, the table has one row.
+    pub over: Over,
+    /// Number of runs in each cell, 1 to 1000000.
+    pub runs: u64,
+    /// Time in s at which a run ends without an escape; by default the duration of the scene's run.
+    pub within: Option<f64>,
+    /// What counts as an escape.
+    pub until: Until,
+}
+
+impl Default for Escape {
+    fn default() -> Self {
+        Self { over: Vec::new(), runs: Self::RUNS, within: None, until: Until::Well }
+    }
+}
+
+/// Numbers of runs of a cell.
+const RUNS: RangeInclusive<u64> = 1..=1_000_000;
+
+/// Largest number of runs of all cells together.
+const MAX_RUNS: u64 = 10_000_000;
+
+impl Escape {
+    /// Default number of runs.
+    pub const RUNS: u64 = 100;
+
+    /// Runs the cells.
+    pub fn run(&self, simulation: &Simulation, progress: &Progress) -> Result<Table, Error> {
+        let document = simulation.document();
+        let grid = grid_or_one(&self.over, simulation)?;
+        let options = self.options(document, &grid)?;
+        let (scene, files) = (&document.scene, &document.files);
+        let found = progress.pool(|pool| {
+            let runs = grid.cells() * options.runs;
+            progress.task(Some(runs), |task| escape_table(scene, files, &grid, &options, pool, task))
+        })?;
+        found.map_err(|end| no_table(document, end))
+    }
+
+    /// The runs of each cell of `grid`; an error if an argument is wrong.
+    pub fn options(&self, document: &Document, grid: &Grid) -> Result<EscapeOptions, Error> {
+        let within = self.within.unwrap_or(document.scene.run.duration_s);
+        check_runs(self.runs, within, grid)?;
+        Ok(EscapeOptions { runs: self.runs, within, until: self.until })
+    }
+}
+
+over_fields!(Escape);
+
+/// The value of a field at which a share of the runs under noise crosses the barrier within a time: for one
+/// scene, or in every cell of a grid.
+///
+/// Columns: the fields of the grid, `of`, `probability`, `value` with `low` and `high` of a 95 % interval in
+/// the unit of the searched field, `runs`, and `crossed`, the number of runs that cross at the end of the
+/// range. A number is missing if too few runs cross there, an end of the interval also if there are too few
+/// runs to have one.
+///
+/// Method: all runs begin at rest. Each keeps its random numbers and is bisected between the ends of the
+/// range; `value` is the quantile of the values that were found, and its interval lies between two of them,
+/// whose ranks are binomial (David and Nagaraja 2003, section 7.1). A run that crosses at a value is taken to
+/// cross at higher ones; where it does not, the bisection finds one of the changes of its answer.
+///
+/// Errors: [`Error::Argument`] for a wrong argument; [`Error::Cells`] for cells in which no value of the range
+/// gives a valid scene with noise and two wells.
+///
+/// ```
+/// use interwell_studies::questions::{ProbableThreshold, Progress, Simulation};
+///
+/// let noise = "Noise(rms_g: 0.3, low_hz: 1, high_hz: 20, seed: 1, lines: 64)";
+/// let simulation = Simulation::preset("nominal-cubic")?.with("excitation", noise)?;
+/// let field = "excitation.rms_g=0:4".to_owned();
+/// let question = ProbableThreshold { field, runs: 9, within: Some(2.0), ..ProbableThreshold::default() };
+/// let table = question.run(&simulation, &Progress::none())?;
+/// let number = |name: &str| table.numbers(name).unwrap()[0];
+/// assert!(number("low") <= number("value") && number("value") <= number("high"));
+/// # Ok::<(), interwell_studies::questions::Error>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct ProbableThreshold {
+    /// The fields of the grid, the slowest first; if there are none, the table has one row.
+    pub over: Over,
+    /// The field that is searched and its range: `FIELD=FROM:TO` or `FIELD=FROM:TO:STEP`.
+    pub field: String,
+    /// Share of the runs that cross, above 0 and below 1.
+    pub probability: f64,
+    /// Number of runs, 1 to 1000000.
+    pub runs: u64,
+    /// Time in s within which they cross; by default the duration of the scene's run.
+    pub within: Option<f64>,
+    /// Resolution of the threshold in the unit of the field; by default the step.
+    pub resolution: Option<f64>,
+}
+
+impl Default for ProbableThreshold {
+    fn default() -> Self {
+        let field = "excitation.rms_g=0:2".to_owned();
+        Self { over: Vec::new(), field, probability: 0.5, runs: Escape::RUNS, within: None, resolution: None }
+    }
+}
+
+impl ProbableThreshold {
+    /// Searches the thresholds.
+    pub fn run(&self, simulation: &Simulation, progress: &Progress) -> Result<Table, Error> {
+        let document = simulation.document();
+        let grid = grid_or_one(&self.over, simulation)?;
+        let (scan, chance) = (self.scan(document)?, self.chance(document, &grid)?);
+        refuse_searched(&grid, &scan)?;
+        let (scene, files) = (&document.scene, &document.files);
+        let found = progress.pool(|pool| {
+            let runs = grid.cells() * chance.runs;
+            progress.task(Some(runs), |task| {
+                probable_threshold_table(scene, files, &grid, &scan, &chance, pool, task)
+            })
+        })?;
+        found.map_err(|end| no_table(document, end))
+    }
+
+    /// The range that is searched, and its resolution.
+    pub fn scan(&self, document: &Document) -> Result<Scan, Error> {
+        let field = self.field.clone();
+        let scan = Threshold { field, resolution: self.resolution, ..Threshold::default() }.scan(document)?;
+        let step = scan.values.windows(2).map(|pair| pair[1] - pair[0]).next().unwrap_or(scan.resolution);
+        Ok(Scan { resolution: self.resolution.unwrap_or(step), ..scan })
+    }
+
+    /// What is asked of the runs of each cell of `grid`; an error if an argument is wrong.
+    pub fn chance(&self, document: &Document, grid: &Grid) -> Result<Chance, Error> {
+        let within = self.within.unwrap_or(document.scene.run.duration_s);
+        check_runs(self.runs, within, grid)?;
+        if !(self.probability > 0.0 && self.probability < 1.0) {
+            let problem = "give a share above 0 and below 1, such as 0.5";
+            return Err(Error::number("probability", self.probability, problem));
+        }
+        Ok(Chance { probability: self.probability, runs: self.runs, within })
+    }
+}
+
+/// The grid over these fields, or that of the scene alone.
+fn grid_or_one(over: &Over, simulation: &Simulation) -> Result<Grid, Error> {
+    if over.is_empty() { Ok(Grid::of_one()) } else { simulation.grid(over) }
+}
+
+/// Checks a number of runs and their time in s.
+fn check_runs(runs: u64, within: f64, grid: &Grid) -> Result<(), Error> {
+    if !RUNS.contains(&runs) {
+        return Err(Error::argument("runs", runs, format!("give 1 to {} runs", RUNS.end())));
+    }
+    if runs * grid.cells() > MAX_RUNS {
+        let problem = format!(
+            "makes {} runs in {} cells; at most {MAX_RUNS} are possible: take fewer",
+            runs * grid.cells(),
+            grid.cells()
+        );
+        return Err(Error::argument("runs", runs, problem));
+    }
+    let durations = field_info("run.duration_s").map(|field| field.range);
+    if let Some(range) = durations.filter(|range| !range.contains(within)) {
+        return Err(Error::number("within", within, format!("give a time in s, {range}")));
+    }
+    Ok(())
+}
+
+/// Refuses a grid over the field that is searched.
+pub fn refuse_searched(grid: &Grid, scan: &Scan) -> Result<(), Error> {
+    match grid.axes().iter().any(|axis| axis.field == scan.field) {
+        true => Err(Error::argument("over", &scan.field, "the threshold is over it; sweep another field")),
+        false => Ok(()),
+    }
+}
+
+/// The error of a question whose table was not computed.
+pub fn no_table(document: &Document, end: NoThresholds) -> Error {
+    match end {
+        NoThresholds::Cancelled => Error::Cancelled,
+        NoThresholds::Wrong(cells) => Error::cells_of(document, cells),
+    }
+}
