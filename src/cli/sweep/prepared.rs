@@ -6,14 +6,16 @@ use std::sync::Arc;
 use clap::Args;
 use interwell::mechanics::{BuildError, Mechanism};
 use interwell::output::{Cut, View, can_show, plan};
-use interwell::questions::{Error, column_names, refuse_electrical_state};
+use interwell::questions::{
+    Error, Uncertain, assign_uncertain, column_names, refuse_electrical_state, uncertain_draws,
+};
 use interwell::scene::{Document, is_manifest};
-use interwell::study::{Carry, Grid, Shard, Slice, SummaryField, Sweep, SweepOptions};
+use interwell::study::{Carry, Grid, MAX_DRAWS, Shard, Slice, SummaryField, Sweep, SweepOptions};
 use serde_json::{Value, json};
 
 use super::super::shard::{placed, shard};
-use super::super::support::{load, until_settled_on_grid, warn};
-use super::super::{ChartOptions, Common, Failure, Picture, interrupt, refuse};
+use super::super::support::{check, read, until_settled_on_grid, warn};
+use super::super::{ChartOptions, Common, Failure, Picture, interrupt, refuse, whole};
 
 #[derive(Debug, Args)]
 pub struct Arguments {
@@ -39,6 +41,20 @@ pub struct Arguments {
     /// state of the one before, only the first at the scene's start. Needs a drive that repeats
     #[arg(long, value_name = "up|down|both", value_parser = ["up", "down", "both"])]
     pub carry: Option<String>,
+
+    /// An input that is known with a standard deviation SIGMA, in the unit of the field or as a percentage of
+    /// its value (repeatable): gives each column the band that 95 % of the draws lie in. Without VALUE it is
+    /// the scene's or, if the field is swept, the cell's
+    #[arg(long, value_name = "FIELD=[VALUE]+-SIGMA[%]", allow_hyphen_values = true)]
+    pub uncertain: Vec<String>,
+
+    /// Draws of the --uncertain fields, run for each cell [default: 100]
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = whole::<u64>(1..=MAX_DRAWS))]
+    pub draws: Option<u64>,
+
+    /// Seed of the draws [default: 1]
+    #[arg(long, value_name = "SEED")]
+    pub seed: Option<u64>,
 
     /// With --plot: the column that is shown, any one of --columns all
     #[arg(long, value_name = "COLUMN", requires = "plot", default_value = "rms_velocity_m_per_s")]
@@ -113,10 +129,13 @@ impl<'a> Prepared<'a> {
             );
         }
         let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
-        let (mut document, warnings) = load(&options.scene, common, Some(&options.over))?;
+        let mut document = read(&options.scene, common)?;
+        let swept = document.swept.clone().unwrap_or_default();
+        let uncertain = uncertain(options, swept.uncertain);
+        assign_uncertain(&uncertain, &mut document)?;
+        let warnings = check(&mut document, Some(&options.over))?;
         // Rows, plan and manifest then refer to the same bytes, even if the files change during the sweep.
         document.cache_files();
-        let swept = document.swept.clone().unwrap_or_default();
         let number = options.shard.as_ref().or(swept.shard.as_ref());
         let variable = |name: &str| std::env::var(name).ok();
         let shard = number.map_or(Ok(Shard::WHOLE), |text| shard(text, variable))?;
@@ -127,6 +146,7 @@ impl<'a> Prepared<'a> {
         if carry.is_some() {
             refuse_electrical_state(&document, sweep.grid().axes(), "--carry")?;
         }
+        let draws = uncertain_draws(&uncertain, &document, sweep.grid(), carry)?;
         let chosen = if options.columns.is_empty() { &swept.columns } else { &options.columns };
         let columns = column_names(chosen, sweep.grid(), carry)?;
         // a fault of the first cell is reported when the cells are checked, with its place
@@ -136,7 +156,9 @@ impl<'a> Prepared<'a> {
         // the quantity of the picture is computed even if its column is not written
         let shown = picture.map(|_| &options.quantity).filter(|name| !columns.contains(name));
         let fields = columns.iter().chain(shown).filter_map(|name| SummaryField::find(name)).collect();
-        let sweep = sweep.with(SweepOptions { columns: fields, until_settled, carry });
+        let chosen = columns[sweep.grid().columns().len() + usize::from(carry.is_some())..].to_vec();
+        let columns = draws.columns(&columns);
+        let sweep = sweep.with(SweepOptions { columns: fields, until_settled, carry, draws });
         let slice = sweep.slice(shard);
         warn(&document, common, &warnings, mechanism.as_deref());
         let view = view(options, sweep.grid())?;
@@ -144,10 +166,19 @@ impl<'a> Prepared<'a> {
             can_show(sweep.grid(), &options.quantity, &view, &sweep.empty_table())?;
         }
         let data = Path::new(&options.scene).with_file_name(swept.data);
-        let fixed = sweep.grid().columns().len() + usize::from(carry.is_some());
-        let mut plan = plan(&document, &sweep, &columns[fixed..], env!("CARGO_PKG_VERSION"));
+        let mut plan = plan(&document, &sweep, &chosen, env!("CARGO_PKG_VERSION"));
         (plan["rows"], plan["unit"]) = (json!(sweep.rows()), json!(slice.unit()));
         Ok(Self { options, document, out, data, sweep, slice, mechanism, columns, plan, picture, view })
+    }
+}
+
+/// The uncertain inputs of the arguments; those of a manifest where they name none.
+fn uncertain(options: &Arguments, of_manifest: Uncertain) -> Uncertain {
+    let given = !options.uncertain.is_empty();
+    Uncertain {
+        fields: if given { options.uncertain.clone() } else { of_manifest.fields },
+        draws: options.draws.or(of_manifest.draws),
+        seed: options.seed.or(of_manifest.seed),
     }
 }
 

@@ -97,7 +97,7 @@ pub fn threshold_table(
     let begin = || cells.base.clone();
     let check = |scene: &mut Scene, index: usize| {
         task.check_cancelled()?;
-        let built = cells.mechanism(index as u64, scene, task.cancel).ok_or(Cancelled)?;
+        let built = cells.mechanism(index as u64, 0, scene, task.cancel).ok_or(Cancelled)?;
         let faults = match built {
             Ok(mechanism) => faults(&from_rest(scene), &mechanism, files, scan, onset),
             Err(BuildError::Unsolved(_)) => None,
@@ -114,7 +114,7 @@ pub fn threshold_table(
     // with several cells, each runs on one thread
     let ahead = if count == 1 { pool.count() } else { 1 };
     let cell = |scene: &mut Scene, index: usize| {
-        let built = cells.mechanism(index as u64, scene, task.cancel).ok_or(Cancelled)?;
+        let built = cells.mechanism(index as u64, 0, scene, task.cancel).ok_or(Cancelled)?;
         let Ok(mechanism) = built else {
             scan.values.iter().for_each(|_| (task.tick)());
             return Ok(Found { undecided: true, ..Found::default() });
