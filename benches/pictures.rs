@@ -68,8 +68,17 @@ fn map(document: &Document) -> Chart {
     let (grid, scene) = (sweep.grid(), &document.scene);
     let overlay = Overlay::of(scene, sweep.first_mechanism().ok().as_deref(), grid, &rows);
     let (quantity, view, ranges) = ("rms_velocity_m_per_s", View::Top, Ranges::default());
-    let picture =
-        SweepPicture { rows: &rows, grid, scene, until_settled: None, quantity, overlay, view, ranges };
+    let picture = SweepPicture {
+        rows: &rows,
+        grid,
+        scene,
+        until_settled: None,
+        quantity,
+        overlay,
+        view,
+        ranges,
+        draws: "",
+    };
     sweep_chart(&picture).expect("a map can be shown")
 }
 

@@ -90,6 +90,9 @@ class Simulation:
         columns: Sequence[str],
         until_settled: float | None = None,
         carry: str | None = None,
+        uncertain: Sequence[str] = (),
+        draws: int | None = None,
+        seed: int | None = None,
         threads: int | None = None,
         progress: _Told = None,
     ) -> Answer: ...

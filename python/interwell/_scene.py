@@ -82,6 +82,14 @@ def _over(over: Over | None) -> tuple[list[tuple[str, list[float]]], dict[str, A
     return [(field, array.tolist()) for field, array in arrays.items()], arrays
 
 
+def _uncertain(field: str, law: Any) -> str:
+    """Return an uncertain field as the command line writes it."""
+    value, sigma = law if isinstance(law, tuple) and len(law) == 2 else ("", law)
+    if not all(isinstance(part, (str, int, float, np.number)) for part in (value, sigma)):
+        raise _wrong(field, _shown(law), "give a standard deviation, or a value and one: (0.023, 0.002)")
+    return f"{field}={_value(value)}+-{_value(sigma)}"
+
+
 def _starts(name: str, value: Any, drawn: bool) -> tuple[float, float, int]:
     """Return the range of starts and how many; drawn at random they need no number."""
     low, high, *number = _entries(name, value, "(first, last, count)", *((2, 3) if drawn else (3,)))
@@ -645,6 +653,9 @@ class Scene(Mapping[str, Any]):
         columns: Sequence[str] | str = (),
         until_settled: float | None = None,
         carry: str | None = None,
+        uncertain: Mapping[str, float | str | tuple[float, float | str]] | None = None,
+        draws: int | None = None,
+        seed: int | None = None,
         threads: int | None = None,
         progress: Progress = False,
     ) -> Grid:
@@ -664,6 +675,15 @@ class Scene(Mapping[str, Any]):
         carry : str, optional
             Walk the last field ``"up"``, ``"down"`` or ``"both"`` ways: each run begins in the state of the
             one before, at the last whole forcing period of that. The drive must repeat.
+        uncertain : mapping of str to float, str or tuple, optional
+            Fields that are known with a standard deviation: a number in the unit of the field, ``0.002``, or
+            a text that is a share of the value, ``"5%"``, alone or behind the value, ``(0.023, 0.002)``.
+            Without a value it is that of the scene, of a swept field that of each cell. Not with ``carry``.
+        draws : int, optional
+            Draws of these fields from independent normal distributions, truncated to the ranges of the
+            fields; each is run for each cell. By default 100.
+        seed : int, optional
+            Seed of the draws, by default 1.
         threads : int, optional
             Threads; by default all processors. The answer has the same bits for any number.
         progress : bool or callable
@@ -674,7 +694,9 @@ class Scene(Mapping[str, Any]):
         -------
         Grid
             ``grid["rms_velocity_m_per_s"]`` has the shape of the grid. A cell whose run ends early says why
-            in ``grid["outcome"]``.
+            in ``grid["outcome"]``. With ``uncertain`` each column of numbers is followed by ``.._low`` and
+            ``.._high``, the 2.5 % and 97.5 % quantiles of the draws, each of words by ``.._share``, the share
+            of the draws with the word of the cell, and ``draws`` counts those that came to their end.
 
         Raises
         ------
@@ -693,14 +715,28 @@ class Scene(Mapping[str, Any]):
         >>> scene.sweep({"stops.travel_limit_mm": [2, 4], "excitation.amplitude_g": [0.5, 1, 1.5]})["regime"]
         array([['intrawell', 'interwell', 'interwell'],
                ['rest', 'interwell', 'interwell']], dtype='<U9')
+        >>> over = {"excitation.amplitude_g": [1.5]}
+        >>> grid = scene.sweep(over, uncertain={"stops.restitution": 0.02}, draws=20)
+        >>> bool(grid["rms_velocity_m_per_s_low"][0] < grid["rms_velocity_m_per_s_high"][0])
+        True
         """
         names = _names("columns", columns)
         axes, arrays = _over(over)
         if not axes:
             raise _wrong("over", "{}", "name a field and its values")
-        with _Told(progress, "cells") as told:
+        laws = _mapping("uncertain", uncertain or {}, '{"damping.xi": 0.002}')
+        inputs = [_uncertain(field, law) for field, law in laws.items()]
+        with _Told(progress, "runs" if inputs else "cells") as told:
             answer = self._simulation.sweep(
-                axes, names, until_settled, carry, _count("threads", threads), told
+                axes,
+                names,
+                until_settled,
+                carry,
+                inputs,
+                _count("draws", draws, 2**64),
+                _count("seed", seed, 2**64),
+                _count("threads", threads),
+                told,
             )
         return Grid(answer, arrays, carry)
 

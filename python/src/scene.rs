@@ -15,7 +15,7 @@ use interwell_studies::output::{
 };
 use interwell_studies::questions::{
     self, Basins, Best, Branch, Compare, Curve, Error, Escape, Exponents, Identify, Orbit, Section, Spectrum,
-    Sweep, Threshold, WhatToIdentify, needs_a_sine,
+    Sweep, Threshold, Uncertain, WhatToIdentify, needs_a_sine,
 };
 use interwell_studies::study::{
     Carry, ExponentOptions, Identity, Keep, Onset, Sampling, SectionAt, SectionOptions, Signal, Table, Until,
@@ -279,7 +279,8 @@ impl Simulation {
         }))
     }
 
-    #[pyo3(signature = (over, columns, until_settled=None, carry=None, threads=None, progress=None))]
+    #[pyo3(signature = (over, columns, until_settled=None, carry=None, uncertain=Vec::new(), draws=None,
+                        seed=None, threads=None, progress=None))]
     #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
     fn sweep(
         &self,
@@ -288,15 +289,20 @@ impl Simulation {
         columns: Vec<String>,
         until_settled: Option<f64>,
         carry: Option<&str>,
+        uncertain: Vec<String>,
+        draws: Option<u64>,
+        seed: Option<u64>,
         threads: Option<usize>,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Answer> {
         let carry = carry.map(|word| named(py, "carry", word, &Carry::ALL, Carry::name)).transpose()?;
-        let question = Sweep { over, columns, until_settled, carry };
-        let grid = checked(py, self.inner.grid(&question.over))?;
+        let uncertain = Uncertain { fields: uncertain, draws, seed };
+        let question = Sweep { over, columns, until_settled, carry, uncertain };
+        let shown = checked(py, question.nominal(&self.inner))?;
+        let grid = checked(py, shown.grid(&question.over))?;
+        let about = checked(py, question.draws(&shown, &grid))?.about();
         let way = Way { threads, progress };
         let table = work(py, &way, |progress| question.run(&self.inner, progress))?;
-        let shown = self.inner.clone();
         Ok(Answer::new(py, table, self.caption()).drawn(move |rows, asked| {
             let (scene, mechanism) = (shown.scene(), shown.mechanism());
             let mechanism = (!grid.changes_mechanism()).then_some(&**mechanism);
@@ -306,7 +312,17 @@ impl Simulation {
             };
             let quantity = asked.quantity.as_deref().unwrap_or("rms_velocity_m_per_s");
             let (grid, view, ranges) = (&grid, View::Top, asked.ranges);
-            let picture = SweepPicture { rows, grid, scene, until_settled, quantity, overlay, view, ranges };
+            let picture = SweepPicture {
+                rows,
+                grid,
+                scene,
+                until_settled,
+                quantity,
+                overlay,
+                view,
+                ranges,
+                draws: &about,
+            };
             sweep_chart(&picture).map_err(|problem| problem.to_string())
         }))
     }

@@ -55,6 +55,11 @@ def test_sweep(command: Command) -> None:
     assert every.csv() == command("sweep", "paper", *options, "--columns", "all")
     walked = scene.sweep(over, carry="both", columns=["crossings"])
     assert walked.csv() == command("sweep", "paper", *options, "--carry", "both", "--columns", "crossings")
+    laws = {"stops.restitution": (0.4, "5%"), "damping.xi": 0.002}
+    uncertain = scene.sweep(over, uncertain=laws, draws=9, seed=3)
+    drawn = ["--uncertain=stops.restitution=0.4+-5%", "--uncertain=damping.xi=+-0.002", "--draws=9"]
+    drawn.append("--seed=3")
+    assert uncertain.csv() == command("sweep", "paper", *options, *drawn)
     settled = scene.sweep(over, until_settled=60)
     assert settled.csv() == command("sweep", "paper", *options, "--until-settled", "60")
 

@@ -47,7 +47,9 @@ impl<'a> GridJob<'a> {
         mut write: impl FnMut(&mut Outputs, &Table, &Tally) -> Result<bool, Failure>,
     ) -> Result<Tally, SweepEnd<Failure>> {
         self.outputs.watch = Watch::start();
-        let progress = bar(slice.rows(), from, unit, self.common);
+        let runs = study.runs_per_row();
+        let unit = if runs > 1 { "runs" } else { unit };
+        let progress = bar(runs * slice.rows(), runs * from, unit, self.common);
         let task = Task { tick: &|| progress.inc(1), cancel: interrupt::listen() };
         let valid = study.validate_rows(slice, from, &self.pool, &task);
         valid.map_err(|cell| SweepEnd::Write(Error::cells_of(self.document, vec![cell]).into()))?;

@@ -22,6 +22,7 @@ Examples:
   interwell --headless sweep paper --cut travel_limit_mm=1.5 --cut amplitude_g=1.2 --plot cuts.pdf
   interwell --headless sweep paper --over stops.travel_limit_mm=1:4:0.5 --over excitation.amplitude_g=0.5,1
   interwell --headless sweep paper --over excitation.amplitude_g=0:2:0.02 --carry both --plot hysteresis.png
+  interwell --headless sweep paper --over excitation.amplitude_g=0:2:0.02 --uncertain damping.xi=+-5%
   interwell --headless sweep paper --out map.csv --resume
   interwell --headless sweep paper --shard 2/5 --out 'map-{shard}.csv'
   interwell --headless merge map-*-of-5.csv --out map.csv

@@ -40,6 +40,7 @@ mod stroboscopic;
 mod studies;
 mod support;
 mod transducer;
+mod uncertain;
 mod untrusted;
 mod up_and_down;
 mod verdicts;

@@ -5,7 +5,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use super::document::Document;
 use super::error::{SceneError, clip};
@@ -56,6 +56,8 @@ pub struct SweepRequest {
     pub until_settled: Option<f64>,
     /// Directions in which the last field was walked.
     pub carry: Option<String>,
+    /// Its uncertain inputs.
+    pub uncertain: Uncertain,
     /// The shard, if the sweep was divided into several.
     #[serde(skip)]
     pub shard: Option<String>,
@@ -65,6 +67,20 @@ pub struct SweepRequest {
     /// The version of the program that computed the rows.
     #[serde(skip)]
     pub version: String,
+}
+
+/// Uncertain inputs of a sweep: normally distributed fields, and how many draws of them each cell has.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Uncertain {
+    /// The fields with their standard deviations, `FIELD=VALUE+-SIGMA`: in the unit of the field, or as a
+    /// percentage of its value (`5%`). Without VALUE it is that of the scene, of a swept field that of each
+    /// cell.
+    pub fields: Vec<String>,
+    /// Number of draws; 100 if it is not given.
+    pub draws: Option<u64>,
+    /// Seed of the random numbers; 1 if it is not given.
+    pub seed: Option<u64>,
 }
 
 fn parse(text: &str) -> Result<Manifest, String> {

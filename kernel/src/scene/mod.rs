@@ -72,7 +72,7 @@ pub use field_table::{
 pub use fields::{FieldPath, all_fields, is_whole, numeric_fields};
 pub use files::{FileError, Files, MAX_TABLE_BYTES};
 pub use link::{LinkError, is_link, linked_lesson};
-pub use manifest::{PROGRAM, SweepRequest, is_manifest};
+pub use manifest::{PROGRAM, SweepRequest, Uncertain, is_manifest};
 pub use measured::{
     Channel, ChosenColumn, ColumnOptions, ColumnRequest, MAX_MEASURED_BYTES, MAX_MEASURED_ROWS, Measured,
     MeasuredError, MeasuredText, read_measured,

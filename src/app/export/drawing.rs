@@ -168,7 +168,7 @@ impl Drawing<'_> {
         let carry = subject.is_walked().then_some(Carry::Both);
         let names = STANDARD_COLUMNS.into_iter().filter(|name| *name != quantity).chain([quantity]);
         let columns = names.filter_map(SummaryField::find).collect();
-        let options = SweepOptions { columns, until_settled: None, carry };
+        let options = SweepOptions { columns, carry, ..SweepOptions::default() };
         let sweep = Sweep::new(scene, &self.document.files, grid).with(options);
         can_show(sweep.grid(), quantity, &view, &sweep.empty_table())?;
         let (rows, grid) = (self.rows(&sweep)?, sweep.grid());
@@ -177,7 +177,17 @@ impl Drawing<'_> {
             None => Overlay::of(scene, sweep.first_mechanism().ok().as_deref(), grid, &rows),
         };
         let (rows, ranges) = (&rows, Ranges::default());
-        let plot = SweepPicture { rows, grid, scene, until_settled: None, quantity, overlay, view, ranges };
+        let plot = SweepPicture {
+            rows,
+            grid,
+            scene,
+            until_settled: None,
+            quantity,
+            overlay,
+            view,
+            ranges,
+            draws: "",
+        };
         Ok(sweep_chart(&plot)?)
     }
 

@@ -37,7 +37,7 @@ pub fn print(prepared: &Prepared, pool: &Pool) -> Result<(), Failure> {
     let wrong =
         within(PATIENCE, |cancel| sweep.validate_rows(slice, 0, pool, &Task { tick: &|| (), cancel }));
     wrong.map_err(|cell| Error::cells_of(document, vec![cell]))?;
-    let (count, threads) = (slice.rows(), pool.count());
+    let (count, threads, runs) = (slice.rows(), pool.count(), sweep.runs_per_row());
     // Multiples of the golden section are evenly spread and do not resonate with the axes (Weyl 1916).
     let place = |i: u64| ((i as f64 + 0.5) * 0.618_033_988_749_895).fract() * count as f64;
     let mut sample = count.min(CELLS_PER_THREAD * threads as u64);
@@ -47,7 +47,8 @@ pub fn print(prepared: &Prepared, pool: &Pool) -> Result<(), Failure> {
         let clock = WallClock::start();
         within(PATIENCE, |cancel| {
             let each = |index, cell| {
-                let text = rows(&sweep.table(index, [cell]), 0..1).len();
+                // a draw makes numbers of about the same length
+                let text = rows(&sweep.table(index, vec![cell; runs as usize]), 0..1).len();
                 if let Ok(mut found) = found.lock() {
                     *found = (found.0 + 1, found.1 + text);
                 }
@@ -56,7 +57,7 @@ pub fn print(prepared: &Prepared, pool: &Pool) -> Result<(), Failure> {
         });
         let (run, bytes) = found.into_inner().unwrap_or_default();
         if clock.seconds() > MIN_SAMPLE_S || sample == count {
-            break (run, bytes, clock.seconds() / run.max(1) as f64 * count as f64);
+            break (run, bytes, clock.seconds() / run.max(1) as f64 * (runs * count) as f64);
         }
         sample = (4 * sample).min(count);
     };

@@ -47,7 +47,8 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let chart = |rows: &Table, picture: &Picture| prepared.chart(rows, picture);
     let wall_s = job.finish(chart, |manifest| {
         let sha256 = rows_out.close()?;
-        let made = Made { plan, shard: slice.shard(), sha256: &sha256 };
+        let (shard, mechanisms) = (slice.shard(), sweep.mechanisms());
+        let made = Made { plan, shard, sha256: &sha256, mechanisms };
         Ok(manifest.of_rows(sweep.grid(), &all, Some(made)))
     })?;
     // The rows get their name last: until then --resume can continue them.
@@ -96,14 +97,15 @@ impl Prepared<'_> {
 
     fn chart(&self, rows: &Table, picture: &Picture) -> Result<Chart, Failure> {
         let (grid, scene) = (self.sweep.grid(), &self.document.scene);
-        let &SweepOptions { until_settled, carry, .. } = self.sweep.options();
+        let &SweepOptions { until_settled, carry, ref draws, .. } = self.sweep.options();
         // The overlay holds for runs from rest only.
         let overlay = match carry {
             Some(_) => Overlay::default(),
             None => Overlay::of(scene, self.mechanism.as_deref(), grid, rows),
         };
         let (quantity, view, ranges) = (self.quantity, self.view.clone(), picture.ranges);
-        let shown = SweepPicture { rows, grid, scene, until_settled, quantity, overlay, view, ranges };
+        let draws = &*draws.about();
+        let shown = SweepPicture { rows, grid, scene, until_settled, quantity, overlay, view, ranges, draws };
         Ok(sweep_chart(&shown)?)
     }
 }

@@ -6,14 +6,14 @@ use std::sync::Arc;
 use clap::Args;
 use interwell::mechanics::{BuildError, Mechanism};
 use interwell::output::{Cut, View, can_show, plan};
-use interwell::questions::{Error, column_names};
+use interwell::questions::{Error, Uncertain, assign_uncertain, column_names, uncertain_draws};
 use interwell::scene::{Document, find_name, read_number};
-use interwell::study::{Carry, Grid, Shard, Slice, SummaryField, Sweep, SweepOptions};
+use interwell::study::{Carry, Grid, MAX_DRAWS, Shard, Slice, SummaryField, Sweep, SweepOptions};
 use serde_json::{Value, json};
 
 use super::super::shard::{placed, shard};
-use super::super::support::{load, until_settled_on_grid, warn};
-use super::super::{ChartOptions, Common, Failure, Picture, interrupt, refuse};
+use super::super::support::{check, read, until_settled_on_grid, warn};
+use super::super::{ChartOptions, Common, Failure, Picture, interrupt, refuse, whole};
 
 #[derive(Debug, Args)]
 pub struct Arguments {
@@ -39,6 +39,20 @@ pub struct Arguments {
     /// state of the one before, only the first at the scene's start. Needs a drive that repeats
     #[arg(long, value_name = "up|down|both", value_parser = ["up", "down", "both"])]
     pub carry: Option<String>,
+
+    /// An input that is known with a standard deviation SIGMA, in the unit of the field or as a percentage of
+    /// its value (repeatable): gives each column the band that 95 % of the draws lie in. Without VALUE it is
+    /// the scene's or, if the field is swept, the cell's
+    #[arg(long, value_name = "FIELD=[VALUE]+-SIGMA[%]", allow_hyphen_values = true)]
+    pub uncertain: Vec<String>,
+
+    /// Draws of the --uncertain fields, run for each cell [default: 100]
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = whole::<u64>(1..=MAX_DRAWS))]
+    pub draws: Option<u64>,
+
+    /// Seed of the draws [default: 1]
+    #[arg(long, value_name = "SEED")]
+    pub seed: Option<u64>,
 
     /// With --plot: the column that is shown, any one of --columns all
     #[arg(long, value_name = "COLUMN", requires = "plot", default_value = "rms_velocity_m_per_s")]
@@ -120,7 +134,6 @@ impl<'a> Prepared<'a> {
         }
         // Rows, plan and manifest then refer to the same bytes, even if the files change during the sweep.
         document.cache_files();
-        let swept = document.swept.clone().unwrap_or_default();
         let number = options.shard.as_ref().or(swept.shard.as_ref());
         let variable = |name: &str| std::env::var(name).ok();
         let shard = number.map_or(Ok(Shard::WHOLE), |text| shard(text, variable))?;
@@ -128,6 +141,7 @@ impl<'a> Prepared<'a> {
         let sweep = Sweep::new(&document.scene, &document.files, Grid::new(document.axes(&options.over)?)?);
         let mechanism = first_mechanism(&document, &sweep)?;
         let carry = options.carry.as_ref().or(swept.carry.as_ref()).and_then(|word| Carry::named(word));
+        let draws = uncertain_draws(&uncertain, &document, sweep.grid(), carry)?;
         let chosen = if options.columns.is_empty() { &swept.columns } else { &options.columns };
         let columns = column_names(chosen, sweep.grid(), carry)?;
         // a fault of the first cell is reported when the cells are checked, with its place
@@ -137,7 +151,9 @@ impl<'a> Prepared<'a> {
         // the quantity of the picture is computed even if its column is not written
         let shown = picture.map(|_| quantity).filter(|name| !columns.iter().any(|column| column == name));
         let fields = columns.iter().map(String::as_str).chain(shown).filter_map(SummaryField::find).collect();
-        let sweep = sweep.with(SweepOptions { columns: fields, until_settled, carry });
+        let chosen = columns[sweep.grid().columns().len() + usize::from(carry.is_some())..].to_vec();
+        let columns = draws.columns(&columns);
+        let sweep = sweep.with(SweepOptions { columns: fields, until_settled, carry, draws });
         let slice = sweep.slice(shard);
         warn(&document, common, &warnings, mechanism.as_deref());
         let view = view(options, sweep.grid())?;
@@ -145,8 +161,7 @@ impl<'a> Prepared<'a> {
             can_show(sweep.grid(), quantity, &view, &sweep.empty_table())?;
         }
         let data = Path::new(&options.scene).with_file_name(swept.data);
-        let fixed = sweep.grid().columns().len() + usize::from(carry.is_some());
-        let mut plan = plan(&document, &sweep, &columns[fixed..], env!("CARGO_PKG_VERSION"));
+        let mut plan = plan(&document, &sweep, &chosen, env!("CARGO_PKG_VERSION"));
         (plan["rows"], plan["unit"]) = (json!(sweep.rows()), json!(slice.unit()));
         Ok(Self {
             options,
@@ -162,6 +177,16 @@ impl<'a> Prepared<'a> {
             quantity,
             view,
         })
+    }
+}
+
+/// The uncertain inputs of the arguments; those of a manifest where they name none.
+fn uncertain(options: &Arguments, of_manifest: Uncertain) -> Uncertain {
+    let given = !options.uncertain.is_empty();
+    Uncertain {
+        fields: if given { options.uncertain.clone() } else { of_manifest.fields },
+        draws: options.draws.or(of_manifest.draws),
+        seed: options.seed.or(of_manifest.seed),
     }
 }
 

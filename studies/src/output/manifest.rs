@@ -34,6 +34,8 @@ pub struct Made<'a> {
     pub shard: Shard,
     /// The checksum of the file.
     pub sha256: &'a str,
+    /// Number of different mechanisms in the whole sweep.
+    pub mechanisms: u64,
 }
 
 /// Data that all manifests contain.
@@ -83,11 +85,11 @@ impl Manifest<'_> {
     pub fn of_rows(&self, grid: &Grid, tally: &Tally, made: Option<Made>) -> String {
         let mut more = json!({
             "cells": tally.cells,
-            "mechanisms": made.map_or(tally.mechanisms, |_| grid.mechanisms()),
+            "mechanisms": made.map_or(tally.mechanisms, |made| made.mechanisms),
             "outcomes": tally.outcomes,
             "regimes": tally.regimes,
         });
-        if let Some(Made { plan, shard, sha256 }) = made {
+        if let Some(Made { plan, shard, sha256, .. }) = made {
             more["shard"] = json!(shard.to_string());
             more["sha256"] = json!(sha256);
             more["plan_sha256"] = json!(plan_checksum(plan));

@@ -24,7 +24,8 @@ pub fn plan(document: &Document, sweep: &Sweep, columns: &[String], version: &st
     let files =
         document.files.cached.iter().map(|(path, text)| (path.clone(), json!(checksum(text.as_bytes()))));
     let grid: Vec<String> = sweep.grid().axes().iter().map(axis).collect();
-    json!({
+    let draws = &sweep.options().draws;
+    let mut plan = json!({
         "program": PROGRAM,
         "version": version,
         "grid": grid,
@@ -33,7 +34,11 @@ pub fn plan(document: &Document, sweep: &Sweep, columns: &[String], version: &st
         "carry": sweep.options().carry.map(|carry| carry.name()),
         "scene": scene,
         "files": files.collect::<Map<_, _>>(),
-    })
+    });
+    if !draws.is_empty() {
+        plan["uncertain"] = json!(draws.asked());
+    }
+    plan
 }
 
 /// An axis in one line, with the checksum of its values.

@@ -1,7 +1,7 @@
 //! Questions about designs: comparison of scenes, and the best design for an environment.
 
 use super::grid::drive_alone;
-use super::{Error, Progress, Simulation, check_until_settled};
+use super::{Error, Progress, Simulation, check_until_settled, sweep};
 use crate::numeric::number_text;
 use crate::scene::{
     Axis, Document, Excitation, FieldPath, RunSettings, Start, Transducer, find_name, is_whole, read_number,
@@ -367,29 +367,15 @@ fn constraint(text: &str) -> Result<Constraint, Error> {
 }
 
 fn variation(text: &str, document: &Document) -> Result<Variation, Error> {
-    let wrong = |problem: &str| Error::argument("vary", text, problem);
+    let wrong = |problem: String| Error::argument("vary", text, problem);
     let form = "write FIELD=+-1% or FIELD=+-0.05, such as stops.travel_limit_mm=+-1%";
-    let (field, by) = text.split_once('=').ok_or_else(|| wrong(form))?;
-    let field = field.trim();
-    let Some(value) = FieldPath::new(field).get(&document.scene) else {
-        // the error of `parse` lists the fields
-        Axis::parse(&format!("{field}=1"), &document.scene).map_err(|problem| wrong(&problem))?;
-        return Err(wrong("the scene leaves this field out; give it a value with --set"));
-    };
-    if is_whole(&document.scene, field) {
-        return Err(wrong(
-            "holds whole numbers, which do not come out a little otherwise; vary another field",
-        ));
-    }
+    let (field, by) = text.split_once('=').ok_or_else(|| wrong(form.to_owned()))?;
     let by = by.trim().trim_start_matches("+-").trim_start_matches('\u{b1}');
-    let (number, relative) = by.strip_suffix('%').map_or((by, false), |share| (share, true));
-    let number = read_number(number).ok().filter(|number| *number >= 0.0 && number.is_finite());
-    let number = number.ok_or_else(|| wrong(form))?;
-    if relative && value == 0.0 {
-        return Err(wrong("a share of 0 is nothing; give the tolerance in the unit of the field"));
+    let found = sweep::variation(field.trim(), by, form, document).map_err(wrong)?;
+    if found.relative && FieldPath::new(&found.field).get(&document.scene) == Some(0.0) {
+        return Err(wrong("a share of 0 is nothing; give the tolerance in the unit of the field".to_owned()));
     }
-    let by = if relative { number / 100.0 } else { number };
-    Ok(Variation { field: field.to_owned(), by, relative })
+    Ok(found)
 }
 
 /// Splits off the weight after the last `*` of a text; without one the weight is 1. `whole` is the argument

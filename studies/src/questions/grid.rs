@@ -1,19 +1,19 @@
-//! Questions that can be asked for every cell of a grid: sweeps, sections, exponents and thresholds.
+//! Questions that can be asked for every cell of a grid: sections, exponents and thresholds; and the fields
+//! of grids.
 
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 use super::motion::{may_have_circuit, phase};
-use super::{Error, Progress, Simulation, check_until_settled, no_table, refuse_searched};
+use super::{Error, Progress, Simulation, Sweep, check_until_settled, no_table, refuse_searched};
 use crate::dynamics::Model;
 use crate::mechanics::{ForceCurve, Mechanism};
 use crate::numeric::number_text;
 use crate::scene::Mechanism::Linear;
-use crate::scene::{Axis, Damping, Document, Scene, Start, Stops, Transducer, find_name, is_whole};
+use crate::scene::{Axis, Damping, Document, Scene, Start, Stops, Transducer, is_whole};
 use crate::study::{
-    self, Carry, DIRECTION, ExponentCells, ExponentOptions, Grid, GridStudy, IMPACTS, MAX_SECTION,
-    NoExponents, Onset, Question, STANDARD_COLUMNS, SUMMARY_FIELDS, Scan, SectionAt, SectionOptions,
-    Sections, SummaryField, SweepEnd, SweepOptions, Table, Task, drive_fault, exponents, exponents_row,
+    ExponentCells, ExponentOptions, Grid, GridStudy, IMPACTS, MAX_SECTION, NoExponents, Onset, Question,
+    Scan, SectionAt, SectionOptions, Sections, SweepEnd, Table, Task, drive_fault, exponents, exponents_row,
     section, suits_melnikov, threshold_table, with_melnikov,
 };
 
@@ -65,87 +65,6 @@ macro_rules! over_fields {
 
 over_fields!(Sweep Section Exponents Threshold);
 pub(super) use over_fields;
-
-/// What the settled motion does in each cell of a grid over fields: one run and one row per cell.
-///
-/// Columns: the swept fields in their own units, named by the shortest unique end of their path
-/// (`travel_limit_mm`); with `carry` the `direction`; then `rms_velocity_m_per_s`, `regime`, `crossings`,
-/// `impacts`, `max_abs_x_m`, `period`, `outcome`, or the chosen `columns`.
-///
-/// With `carry` a run begins in the state of the run before at its last whole forcing period, so that walks
-/// up and down show hysteresis (Duffing 1918; for the double well Holmes 1979). The cells of a walk are run
-/// one after another, other cells in batches: 41 by 101 cells of `nominal-cubic` take 0.1 s of CPU time.
-/// Energies, `mean_x_m` and `impact_share` are slower, since they need the energy ledger.
-///
-/// Errors: [`Error::Cells`] for the first cell that is not a valid scene or, with `carry`, whose drive does
-/// not repeat; [`Error::Unfit`] for `carry` with a transducer that has a state of its own.
-///
-/// ```
-/// use interwell_studies::questions::{Progress, Simulation, Sweep};
-///
-/// let simulation = Simulation::preset("nominal-cubic")?;
-/// let sweep = Sweep::over("stops.travel_limit_mm", 2.0..=6.0, 3);
-/// let sweep = sweep.and("excitation.amplitude_g", 0.5..=1.5, 3);
-/// let table = sweep.run(&simulation, &Progress::none())?;
-/// assert_eq!(table.rows(), 9);
-/// assert!(table.words("outcome").iter().all(|outcome| *outcome == "done"));
-/// # Ok::<(), interwell_studies::questions::Error>(())
-/// ```
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Sweep {
-    /// The fields, the slowest first; if there are none, those of the scene's `sweep`.
-    pub over: Over,
-    /// Columns after those of the fields: names of summary fields, or `all`; empty for the standard ones.
-    pub columns: Vec<String>,
-    /// Each run continues until its motion repeats, at most up to this time in s.
-    pub until_settled: Option<f64>,
-    /// Directions in which the last field is walked: each run starts from the final state of the run before.
-    pub carry: Option<Carry>,
-}
-
-impl Sweep {
-    /// Runs the cells.
-    pub fn run(&self, simulation: &Simulation, progress: &Progress) -> Result<Table, Error> {
-        let (document, grid) = (simulation.document(), simulation.grid(&self.over)?);
-        let columns = column_names(&self.columns, &grid, self.carry)?;
-        let study = study::Sweep::new(&document.scene, &document.files, grid);
-        check_first(self.until_settled, &study, document, progress)?;
-        let until_settled = self.until_settled;
-        let fields = columns.iter().filter_map(|name| SummaryField::find(name)).collect();
-        let study = study.with(SweepOptions { columns: fields, until_settled, carry: self.carry });
-        Ok(all_rows(&study, document, progress)?.only(&columns))
-    }
-}
-
-/// The names of all columns of a sweep: the swept fields, the direction of a walk, and the chosen columns.
-pub fn column_names(chosen: &[String], grid: &Grid, carry: Option<Carry>) -> Result<Vec<String>, Error> {
-    let mut names = grid.columns().to_vec();
-    names.extend(carry.map(|_| DIRECTION.to_owned()));
-    match chosen {
-        [] => names.extend(STANDARD_COLUMNS.map(str::to_owned)),
-        [all] if all == "all" => {
-            let more = SUMMARY_FIELDS.iter().map(|field| field.name);
-            let more = more.filter(|name| !STANDARD_COLUMNS.contains(name));
-            names.extend(STANDARD_COLUMNS.into_iter().chain(more).map(str::to_owned));
-        }
-        list => {
-            let fields = SUMMARY_FIELDS.iter().map(|field| field.name);
-            let known: Vec<&str> = ["all"].into_iter().chain(fields).collect();
-            for name in list.iter().map(|name| name.trim()) {
-                let wrong = |problem: &str| Error::argument("columns", name, problem);
-                let column = find_name("column", name, &known).map_err(|problem| wrong(&problem))?;
-                if column == "all" {
-                    return Err(wrong("stands alone: it has every column"));
-                }
-                if names.iter().any(|known| known == column) {
-                    return Err(wrong("named twice; name it once"));
-                }
-                names.push(column.to_owned());
-            }
-        }
-    }
-    Ok(names)
-}
 
 /// Largest number of forcing periods that a section skips.
 const MAX_SKIP: u64 = 1_000_000_000;
@@ -429,7 +348,7 @@ fn check_until(until: Option<f64>, document: &Document, model: &Model) -> Result
 
 /// Checks the time up to which runs of a grid may continue, with the model of the first cell. If that cell
 /// has no model, its faults are reported later, when all cells are checked.
-fn check_first<Q: Question>(
+pub(super) fn check_first<Q: Question>(
     until: Option<f64>,
     study: &GridStudy<Q>,
     document: &Document,
@@ -440,7 +359,7 @@ fn check_first<Q: Question>(
 }
 
 /// Checks all cells, then runs them and returns all rows.
-fn all_rows<Q: Question>(
+pub(super) fn all_rows<Q: Question>(
     study: &GridStudy<Q>,
     document: &Document,
     progress: &Progress,
@@ -453,7 +372,8 @@ fn all_rows<Q: Question>(
             all.append(rows);
             Ok(true)
         };
-        let end = progress.task(Some(study.rows()), |task| study.run(pool, task, write));
+        let end =
+            progress.task(Some(study.rows() * study.runs_per_row()), |task| study.run(pool, task, write));
         match end {
             Ok(_) => Ok(()),
             Err(SweepEnd::Cancelled) => Err(Error::Cancelled),

@@ -66,17 +66,21 @@ mod motion;
 mod progress;
 mod record;
 mod simulation;
+mod sweep;
 
 pub use design::{Best, BestAnswer, Compare, in_environment, needs_a_sine};
 pub use error::{Error, FaultAt, check_until_settled};
 pub use escape::{Escape, ProbableThreshold, no_table, refuse_searched};
-pub use grid::{Exponents, NO_MELNIKOV, Section, Sweep, Threshold, column_names, drive_alone};
+pub use grid::{Exponents, NO_MELNIKOV, Section, Threshold, drive_alone};
 pub use motion::{
     Basins, BasinsAnswer, Branch, Curve, Orbit, Spectrum, can_have_orbits, may_have_circuit, no_orbit,
 };
 pub use progress::Progress;
 pub use record::{Identify, IdentifyAnswer, WhatToIdentify, columns_read};
 pub use simulation::{Recorded, Simulation};
+pub use sweep::{Sweep, assign as assign_uncertain, column_names, draws as uncertain_draws};
+
+pub use crate::scene::Uncertain;
 
 pub use crate::study::{
     Answer, BestDesign, BestQuestion, Carry, Column, EvenRange, ExponentOptions, Grid, Identified, Onset,

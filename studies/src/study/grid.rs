@@ -66,12 +66,12 @@ impl Grid {
     }
 
     /// The place of cell `index` on each axis.
-    fn places(&self, index: u64) -> impl Iterator<Item = usize> {
+    fn places(&self, index: u64) -> impl Iterator<Item = usize> + Clone {
         places(self.axes.iter().map(|axis| axis.values.len()), index)
     }
 
     /// The values of cell `index`, in the order of the axes.
-    pub fn values(&self, index: u64) -> impl Iterator<Item = f64> {
+    pub fn values(&self, index: u64) -> impl Iterator<Item = f64> + Clone {
         self.axes.iter().zip(self.places(index)).map(|(axis, place)| axis.values[place])
     }
 
@@ -115,7 +115,7 @@ impl Grid {
 }
 
 /// The place of cell `index` on each axis of a grid with axes of these lengths, the slowest first.
-pub(super) fn places<L>(lengths: L, index: u64) -> impl Iterator<Item = usize>
+pub(super) fn places<L>(lengths: L, index: u64) -> impl Iterator<Item = usize> + Clone
 where
     L: Iterator<Item = usize> + Clone,
 {

@@ -11,11 +11,11 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use super::walk::Walk;
 use super::{
-    Cancelled, Carry, Cell, CellFaults, Direction, Grid, Shard, Slice, SweepEnd, Table, Tally, Task,
+    Cancelled, Carry, Cell, CellFaults, Direction, Draws, Grid, Shard, Slice, SweepEnd, Table, Tally, Task,
 };
 use crate::dynamics::{Model, Request, Run};
 use crate::mechanics::{BuildError, Mechanism};
-use crate::scene::{Fault, Files, Scene};
+use crate::scene::{Fault, Files, Scene, check};
 use crate::system::threads::{Pool, Queue, UnderWay};
 
 /// The answer of one cell.
@@ -54,11 +54,17 @@ pub trait Question: Default + Sync {
     /// Adds an answer to the tally.
     fn count(tally: &mut Tally, answer: &Self::Answer);
 
-    /// The table of some rows.
+    /// The table of some rows. With [draws](Self::draws) each cell has consecutive rows: without a draw, then
+    /// with each.
     fn table(&self, grid: &Grid, rows: &[Row<Self::Answer>]) -> Table;
 
     /// The directions in which the last field is walked, if each cell continues from the one before.
     fn carry(&self) -> Option<Carry> {
+        None
+    }
+
+    /// The draws of uncertain fields that are run in each cell besides the cell itself.
+    fn draws(&self) -> Option<&Draws> {
         None
     }
 
@@ -80,6 +86,7 @@ pub(super) struct Cells {
     pub base: Scene,
     pub grid: Grid,
     files: Files,
+    draws: Draws,
     mechanisms: Vec<Mutex<Option<Built>>>,
     /// Mechanisms built so far.
     built: AtomicU64,
@@ -105,20 +112,35 @@ impl Cells {
     pub fn new(base: &Scene, files: &Files, grid: Grid) -> Self {
         // fields without influence on a run are dropped, so that they are not copied for each cell
         let base = Scene { notes: String::new(), sweep: Vec::new(), app: None, ..base.clone() };
-        let kept = Some(grid.mechanisms()).filter(|n| *n <= MAX_KEPT_MECHANISMS).unwrap_or(0);
-        let mechanisms = (0..kept).map(|_| Mutex::new(None)).collect();
-        Self { base, files: files.clone(), grid, mechanisms, built: AtomicU64::new(0) }
+        let (files, draws, built) = (files.clone(), Draws::default(), AtomicU64::new(0));
+        let mechanisms = places(grid.mechanisms());
+        Self { base, files, grid, draws, mechanisms, built }
     }
 
-    /// Turns `scene` into that of a cell and returns its mechanism; `None` if cancelled before it was built.
-    pub fn mechanism(&self, index: u64, scene: &mut Scene, cancel: &AtomicBool) -> Option<Built> {
+    /// Number of different mechanisms in a cell of the grid.
+    fn mechanisms_per_cell(&self) -> u64 {
+        if self.draws.change_mechanism() { self.draws.runs() } else { 1 }
+    }
+
+    /// Turns `scene` into that of a cell with a draw, of which 0 is none, and returns its mechanism; `None`
+    /// if cancelled before it was built.
+    pub fn mechanism(&self, index: u64, draw: u64, scene: &mut Scene, cancel: &AtomicBool) -> Option<Built> {
         self.grid.apply(index, scene);
+        self.draws.apply(draw, self.grid.values(index), scene);
+        if draw > 0
+            && let Some(fault) = check(scene).faults.into_iter().next()
+        {
+            // the relations between fields were checked for the grid alone
+            return Some(Err(BuildError::Wrong(fault)));
+        }
         let build = || {
             let built = Mechanism::build_cancellable(&scene.mechanism, &self.files, cancel)?;
             self.built.fetch_add(1, Ordering::Relaxed);
             Some(built.map(Arc::new))
         };
-        let Some(place) = self.mechanisms.get(self.grid.mechanism(index) as usize) else { return build() };
+        let each = self.mechanisms_per_cell();
+        let number = self.grid.mechanism(index) * each + draw % each;
+        let Some(place) = self.mechanisms.get(number as usize) else { return build() };
         let mut place = place.lock().unwrap_or_else(PoisonError::into_inner);
         if place.is_none() {
             *place = build();
@@ -136,7 +158,7 @@ impl Cells {
     ) -> Result<Vec<CellFaults>, Cancelled> {
         let check = |scene: &mut Scene, index: usize| {
             task.check_cancelled()?;
-            let built = self.mechanism(index as u64, scene, task.cancel).ok_or(Cancelled)?;
+            let built = self.mechanism(index as u64, 0, scene, task.cancel).ok_or(Cancelled)?;
             let faults = match built {
                 Ok(mechanism) => faults(scene, &mechanism),
                 Err(BuildError::Unsolved(_)) => None,
@@ -148,9 +170,16 @@ impl Cells {
         Ok(wrong.into_iter().flatten().collect())
     }
 
-    /// The model of a cell, or its faults; `None` if its mechanism was not solved, or if cancelled.
-    fn model(&self, index: u64, scene: &mut Scene, task: &Task) -> Option<Result<Model, Vec<Fault>>> {
-        match self.mechanism(index, scene, task.cancel)? {
+    /// The model of a cell with a draw, or its faults; `None` if its mechanism was not solved, or if
+    /// cancelled.
+    fn model(
+        &self,
+        index: u64,
+        draw: u64,
+        scene: &mut Scene,
+        task: &Task,
+    ) -> Option<Result<Model, Vec<Fault>>> {
+        match self.mechanism(index, draw, scene, task.cancel)? {
             Ok(mechanism) => Some(Model::build(scene, mechanism)),
             Err(BuildError::Wrong(fault)) => Some(Err(vec![fault])),
             Err(BuildError::Unsolved(_)) => None,
@@ -168,6 +197,10 @@ impl<Q: Question> GridStudy<Q> {
     /// The study with this question.
     #[must_use]
     pub fn with(mut self, question: Q) -> Self {
+        if let Some(draws) = question.draws() {
+            self.cells.draws = draws.clone();
+            self.cells.mechanisms = places(self.mechanisms());
+        }
         self.question = question;
         self
     }
@@ -182,13 +215,23 @@ impl<Q: Question> GridStudy<Q> {
         &self.cells.grid
     }
 
-    /// The number of runs; each is a row of a sweep.
+    /// The number of rows of a sweep; each is a run, and one more for each draw of uncertain fields.
     pub fn rows(&self) -> u64 {
-        self.grid().cells() * self.runs_per_cell()
+        self.grid().cells() * self.rows_per_cell()
     }
 
-    /// Number of runs per cell.
-    fn runs_per_cell(&self) -> u64 {
+    /// Number of runs that make a row.
+    pub fn runs_per_row(&self) -> u64 {
+        self.cells.draws.runs()
+    }
+
+    /// Number of different mechanisms in all runs.
+    pub fn mechanisms(&self) -> u64 {
+        self.grid().mechanisms() * self.cells.mechanisms_per_cell()
+    }
+
+    /// Number of rows per cell.
+    fn rows_per_cell(&self) -> u64 {
         self.question.carry().map_or(1, |carry| carry.directions().len() as u64)
     }
 
@@ -203,21 +246,22 @@ impl<Q: Question> GridStudy<Q> {
         Slice::new(self.rows(), self.unit(), shard)
     }
 
-    fn walk(&self, row: u64) -> Walk {
-        let number = (row / self.unit() % self.runs_per_cell()) as usize;
+    fn walk(&self, row: u64, draw: u64) -> Walk {
+        let number = (row / self.unit() % self.rows_per_cell()) as usize;
         let direction = self.question.carry().map(|carry| carry.directions()[number]);
-        Walk::new(self.cell(row), self.unit(), direction)
+        Walk::new(self.cell(row), self.unit(), direction, draw)
     }
 
     /// The cell of a row. In walks of both directions cells are counted in the order of the grid.
     pub fn cell(&self, row: u64) -> u64 {
-        row / self.unit() / self.runs_per_cell() * self.unit() + row % self.unit()
+        row / self.unit() / self.rows_per_cell() * self.unit() + row % self.unit()
     }
 
     /// Approximate upper bound of the memory of a run in bytes; walks are kept until they end.
     pub fn memory(&self, threads: usize) -> u64 {
         let kept = self.cells.mechanisms.len() as u64;
-        let mechanisms = if self.grid().changes_mechanism() { kept } else { 1 };
+        let several = self.grid().changes_mechanism() || self.cells.draws.change_mechanism();
+        let mechanisms = if several { kept } else { 1 };
         let ahead = self.question.carry().map_or(AHEAD, |_| self.walks_ahead() * self.unit());
         ahead * threads as u64 * size_of::<Row<Q::Answer>>() as u64 + mechanisms * MECHANISM_BYTES
     }
@@ -232,28 +276,30 @@ impl<Q: Question> GridStudy<Q> {
         self.table(0, [])
     }
 
-    /// The rows of consecutive cells from `begin` on, without walks.
+    /// The rows of consecutive cells from `begin` on, without walks, from all runs of each.
     pub fn table(&self, begin: u64, answers: impl IntoIterator<Item = Q::Answer>) -> Table {
-        let row = |(index, answer)| Row { index, direction: None, answer };
-        let rows: Vec<Row<Q::Answer>> = (begin..).zip(answers).map(row).collect();
+        let runs = self.runs_per_row();
+        let row = |(number, answer)| Row { index: begin + number / runs, direction: None, answer };
+        let rows: Vec<Row<Q::Answer>> = (0..).zip(answers).map(row).collect();
         self.question.table(self.grid(), &rows)
     }
 
     /// The mechanism of the first cell, or why it has none. It is that of all cells if no axis changes it.
     pub fn first_mechanism(&self) -> Result<Arc<Mechanism>, BuildError> {
         let (mut scene, never) = (self.cells.base.clone(), AtomicBool::new(false));
-        let built = self.cells.mechanism(0, &mut scene, &never);
+        let built = self.cells.mechanism(0, 0, &mut scene, &never);
         built.unwrap_or_else(|| Mechanism::build(&scene.mechanism, &self.cells.files).map(Arc::new))
     }
 
     /// The model of the first cell as it is run; `None` if it has faults or its mechanism was not solved.
     pub fn first_model(&self, task: &Task) -> Option<Model> {
-        let model = self.cells.model(0, &mut self.cells.base.clone(), task)?.ok()?;
+        let model = self.cells.model(0, 0, &mut self.cells.base.clone(), task)?.ok()?;
         Some(self.question.model(model))
     }
 
-    /// Builds the model of every cell without running it. The error is the first invalid cell, with all its
-    /// faults. An unsolved mechanism is an outcome, not a fault. A cancelled check returns `Ok`.
+    /// Builds the model of every cell, without draws, and does not run it. The error is the first invalid
+    /// cell, with all its faults. An unsolved mechanism is an outcome, not a fault. A cancelled check returns
+    /// `Ok`.
     pub fn validate(&self, pool: &Pool, task: &Task) -> Result<(), CellFaults> {
         self.validate_rows(&self.slice(Shard::WHOLE), 0, pool, task)
     }
@@ -269,7 +315,7 @@ impl<Q: Question> GridStudy<Q> {
         let faults = |scene: &mut Scene, place: u64| {
             task.check_cancelled().ok()?;
             let index = self.cell(slice.row(from + place));
-            let faults = match self.cells.model(index, scene, task)? {
+            let faults = match self.cells.model(index, 0, scene, task)? {
                 Ok(model) => vec![self.question.fault(&self.question.model(model), scene)?],
                 Err(faults) => faults,
             };
@@ -310,14 +356,25 @@ impl<Q: Question> GridStudy<Q> {
             Some(_) => self.walks_ahead() * threads,
             None => self.question.ahead(threads),
         };
-        let walk = |number: usize| self.walk(slice.row(from + number as u64 * unit));
+        let runs = self.runs_per_row();
+        let walk = |number: usize| {
+            let (place, draw) = (number as u64 / runs, number as u64 % runs);
+            self.walk(slice.row(from + place * unit), draw)
+        };
         let work = |take: &dyn Fn(UnderWay) -> Option<usize>, done: &dyn Fn(usize, Row<Q::Answer>)| {
             self.run_walks(&walk, task, take, done);
         };
-        let (mut tally, mut end) = (Tally::default(), None);
+        let (mut tally, mut end, mut held) = (Tally::default(), None, Vec::new());
         let receive = |rows: Vec<Row<Q::Answer>>| {
+            held.extend(rows);
+            // runs of a row that is not yet whole wait for the others
+            let rest = held.split_off(held.len() - held.len() % runs as usize);
+            let rows = std::mem::replace(&mut held, rest);
+            if rows.is_empty() {
+                return true;
+            }
             let mut part = Tally::default();
-            rows.iter().for_each(|row| Q::count(&mut part, &row.answer));
+            rows.iter().step_by(runs as usize).for_each(|row| Q::count(&mut part, &row.answer));
             tally.add(&part);
             tally.mechanisms = self.cells.built.load(Ordering::Relaxed);
             let wanted = write(&self.question.table(self.grid(), &rows), &part);
@@ -327,13 +384,13 @@ impl<Q: Question> GridStudy<Q> {
             })
         };
         let rows = slice.rows() - from;
-        pool.in_order((rows / unit) as usize, unit as usize, ahead as usize, work, receive);
+        pool.in_order((rows / unit * runs) as usize, unit as usize, ahead as usize, work, receive);
         let cancelled = task.is_cancelled() && tally.cells < rows;
         end.or(cancelled.then_some(SweepEnd::Cancelled)).map_or(Ok(tally), Err)
     }
 
-    /// Runs these cells on `pool` in this order, without walks, and calls `each` with every result on the
-    /// thread that computed it. False if cancelled before all were run.
+    /// Runs these cells on `pool` in this order, without walks and draws, and calls `each` with every result
+    /// on the thread that computed it. False if cancelled before all were run.
     pub fn run_cells(
         &self,
         pool: &Pool,
@@ -342,7 +399,7 @@ impl<Q: Question> GridStudy<Q> {
         each: &(dyn Fn(u64, Q::Answer) + Sync),
     ) -> bool {
         let queue = Queue::new(cells.len(), pool.count());
-        let walk = |number: usize| Walk::new(cells[number], 1, None);
+        let walk = |number: usize| Walk::new(cells[number], 1, None, 0);
         let done = |_, row: Row<Q::Answer>| each(row.index, row.answer);
         pool.everywhere(|| self.run_walks(&walk, task, &|under_way| queue.take(under_way), &done));
         !task.is_cancelled()
@@ -377,7 +434,8 @@ impl<Q: Question> GridStudy<Q> {
             task.check_cancelled().ok()?;
             let kept = ready.borrow_mut().pop();
             let (number, begun) = kept.or_else(|| take(under_way).map(|number| (number, walk(number))))?;
-            let answer = match (self.cells.model(begun.cell(), &mut scene, task), request) {
+            let model = self.cells.model(begun.cell(), begun.draw, &mut scene, task);
+            let answer = match (model, request) {
                 (Some(Ok(model)), Some(request)) => {
                     let model = begun.carried.continued(self.question.model(model));
                     let carry = begun.direction.is_some();
@@ -385,7 +443,7 @@ impl<Q: Question> GridStudy<Q> {
                     return Some((number, model, Request { carry, cancel: Some(task.cancel), ..request }));
                 }
                 (Some(Ok(model)), None) => self.question.answer(&model, None, task.cancel),
-                // cannot happen once the grid has been validated
+                // once the grid has been validated, only a draw can have faults
                 (Some(Err(_)), _) => Q::without_model(Cell::NotRun),
                 (None, _) => Q::without_model(Cell::Unsolved),
             };
@@ -398,6 +456,12 @@ impl<Q: Question> GridStudy<Q> {
         };
         Model::run_from(&mut next, &mut ended);
     }
+}
+
+/// A place for each of `count` mechanisms; none if these are too many to keep.
+fn places(count: u64) -> Vec<Mutex<Option<Built>>> {
+    let kept = if count <= MAX_KEPT_MECHANISMS { count } else { 0 };
+    (0..kept).map(|_| Mutex::new(None)).collect()
 }
 
 /// The columns of the swept fields and, if `walked`, of the direction; `count` gives the number of rows of an

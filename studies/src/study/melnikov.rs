@@ -62,7 +62,7 @@ pub fn with_melnikov(
     let cells = Cells::new(scene, files, grid.clone());
     let threshold = |scene: &mut Scene, cell: usize| {
         task.check_cancelled()?;
-        let built = cells.mechanism(cell as u64, scene, task.cancel).ok_or(Cancelled)?;
+        let built = cells.mechanism(cell as u64, 0, scene, task.cancel).ok_or(Cancelled)?;
         let Excitation::Sine { frequency_hz, .. } = scene.excitation else { return Ok(None) };
         let model = built.ok().and_then(|mechanism| Model::build(&from_rest(scene), mechanism).ok());
         Ok(model.and_then(|model| melnikov_threshold(&model, frequency_hz)))

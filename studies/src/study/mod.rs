@@ -62,6 +62,7 @@ mod sweep;
 mod table;
 mod thresholds;
 mod trace;
+mod uncertain;
 mod walk;
 mod watch;
 
@@ -118,6 +119,7 @@ pub use sweep::{
 pub use table::{Column, Table, Values, label_and_unit};
 pub use thresholds::{Found, NoThresholds, Onset, Scan, Verdict, threshold, threshold_table};
 pub use trace::{Trace, between, simulate_with_trace};
+pub use uncertain::{Draws, MAX_DRAWS, share_in_range};
 pub use walk::{Carry, Direction, Family, NoModel, Visit, up_and_down};
 pub use watch::{Watch, continued_scene, distances, watched_events};
 

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::grid_study::fields;
 use super::walk::without_a_period;
-use super::{Carry, Grid, GridStudy, Question, Row, SummaryField, Table, Values};
+use super::{Carry, Draws, Grid, GridStudy, Question, Row, SummaryField, Table, Values};
 use crate::dynamics::{Model, Outcome, Request, Run, Summary};
 use crate::scene::{Fault, Scene};
 
@@ -131,7 +131,7 @@ pub const STANDARD: [&str; 7] =
     ["rms_velocity_m_per_s", "regime", "crossings", "impacts", "max_abs_x_m", "period", OUTCOME];
 
 /// The column of the outcome of a run.
-const OUTCOME: &str = "outcome";
+pub(super) const OUTCOME: &str = "outcome";
 
 /// The column of the direction of a walk.
 pub const DIRECTION: &str = "direction";
@@ -148,6 +148,10 @@ pub struct SweepOptions {
     /// period of its run. Only the first cell begins at the start of its scene. A column `direction` follows
     /// those of the fields, and the rows are in the order of the walk.
     pub carry: Option<Carry>,
+    /// Draws of uncertain fields, which are run in each cell besides the cell itself; without `carry`. Each
+    /// column of numbers is followed by the band of the draws, `_low` and `_high`, each of words by the share
+    /// of the draws with the same word, `_share`; `draws` is the last column.
+    pub draws: Draws,
 }
 
 /// A run for each cell of a grid, with one row per cell.
@@ -178,10 +182,23 @@ impl Question for SweepOptions {
     }
 
     fn table(&self, grid: &Grid, rows: &[Row<Cell>]) -> Table {
-        let table = fields(grid, rows, |_| 1, self.carry.is_some());
+        let cells = (!self.draws.is_empty()).then(|| self.draws.cells(rows));
+        let table = fields(grid, cells.as_deref().unwrap_or(rows), |_| 1, self.carry.is_some());
         let standard = STANDARD.into_iter().filter_map(SummaryField::find);
         let more = self.columns.iter().copied().filter(|field| !STANDARD.contains(&field.name));
-        standard.chain(more).fold(table, |table, field| table.with(field.name, column(field, rows)))
+        let all = standard.chain(more);
+        let Some(cells) = cells else {
+            return all.fold(table, |table, field| table.with(field.name, column(field, rows)));
+        };
+        let table = all.fold(table, |table, field| {
+            let table = table.with(field.name, column(field, &cells));
+            self.draws.with_band(table, field, rows, |cell| word(field, cell))
+        });
+        self.draws.with_count(table, rows)
+    }
+
+    fn draws(&self) -> Option<&Draws> {
+        Some(&self.draws).filter(|draws| !draws.is_empty())
     }
 
     fn carry(&self) -> Option<Carry> {
@@ -194,6 +211,14 @@ fn column(field: &SummaryField, rows: &[Row<Cell>]) -> Values {
         // also for cells without a run
         OUTCOME => Values::Words(rows.iter().map(|row| row.answer.outcome()).collect()),
         _ => field.column(rows.iter().map(|row| row.answer.summary())),
+    }
+}
+
+/// The word of a cell in a column of words.
+fn word(field: &SummaryField, cell: &Cell) -> &'static str {
+    match field.name {
+        OUTCOME => cell.outcome(),
+        _ => cell.summary().and_then(|summary| field.word(summary)).unwrap_or_default(),
     }
 }
 

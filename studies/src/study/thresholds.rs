@@ -105,7 +105,7 @@ pub fn threshold_table(
     // with several cells, each runs on one thread
     let ahead = if count == 1 { pool.count() } else { 1 };
     let cell = |scene: &mut Scene, index: usize| {
-        let built = cells.mechanism(index as u64, scene, task.cancel).ok_or(Cancelled)?;
+        let built = cells.mechanism(index as u64, 0, scene, task.cancel).ok_or(Cancelled)?;
         let Ok(mechanism) = built else {
             scan.values.iter().for_each(|_| (task.tick)());
             return Ok(Found { undecided: true, ..Found::default() });

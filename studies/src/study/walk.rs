@@ -95,6 +95,8 @@ pub(super) struct Walk {
     /// Number of its cells.
     pub length: u64,
     pub direction: Option<Direction>,
+    /// Which draw of the uncertain fields it has, 0 for none.
+    pub draw: u64,
     /// Number of cells that have been run.
     pub done: u64,
     pub carried: Carried,
@@ -122,8 +124,8 @@ impl Carried {
 }
 
 impl Walk {
-    pub fn new(begin: u64, length: u64, direction: Option<Direction>) -> Self {
-        Self { begin, length, direction, done: 0, carried: Carried::default() }
+    pub fn new(begin: u64, length: u64, direction: Option<Direction>, draw: u64) -> Self {
+        Self { begin, length, direction, draw, done: 0, carried: Carried::default() }
     }
 
     pub fn cell(&self) -> u64 {

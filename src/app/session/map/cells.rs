@@ -230,6 +230,7 @@ impl Map {
                 overlay: self.overlay.clone(),
                 view,
                 ranges: Ranges::default(),
+                draws: "",
             })
         };
         let mut chart = drawn(&self.table(true, &more), view.clone())?;

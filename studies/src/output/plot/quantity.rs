@@ -43,6 +43,8 @@ pub(super) struct Quantity {
     pub kinds: Option<Vec<(Role, String)>>,
     /// Whether every motion at rest is shown as such, not only one whose value is 0.
     pub rests: bool,
+    /// The band about its values, if it has one: least and largest values.
+    pub band: Option<[Vec<f64>; 2]>,
     /// The column.
     name: String,
 }
@@ -83,13 +85,20 @@ impl Quantity {
         if name == PERIOD {
             kinds = Some(counted(&mut values));
         }
-        let (words, unit) = label_and_unit(name);
-        let words = SummaryField::find(name).map_or(words, |field| field.label.to_owned());
+        let end_of = |ending: &str, words| Some((SummaryField::find(name.strip_suffix(ending)?)?, words));
+        let end = end_of("_low", ", lower end of the band").or(end_of("_high", ", upper end of the band"));
+        let (words, unit) = label_and_unit(end.map_or(name, |(field, _)| field.name));
+        let (field, end) = end.map_or((SummaryField::find(name), ""), |(field, words)| (Some(field), words));
+        let words = field.map_or(words, |field| format!("{}{end}", field.label));
         let (scale, unit) = suited_unit(unit, values.iter().copied());
         let label = if unit.is_empty() { words } else { format!("{words} ({unit})") };
-        let values = values.into_iter().map(|value| value * scale).collect();
+        let scaled = |values: &[f64]| values.iter().map(|value| value * scale).collect();
+        let end = |end: &str| rows.numbers(&format!("{name}{end}")).map(scaled);
+        let band = end("_low").zip(end("_high")).map(|(low, high)| [low, high]);
+        let band = band.filter(|_| kinds.is_none());
+        let values = scaled(&values);
         let rests = [RMS, PERIOD, "regime"].contains(&name);
-        Self { values, label, unit: unit.to_owned(), kinds, rests, name: name.to_owned() }
+        Self { values, label, unit: unit.to_owned(), kinds, rests, band, name: name.to_owned() }
     }
 
     /// What a legend says of cells without a value: the reasons that there are.
@@ -126,6 +135,13 @@ impl Quantity {
             return PlotAxis::given(-0.5, kinds.len() as f64 - 0.5, ticks, &self.label);
         }
         PlotAxis::around(self.values.iter().copied().chain([0.0]), margin, &self.label)
+    }
+
+    /// Its axis with room for its band.
+    pub fn axis_of_band(&self, margin: f64) -> PlotAxis {
+        let Some([low, high]) = &self.band else { return self.axis(margin) };
+        let all = self.values.iter().chain(low).chain(high).copied();
+        PlotAxis::around(all.chain([0.0]), margin, &self.label)
     }
 }
 

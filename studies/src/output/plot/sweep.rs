@@ -2,7 +2,7 @@
 
 use super::axis::PlotAxis;
 use super::cells::{Cell, Cells, Colours};
-use super::chart::{Chart, Column, Marks, Panel, Side};
+use super::chart::{Chart, Column, Layer, Marks, Panel, Side};
 use super::figure::Point;
 use super::map::{cells_panel, map, map_with_cuts, surface};
 use super::quantity::{Quantity, quantities, words_of};
@@ -135,6 +135,14 @@ pub fn sweep_chart(picture: &SweepPicture) -> Result<Chart, NoPicture> {
         (other, None) => return Err(NoPicture::Fields(other.len())),
     };
     chart.subtitle = sweep_about(grid, scene, &walked, until_settled);
+    if !picture.draws.is_empty() {
+        let is_band = |layer: &Layer| matches!(layer.marks, Marks::Band(_));
+        let (before, after) = match chart.panels().any(|panel| panel.layers.iter().any(is_band)) {
+            true => ("", ""),
+            false => ("the band of ", " is in the table"),
+        };
+        chart.subtitle = format!("{}, {before}{}{after}", chart.subtitle, picture.draws);
+    }
     let quantity = Quantity::of(rows, picture.quantity);
     if grid.axes().len() > 1 && quantity.kinds.is_some() {
         // the colours of kinds have no axis that names the quantity
@@ -200,7 +208,8 @@ fn lines(picture: &SweepPicture, x: &str, series: Option<&str>) -> Chart {
     let places = rows.numbers(x).unwrap_or_default();
     let quantity = Quantity::of(rows, picture.quantity);
     // most quantities are never negative; the room below 0 is for the markers
-    let mut panel = Panel::new(swept_axis(rows, x, ranges.x), quantity.axis(0.05).or_given(ranges.y));
+    let up = quantity.axis_of_band(0.05).or_given(ranges.y);
+    let mut panel = Panel::new(swept_axis(rows, x, ranges.x), up);
     let regimes = rows.words("regime");
     let rests = |row: usize| quantity.rests && regimes.get(row) == Some(&"rest");
     let without_value = |at_rest: bool| -> Vec<f64> {
@@ -235,6 +244,10 @@ fn lines(picture: &SweepPicture, x: &str, series: Option<&str>) -> Chart {
         }
         let points: Vec<Point> = order.iter().map(|&row| (places[row], quantity.values[row])).collect();
         if joined {
+            if let Some([low, high]) = &quantity.band {
+                let band = order.iter().map(|&row| [places[row], low[row], high[row]]).collect();
+                panel.layer(Role::Around, "95 % of the draws", Marks::Band(band));
+            }
             let role = if series.is_some() { line.role } else { Role::Joined };
             panel.layer(role, &line.name, Marks::Path(points));
         }

@@ -70,14 +70,18 @@ pub struct SweepPicture<'a> {
     pub view: View,
     /// Ranges of the axes of the fields and, over one field, of the vertical axis.
     pub ranges: Ranges,
+    /// [What the bands are](crate::study::Draws::about); empty if there are none.
+    pub draws: &'a str,
 }
 
 /// The cells with the quantity and their words, if their fields lie in `ranges`.
 pub(super) fn drawn(picture: &SweepPicture, ranges: &[(&str, Option<(f64, f64)>)]) -> Drawn {
     let SweepPicture { rows, grid, quantity, .. } = picture;
     let fields = grid.columns();
-    let value = rows.column(quantity).and_then(as_numbers);
-    let names = fields.iter().map(String::as_str).chain(value.is_some().then_some(*quantity));
+    let shown = ["", "_low", "_high"].map(|ending| format!("{quantity}{ending}"));
+    let shown = shown.iter().filter_map(|name| Some((name, as_numbers(rows.column(name)?)?)));
+    let shown: Vec<(&String, Vec<f64>)> = shown.collect();
+    let names = fields.iter().chain(shown.iter().map(|(name, _)| *name)).map(String::as_str);
     let ways = rows.words(DIRECTION);
     let regimes = rows.words("regime");
     let mut drawn = Drawn::new(names, if ways.is_empty() { &["regime"] } else { &["regime", DIRECTION] });
@@ -89,7 +93,7 @@ pub(super) fn drawn(picture: &SweepPicture, ranges: &[(&str, Option<(f64, f64)>)
         };
         if ranges.iter().all(within) {
             let places = columns.iter().map(|column| column[row]);
-            let numbers: Vec<f64> = places.chain(value.as_ref().map(|values| values[row])).collect();
+            let numbers: Vec<f64> = places.chain(shown.iter().map(|(_, values)| values[row])).collect();
             let said: Vec<&str> =
                 [regimes, ways].iter().filter_map(|column| column.get(row).copied()).collect();
             drawn.put("cell", &numbers, &said);

@@ -56,8 +56,17 @@ pub fn threshold_chart(picture: &ThresholdPicture) -> Result<Chart, NoPicture> {
             let named = rows.clone().with(&least, quantity.values);
             let (quantity, overlay, view) = (least.as_str(), Overlay::default(), View::Top);
             let rows = &named;
-            let shown =
-                SweepPicture { rows, grid, scene, until_settled: None, quantity, overlay, view, ranges };
+            let shown = SweepPicture {
+                rows,
+                grid,
+                scene,
+                until_settled: None,
+                quantity,
+                overlay,
+                view,
+                ranges,
+                draws: "",
+            };
             map(&shown, (&columns[0], &columns[1]))
         }
     };

@@ -68,12 +68,13 @@ pub struct Environment {
     pub files: Files,
 }
 
-/// A field that varies uniformly within a tolerance to both sides of its design value.
+/// A field that varies about its value: within a tolerance to both sides of it ([`best`]), or with a standard
+/// deviation ([`Draws`](super::Draws)).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Variation {
     /// Dotted path of the field.
     pub field: String,
-    /// The tolerance: a share of the value, or in the field's unit.
+    /// The tolerance or the standard deviation: a share of the value, or in the field's unit.
     pub by: f64,
     /// Whether it is a share.
     pub relative: bool,

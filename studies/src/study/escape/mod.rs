@@ -91,7 +91,7 @@ pub fn escape_table(
     let begin = || cells.base.clone();
     let model = |scene: &mut Scene, cell: usize, run: u64| {
         task.check_cancelled()?;
-        let built = cells.mechanism(cell as u64, scene, task.cancel).ok_or(Cancelled)?;
+        let built = cells.mechanism(cell as u64, 0, scene, task.cancel).ok_or(Cancelled)?;
         let prepared = prepared(scene, run, options.within);
         Ok(built.ok().and_then(|mechanism| Model::build(&prepared, mechanism).ok()))
     };

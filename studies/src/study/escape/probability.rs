@@ -59,7 +59,7 @@ pub fn probable_threshold_table(
     let begin = || cells.base.clone();
     let first = |scene: &mut Scene, part: usize| {
         task.check_cancelled()?;
-        let built = cells.mechanism((part / runs) as u64, scene, task.cancel).ok_or(Cancelled)?;
+        let built = cells.mechanism((part / runs) as u64, 0, scene, task.cancel).ok_or(Cancelled)?;
         let found = match built {
             Ok(mechanism) => {
                 let prepared = prepared(&from_rest(scene), (part % runs) as u64, chance.within);
