@@ -125,7 +125,11 @@ impl<'a> Prepared<'a> {
         let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
         // a name that is none is reported by `can_show`, with those that there are
         let quantity = SummaryField::named(&options.quantity).map_or(&*options.quantity, |field| field.name);
-        let (mut document, warnings) = load(&options.scene, common, Some(&options.over))?;
+        let mut document = read(&options.scene, common)?;
+        let swept = document.swept.clone().unwrap_or_default();
+        let uncertain = uncertain(options, swept.uncertain);
+        assign_uncertain(&uncertain, &mut document)?;
+        let warnings = check(&mut document, Some(&options.over))?;
         if options.check && document.swept.is_none() {
             refuse!(
                 "--check {}: give the manifest of a sweep, such as map.csv.json, as the scene",
