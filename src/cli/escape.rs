@@ -44,7 +44,7 @@ pub struct Arguments {
     #[arg(long, value_name = "FIELD=FROM:TO:STEP|a,b,c", allow_hyphen_values = true)]
     pub over: Vec<String>,
 
-    /// The picture, with --over one field: the rate with its interval on a logarithmic axis, and Kramers' rate.
+    /// The picture, with --over one field: the rate with its interval, logarithmic, and Kramers' rate.
     #[command(flatten)]
     pub chart: ChartOptions,
 }

@@ -10,7 +10,7 @@ use interwell::Simulation;
 use interwell::dynamics::{EventKind, Request};
 use interwell::scene::{Document, Files};
 
-use crate::support::{Draw, of_kind, preset};
+use crate::support::{Draw, of_kind};
 
 /// A double well with natural frequency 5 Hz in its wells, the damping rate `damping` and the height `height`
 /// of its barrier over the energy k_B T of its noise, both relative: to the natural frequency and to 1.
@@ -22,8 +22,8 @@ pub fn double_well(damping: f64, height: f64, lines: u64, seed: u64, rest: &str)
     let rms_g = (4.0 * c * barrier / height / (mass * mass) * 60.0).sqrt() / 9.806_65;
     let text = format!(
         "(title: \"test\", mass_g: 10, mechanism: DoubleWell(equilibrium_mm: 1, barrier_mj: {:?}), \
-         damping: Coefficient(c_n_s_per_m: {c:?}), excitation: Noise(rms_g: {rms_g:?}, low_hz: 0, high_hz: 60, \
-         seed: {seed}, lines: {lines}), run: (duration_s: 20, tolerance: 1e-6), {rest})",
+         damping: Coefficient(c_n_s_per_m: {c:?}), excitation: Noise(rms_g: {rms_g:?}, low_hz: 0, \
+         high_hz: 60, seed: {seed}, lines: {lines}), run: (duration_s: 20, tolerance: 1e-6), {rest})",
         1e3 * barrier
     );
     let document = Document::from_text("test", &text, Files::default()).unwrap_or_else(|e| panic!("{e}"));
@@ -41,7 +41,7 @@ fn a_run_until_its_crossing_is_the_beginning_of_the_whole_run() {
             format!("Noise(rms_g: {amplitude}, low_hz: 0.5, high_hz: 10, seed: 3, lines: 32)"),
         ];
         for drive in drives {
-            let simulation = Simulation::new(&preset(name)).unwrap();
+            let simulation = Simulation::preset(name).unwrap();
             let model = simulation.with("excitation", drive).unwrap().model().clone();
             let model = model.with_duration(10.0, 5.0);
             let whole = model.run(&Request { events: true, ..Request::default() });

@@ -108,8 +108,8 @@ over_fields!(Escape);
 /// whose ranks are binomial (David and Nagaraja 2003, section 7.1). A run that crosses at a value is taken to
 /// cross at higher ones; where it does not, the bisection finds one of the changes of its answer.
 ///
-/// Errors: [`Error::Argument`] for a wrong argument; [`Error::Cells`] for cells in which no value of the range
-/// gives a valid scene with noise and two wells.
+/// Errors: [`Error::Argument`] for a wrong argument; [`Error::Cells`] for cells in which no value of the
+/// range gives a valid scene with noise and two wells.
 ///
 /// ```
 /// use interwell_studies::questions::{ProbableThreshold, Progress, Simulation};

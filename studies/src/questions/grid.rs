@@ -232,7 +232,7 @@ pub struct Threshold {
     /// Each run continues until its motion repeats, at most up to this time in s.
     pub until_settled: Option<f64>,
     /// Whether the column `melnikov_g` is added: Melnikov's threshold, in closed form up to quadrature
-    /// ([`melnikov_threshold`](crate::study::melnikov_threshold)). It needs a sine and its amplitude as field.
+    /// ([`melnikov_threshold`](crate::study::melnikov_threshold)). It needs a sine's amplitude as field.
     pub melnikov: bool,
 }
 

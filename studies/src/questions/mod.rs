@@ -12,7 +12,7 @@
 //! | [`Sweep`] | what the settled motion does in each cell of a grid; with `carry`, hysteresis | [`Table`] |
 //! | [`Section`] | states once per period or at impacts; over a field a bifurcation diagram | [`Table`] |
 //! | [`Threshold`] | the smallest value of a field that releases the mass or makes it cross | [`Table`] |
-//! | [`ProbableThreshold`] | the value of a field at which a share of the runs under noise crosses | [`Table`] |
+//! | [`ProbableThreshold`] | the value of a field at which a share of runs under noise crosses | [`Table`] |
 //! | [`Escape`] | how often a motion under noise leaves its well, beside Kramers' rate | [`Table`] |
 //! | [`Exponents`] | Lyapunov exponents: whether the motion is chaotic | [`Table`] |
 //! | [`Orbit`] | the periodic orbit near the motion, with its multipliers | `study::Orbit` |

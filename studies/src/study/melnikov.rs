@@ -3,8 +3,8 @@
 //!
 //! Along the homoclinic orbit x_0(t) of the undamped mass, with velocity v, the distance of the manifolds is
 //! proportional to M(t_0) = integral of v (-c v - m a sin(w (t + t_0))) dt (Melnikov 1963; Guckenheimer and
-//! Holmes 1983, section 4.5). It has zeros for some t_0 if the amplitude a of the base's acceleration is above
-//! c integral of v^2 dt / (m |integral of v exp(i w t) dt|).
+//! Holmes 1983, section 4.5). It has zeros for some t_0 if the amplitude a of the base's acceleration is
+//! above c integral of v^2 dt / (m |integral of v exp(i w t) dt|).
 
 use super::amplitudes::AMPLITUDE;
 use super::grid_study::Cells;
@@ -18,9 +18,9 @@ use crate::system::threads::Pool;
 /// Melnikov's threshold in m/s^2 of the base's acceleration under a sine of this frequency in Hz, for the
 /// well in which the model starts; `None` where it does not apply.
 ///
-/// It is the first order in damping and drive: exact in the limit of both. Above it the border of the basin of
-/// a well is no longer smooth and motions that cross in an irregular way exist, which a chaotic motion needs
-/// (Moon and Holmes 1979) and which begins the erosion of the basin (Thompson 1989). It is no threshold of a
+/// It is the first order in damping and drive: exact in the limit of both. Above it the border of the basin
+/// of a well is no longer smooth and motions that cross in an irregular way exist, which a chaotic motion
+/// needs (Moon and Holmes 1979) and which begins the erosion of the basin (Thompson 1989). It is no threshold of a
 /// motion from rest, whose escape may come far above it.
 ///
 /// It needs damping that is linear and above 0, a barrier without a kink, and a well whose homoclinic orbit
@@ -49,8 +49,8 @@ pub fn melnikov_threshold(model: &Model, frequency_hz: f64) -> Option<f64> {
     threshold.is_finite().then_some(threshold)
 }
 
-/// A table of thresholds with one more column, `melnikov_g`: Melnikov's threshold in g in each cell of `grid`,
-/// missing where it does not apply and where the excitation is no sine. The runs begin at rest.
+/// A table of thresholds with one more column, `melnikov_g`: Melnikov's threshold in g in each cell of
+/// `grid`, missing where it does not apply and where the excitation is no sine. The runs begin at rest.
 pub fn with_melnikov(
     table: Table,
     scene: &Scene,

@@ -75,8 +75,8 @@ pub fn threshold(
 pub enum NoThresholds {
     /// It was cancelled.
     Cancelled,
-    /// Cells in which no value gives a valid model, or none that can have the motion: whose drive repeats, for
-    /// interwell motion, or is a noise, for an escape.
+    /// Cells in which no value gives a valid model, or none that can have the motion: whose drive repeats,
+    /// for interwell motion, or is a noise, for an escape.
     Wrong(Vec<CellFaults>),
 }
 

@@ -73,7 +73,7 @@ fn the_threshold_in_probability_is_where_that_share_escapes() {
     let options = "--field excitation.rms_g=0:4:0.02 --within 3 --runs 15 --quiet";
     let scene = format!("{} --set stops.restitution=0.3", scene(1.0));
     let line = format!("threshold {scene} {options}");
-    for probability in [0.3, 0.8] {
+    for probability in [0.3_f64, 0.8] {
         let text = stdout(&format!("{line} --probability {probability} --jobs 2"));
         assert_eq!(stdout(&format!("{line} --probability {probability} --jobs 1")), text);
         assert_eq!(text.lines().next(), Some("of,probability,value,low,high,runs,crossed"));

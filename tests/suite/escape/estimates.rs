@@ -53,7 +53,7 @@ fn the_interval_of_a_rate_covers_it_in_nineteen_of_twenty_samples() {
         covered += u32::from(found.low <= rate && rate <= found.high);
         below += u32::from(rate < found.low);
         above += u32::from(rate > found.high);
-        let kind = if events == 0 { 0 } else { 1 + usize::from(events == runs.into()) };
+        let kind = if events == 0 { 0 } else { 1 + usize::from(events == u64::from(runs)) };
         counts[kind] += 1;
     }
     // three standard errors of a share of 0.95 are 0.0085, of 0.025 are 0.006

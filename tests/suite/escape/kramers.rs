@@ -18,9 +18,9 @@ fn strong_damping_has_the_closed_form() {
     for _ in 0..40 {
         let (damping, height) = (draw.between(0.9, 1.15), draw.between(3.1, 12.0));
         let barrier = 0.5_f64.sqrt();
-        let prefactor = ((0.25 * damping * damping + 0.5).sqrt() - 0.5 * damping) / barrier;
+        let prefactor = ((0.25 * damping * damping + barrier * barrier).sqrt() - 0.5 * damping) / barrier;
         // a turn loses at least 20 k_B T, which changes the rate by less than a thousandth
-        let exact = 5.0 * prefactor * (-height).exp();
+        let exact = 5.0 * prefactor * f64::exp(-height);
         let found = rate(&double_well(damping, height, 1000, 1, "start: At(x_mm: -1)")).unwrap();
         near_relative(found, exact, 2e-3);
     }
@@ -48,7 +48,7 @@ fn weak_damping_lowers_it_by_the_factor_of_melnikov_and_meshkov() {
     near_relative(depopulation(1e-6), 1e-6, 1e-2);
     assert_eq!(depopulation(1e3), 1.0);
     // a turn of the quartic double well loses 16 sqrt(2)/3 of damping rate times barrier over frequency
-    let (damping, height) = (0.1, 5.0);
+    let (damping, height) = (0.1_f64, 5.0);
     let loss = 16.0 * 2_f64.sqrt() / 3.0 * damping * height;
     let prefactor = ((0.25 * damping * damping + 0.5_f64).sqrt() - 0.5 * damping) / 0.5_f64.sqrt();
     let found = rate(&double_well(damping, height, 4000, 1, "")).unwrap();

@@ -7,8 +7,9 @@ use interwell::study::melnikov_threshold;
 
 use crate::support::{Draw, model, near_relative};
 
-/// The threshold in m/s^2 of m x'' + c x' - k x + a x^3 = -m A sin(w t), from 4 d cosh(pi w/2)/(3 sqrt(2) pi w)
-/// in the units of the oscillator (Guckenheimer and Holmes 1983, section 4.5).
+/// The threshold in m/s^2 of m x'' + c x' - k x + a x^3 = -m A sin(w t), from
+/// 4 d cosh(pi w/2)/(3 sqrt(2) pi w) in the units of the oscillator (Guckenheimer and Holmes 1983, section
+/// 4.5).
 fn of_duffing(mass: f64, damping: f64, (linear, cubic): (f64, f64), angular: f64) -> f64 {
     let rate = (linear / mass).sqrt();
     let (damping, angular) = (damping / (mass * rate), angular / rate);
