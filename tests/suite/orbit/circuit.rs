@@ -159,7 +159,8 @@ fn the_product_of_three_multipliers_is_known_with_impacts_too() {
     assert!(seen >= 15, "{seen}");
 }
 
-/// A branch over the amplitude touches the stop first where the steady motion reaches it.
+/// A branch over the amplitude touches the stop first where the steady motion reaches it. It begins at an
+/// amplitude at which the transient, of at most twice the steady motion, does not touch it either.
 #[test]
 fn grazing_beside_a_circuit_is_where_the_response_reaches_the_stop() {
     let mut random = Noise::new(43);
@@ -168,13 +169,13 @@ fn grazing_beside_a_circuit_is_where_the_response_reaches_the_stop() {
         let reach_mm = random.between(20.0, 80.0);
         let grazing_g = reach_mm * 1e-3 / oscillator.response() / STANDARD_GRAVITY;
         let restitution = random.between(0.5, 0.95);
-        let scene = Oscillator { amplitude_g: 0.97 * grazing_g, ..oscillator };
+        let scene = Oscillator { amplitude_g: 0.45 * grazing_g, ..oscillator };
         let rest = format!(
             "stops: Uneven(right_mm: {reach_mm:?}, restitution_right: {restitution:?}), start: At(x_mm: 0, \
              v_m_per_s: 0), run: (duration_s: 900, settle_s: 800, tolerance: 1e-12)"
         );
         let document = document(&scene.text(&rest));
-        let branch = over_amplitude(&document, (0.97 * grazing_g, 1.002 * grazing_g), None);
+        let branch = over_amplitude(&document, (0.45 * grazing_g, 1.002 * grazing_g), None);
         let found = at(&branch, BranchEvent::Grazing);
         assert_eq!(found.len(), 1, "{found:?} {grazing_g}");
         near_relative(found[0], grazing_g, 1e-8);

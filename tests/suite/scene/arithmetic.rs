@@ -151,7 +151,7 @@ proptest! {
         let axis = Axis::parse(&format!("start.x_mm={from}:{to}:({to} - ({from}))/{count}"), &scene).unwrap();
         prop_assert_eq!(axis.values.len(), count as usize + 1);
         prop_assert_eq!((axis.values[0], axis.values[count as usize]), (from, to));
-        let even = |i: usize| from + span * i as f64 / f64::from(count);
+        let even = |i: usize| -> f64 { from + span * i as f64 / f64::from(count) };
         let is_even = |(i, value): (usize, &f64)| (value - even(i)).abs() <= 1e-13;
         prop_assert!(axis.values.iter().enumerate().all(is_even), "{:?}", axis.values);
         let again = Axis::from_scene(&axis.to_scene(&scene), &scene).unwrap();
