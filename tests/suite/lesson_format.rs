@@ -134,7 +134,7 @@ fn a_lesson_takes_arithmetic() {
     assert_eq!((lesson.lesson.speed, lesson.begin(0).scene.mass_g), (Some(0.1), 2.25));
     assert!(met(&text(&steps("sqrt(2)*3"), more)) && !met(&text(&steps("1 + 1"), more)));
     let error = read(&text(&steps("2*mass"), more)).unwrap_err().to_string();
-    assert!(error.starts_with("box.ron:10:65: ") && error.contains("`2*mass`: `mass` is unknown"), "{error}");
+    assert!(error.starts_with("box.ron:10:59: ") && error.contains("`2*mass`: `mass` is unknown"), "{error}");
 }
 
 #[test]

@@ -65,7 +65,6 @@ impl Tree {
         let is_inside = self.rank() < rank || draw(6) == 0;
         let blank = [" ", "", "", "\n", "/* 2/ */", "// 1+\n", "\t"][draw(7) as usize];
         let form = draw(3);
-        let inner = if is_inside { 0 } else { self.rank() };
         let text = match self {
             Number(value) if form == 0 || !(1e-6..1e15).contains(value) => format!("{value:e}"),
             Number(value) => format!("{value}"),
@@ -77,12 +76,11 @@ impl Tree {
                 format!("{}{blank}^{}", left.text(4, chance), right.text(2, chance))
             }
             Of(sign, left, right) => {
-                let own = self.rank();
-                format!("{}{blank}{sign} {}", left.text(own, chance), right.text(own + 1, chance))
+                let rank = self.rank();
+                format!("{}{blank}{sign} {}", left.text(rank, chance), right.text(rank + 1, chance))
             }
         };
-        let is_bare = inner == self.rank();
-        if is_bare { text } else { format!("({blank}{text})") }
+        if is_inside { format!("({blank}{text})") } else { text }
     }
 }
 

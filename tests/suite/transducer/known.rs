@@ -15,8 +15,8 @@ fn the_double_well_of_erturk_hoffmann_and_inman_is_chaotic_or_on_its_large_orbit
     let from = |v: f64, transducer: Option<&str>| {
         let mut document = document.clone();
         document.set(&format!("start.v_m_per_s={v}")).unwrap();
-        for change in transducer {
-            document.set(&format!("transducer={change}")).unwrap();
+        if let Some(transducer) = transducer {
+            document.set(&format!("transducer={transducer}")).unwrap();
         }
         run(&build(&document)).summary
     };
