@@ -912,7 +912,7 @@ class Scene(Mapping[str, Any]):
         ------
         SceneError
             If a range is wrong, there are more than 1e7 starts, all lie beyond a stop or the curve, the drive
-            changes and does not repeat, nothing takes energy, or a transducer has a state of its own.
+            changes and does not repeat, or nothing takes energy.
 
         Notes
         -----
@@ -960,8 +960,7 @@ class Scene(Mapping[str, Any]):
         Raises
         ------
         SceneError
-            If an argument is wrong, the drive does not repeat or is 0, or a transducer has a state of its
-            own.
+            If an argument is wrong, or the drive does not repeat or is 0.
         ComputationError
             If the run comes to no motion that repeats, or none is found near it.
 

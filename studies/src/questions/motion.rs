@@ -322,8 +322,8 @@ impl Spectrum {
 /// Without rests of the mass the cost per start is many times as large; at most 1e7 starts are taken.
 ///
 /// Errors: [`Error::Argument`] for wrong ranges or numbers of starts, or if all starts lie beyond a stop or
-/// the end of the force curve; [`Error::Unfit`] if the drive changes and does not repeat, the transducer has
-/// a state of its own, or nothing takes energy. A start that reaches no attractor has no number.
+/// the end of the force curve; [`Error::Unfit`] if the drive changes and does not repeat, or nothing takes
+/// energy. A start that reaches no attractor has no number.
 ///
 /// ```
 /// use interwell_studies::questions::{Basins, Progress, Simulation};

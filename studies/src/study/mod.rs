@@ -150,8 +150,3 @@ type State = (f64, f64);
 /// The error of a study that was cancelled.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Cancelled;
-
-/// Why a study whose state consists of displacement and velocity only refuses a scene.
-pub const ELECTRICAL_STATE: &str = "transducer: its current or voltage goes on with the motion as a third \
-     state, and this compares displacement and velocity alone; take inductance_mh: 0 (of a piezoelectric one \
-     load_kohm: 0, a short circuit), or transducer: None";

@@ -206,15 +206,15 @@ impl Draws {
                 ENDS.map(|end| quantile(&values, end)).to_vec()
             }
             Read::Word(_) | Read::Flag(_) => {
-                let own = word(&runs[0].answer);
+                let nominal = word(&runs[0].answer);
                 let all: Vec<&Cell> = match field.name {
                     // a draw that ends early has another outcome, which counts
                     super::sweep::OUTCOME => runs[1..].iter().map(|row| &row.answer).collect(),
                     _ => ended(&runs[1..]).collect(),
                 };
-                let same = all.iter().filter(|cell| word(cell) == own).count();
+                let same = all.iter().filter(|cell| word(cell) == nominal).count();
                 let share = same as f64 / all.len() as f64;
-                vec![if own.is_empty() { f64::NAN } else { share }]
+                vec![if nominal.is_empty() { f64::NAN } else { share }]
             }
         });
         let bands: Vec<Vec<f64>> = bands.collect();
