@@ -1,10 +1,10 @@
 //! Force between two dipole magnets that pass each other, in closed form and as a piecewise polynomial.
 //!
 //! The magnets stand beside each other at x = 0, the gap g apart; one moves with the mass, perpendicular to
-//! the line that joins them there. Two point dipoles at the distance r along the unit vector n have the energy
-//! U = mu_0/(4 pi) (m_1 m_2 - 3 (n m_1) (n m_2))/r^3 with scalar products of the moments (Griffiths 1999,
-//! "Introduction to Electrodynamics", third edition, equation 6.35; Jackson 1999, "Classical Electrodynamics",
-//! third edition, equation 4.26 for electric ones). Here r^2 = x^2 + g^2, and the strength
+//! the line that joins them there. Two point dipoles at the distance r along the unit vector n have the
+//! energy U = mu_0/(4 pi) (m_1 m_2 - 3 (n m_1) (n m_2))/r^3 with scalar products of the moments (Griffiths
+//! 1999, "Introduction to Electrodynamics", third edition, equation 6.35; Jackson 1999, "Classical
+//! Electrodynamics", third edition, equation 4.26 for electric ones). Here r^2 = x^2 + g^2, and the strength
 //! K = mu_0 m_1 m_2/(4 pi) is above 0 for parallel and below 0 for antiparallel moments. The force that holds
 //! the mass is F = dU/dx:
 //!

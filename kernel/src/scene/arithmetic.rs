@@ -95,7 +95,7 @@ pub(super) fn end(text: &str, at: usize) -> Option<usize> {
         }
         end = tokens.at;
         // brackets around anything else are followed no further, since those within them are tried again
-        if is_bracket && (depth > MAX_DEPTH || end - at > MAX_LENGTH) {
+        if (is_bracket || first.is_none()) && (depth > MAX_DEPTH || end - at > MAX_LENGTH) {
             return None;
         }
     }

@@ -297,12 +297,12 @@ pub const FIELDS: &[FieldInfo] = &[
     field("stops.restitution", SHARE, REBOUND_REMEDY)
         .control("restitution", ZERO_TO_ONE, SHARE, REBOUND_HOVER).axis(4),
     field("stops.left_mm", PLACE,
-            "give how far left of x = 0 the left stop stands in mm, below 0 for one right of it, or leave it \
-             out for an open side")
+            "give how far left of x = 0 the left stop stands in mm, below 0 for one right of it, or leave \
+             it out for an open side")
         .control("left", STOP, TYPED_PLACE, LIMIT_HOVER).axis(8),
     field("stops.right_mm", PLACE,
-            "give how far right of x = 0 the right stop stands in mm, below 0 for one left of it, or leave it \
-             out for an open side")
+            "give how far right of x = 0 the right stop stands in mm, below 0 for one left of it, or leave \
+             it out for an open side")
         .control("right", STOP, TYPED_PLACE, LIMIT_HOVER).axis(9),
     field("stops.restitution_left", SHARE, REBOUND_REMEDY)
         .control("left restitution", ZERO_TO_ONE, SHARE, REBOUND_HOVER).axis(10),

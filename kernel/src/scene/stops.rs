@@ -16,8 +16,8 @@ pub enum Stops {
         /// Coefficient of restitution, 0 to 1.
         restitution: f64,
     },
-    /// Rigid stops anywhere; a side left out is open. A distance of 0 is a stop at x = 0, and one below 0 is a
-    /// stop beyond it: `left_mm: -1, right_mm: 3` are stops at 1 and at 3 mm.
+    /// Rigid stops anywhere; a side left out is open. A distance of 0 is a stop at x = 0, and one below 0 is
+    /// a stop beyond it: `left_mm: -1, right_mm: 3` are stops at 1 and at 3 mm.
     Uneven {
         /// Distance of the left stop from x = 0 to the left in mm, -1e15 to 1e15.
         #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -49,8 +49,8 @@ const GAP_STEPS: u32 = 50;
 /// Length of such a step, as a share of the threshold.
 const GAP_STEP: f64 = 0.01;
 
-/// The thresholds of the amplitude. `None` if the drive is not a sine, without a barrier between the stops, or
-/// if cancelled.
+/// The thresholds of the amplitude. `None` if the drive is not a sine, without a barrier between the stops,
+/// or if cancelled.
 pub fn thresholds(scene: &Scene, mechanism: &Arc<Mechanism>, task: &Task) -> Option<Thresholds> {
     let found = crossing(scene, mechanism, None, None, Above::Searched, task);
     let (crossing, searched_to) = found.ok().flatten()?;

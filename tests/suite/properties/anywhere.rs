@@ -85,7 +85,8 @@ fn a_mass_rests_where_it_is_said_to() {
     });
 }
 
-/// Every study of a driven scene ends with an answer or with a reason, and what it says lies between the stops.
+/// Every study of a driven scene ends with an answer or with a reason, and what it says lies between the
+/// stops.
 #[test]
 fn every_study_takes_stops_anywhere() {
     let never = AtomicBool::new(false);

@@ -398,6 +398,7 @@ fn hostile_arithmetic_is_refused_in_time() {
         format!("{}1{}", "(".repeat(count), ")".repeat(count)),
         format!("2*{}1{}", "(".repeat(count), ")".repeat(count)),
         "(".repeat(count),
+        "(-".repeat(count),
         format!("{}1", "-".repeat(count)),
         format!("1{}", "^2".repeat(count)),
         format!("1{}", "+1".repeat(count)),

@@ -69,8 +69,8 @@ fn rest(
         pressed(right, 1.0).or(inside).or_else(|| pressed(left, -1.0))
     };
     at.ok_or(
-        "the mass rests nowhere between the stops: no stable equilibrium lies between them, and the mechanism \
-         presses it onto neither; use At(x_mm: .., v_m_per_s: ..)",
+        "the mass rests nowhere between the stops: no stable equilibrium lies between them, and the \
+         mechanism presses it onto neither; use At(x_mm: .., v_m_per_s: ..)",
     )
 }
 
