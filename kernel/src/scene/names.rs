@@ -6,8 +6,8 @@ use super::unit::{Unit, unit_ending};
 const SIMILAR: f64 = 0.87;
 
 /// The name among `known` that is written as `name`: the same, or the only one that is the same without the
-/// unit at its end, as `rms_velocity` is short for `rms_velocity_m_per_s`. Otherwise a sentence that says what
-/// `kind` of name is missing, which one may have been meant, and which there are.
+/// unit at its end, as `rms_velocity` is short for `rms_velocity_m_per_s`. Otherwise a sentence that says
+/// what `kind` of name is missing, which one may have been meant, and which there are.
 ///
 /// ```
 /// # use interwell_kernel as interwell;

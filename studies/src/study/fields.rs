@@ -218,8 +218,8 @@ fn amplitude(summary: &Summary, of: fn(&Firsts) -> Option<First>) -> Option<f64>
 }
 
 impl SummaryField {
-    /// The field that a person calls `name`, in full or without its unit; otherwise a sentence that says which
-    /// may have been meant, and which there are.
+    /// The field that a person calls `name`, in full or without its unit; otherwise a sentence that says
+    /// which may have been meant, and which there are.
     pub fn named(name: &str) -> Result<&'static Self, String> {
         let known: Vec<&str> = SUMMARY_FIELDS.iter().map(|field| field.name).collect();
         let found = find_name("column", name, &known)?;

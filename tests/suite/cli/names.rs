@@ -49,7 +49,9 @@ fn a_name_with_a_slip_is_answered_with_the_one_that_is_meant() {
         let mut letters: Vec<char> = name.chars().collect();
         let at = draw.between(1.0, letters.len() as f64 - 1.0) as usize;
         match draw.between(0.0, 3.0) as usize {
-            0 => drop(letters.remove(at)),
+            0 => {
+                letters.remove(at);
+            }
             1 => letters.insert(at, letters[at]),
             _ => letters.swap(at, at + 1),
         }

@@ -15,7 +15,7 @@ fn charted(question: &BestQuestion) -> (BestDesign, Chart) {
 /// The numbers of the rows of a series.
 fn rows(data: &Table, series: &str, column: &str) -> Vec<f64> {
     let numbers = data.numbers(column).unwrap();
-    let of_series = data.words("series").into_iter().zip(numbers).filter(|row| *row.0 == series);
+    let of_series = data.words("series").iter().zip(numbers).filter(|row| *row.0 == series);
     of_series.map(|(_, number)| *number).collect()
 }
 
