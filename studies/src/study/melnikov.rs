@@ -20,8 +20,8 @@ use crate::system::threads::Pool;
 ///
 /// It is the first order in damping and drive: exact in the limit of both. Above it the border of the basin
 /// of a well is no longer smooth and motions that cross in an irregular way exist, which a chaotic motion
-/// needs (Moon and Holmes 1979) and which begins the erosion of the basin (Thompson 1989). It is no threshold of a
-/// motion from rest, whose escape may come far above it.
+/// needs (Moon and Holmes 1979) and which begins the erosion of the basin (Thompson 1989). It is no threshold
+/// of a motion from rest, whose escape may come far above it.
 ///
 /// It needs damping that is linear and above 0, a barrier without a kink, and a well whose homoclinic orbit
 /// touches neither a stop nor the end of the curve; it is missing as well where the drive is so fast that

@@ -10,7 +10,7 @@ use crate::support::{Draw, model, near_relative};
 /// The threshold in m/s^2 of m x'' + c x' - k x + a x^3 = -m A sin(w t), from
 /// 4 d cosh(pi w/2)/(3 sqrt(2) pi w) in the units of the oscillator (Guckenheimer and Holmes 1983, section
 /// 4.5).
-fn of_duffing(mass: f64, damping: f64, (linear, cubic): (f64, f64), angular: f64) -> f64 {
+fn of_duffing(mass: f64, damping: f64, linear: f64, cubic: f64, angular: f64) -> f64 {
     let rate = (linear / mass).sqrt();
     let (damping, angular) = (damping / (mass * rate), angular / rate);
     let threshold = 4.0 * damping * (0.5 * PI * angular).cosh() / (3.0 * 2_f64.sqrt() * PI * angular);
@@ -34,7 +34,7 @@ fn it_is_that_of_the_duffing_oscillator_to_eight_digits() {
         let cubic = 10_f64.powf(draw.between(-2.0, 8.0));
         let damping = 10_f64.powf(draw.between(-4.0, 0.0)) * (linear * mass).sqrt();
         let angular = draw.between(0.05, 6.0) * (linear / mass).sqrt();
-        let exact = of_duffing(mass, damping, (linear, cubic), angular);
+        let exact = of_duffing(mass, damping, linear, cubic, angular);
         let cubic_force = format!("Cubic(linear_n_per_m: {:?}, cubic_n_per_m3: {cubic:?})", -linear);
         for start in ["", "start: At(x_mm: -1e-3)"] {
             let found = melnikov_threshold(&with_force(mass, damping, &cubic_force, start), angular / TAU);
@@ -84,7 +84,7 @@ fn each_well_of_an_asymmetric_curve_has_its_own() {
         let exact = damping * (PI * angular).sinh() / (5.0 * PI * angular * angular);
         near_relative(melnikov_threshold(&left, angular / TAU).unwrap(), exact, 1e-8);
         let right = with_force(1.0, damping, force, "");
-        let exact = of_duffing(1.0, damping, (1.0, 1.0), angular);
+        let exact = of_duffing(1.0, damping, 1.0, 1.0, angular);
         near_relative(melnikov_threshold(&right, angular / TAU).unwrap(), exact, 1e-8);
     }
 }
