@@ -201,8 +201,8 @@ pub struct Common {
     #[arg(long, value_name = "FILE", allow_hyphen_values = true)]
     pub out: Option<PathBuf>,
 
-    /// Change a field of the scene, such as stops.travel_limit_mm=2, excitation.amplitude_g=0.8/g (arithmetic)
-    /// or stops=None (repeatable)
+    /// Change a field of the scene, such as stops.travel_limit_mm=2, excitation.amplitude_g=0.8/g
+    /// (arithmetic) or stops=None (repeatable)
     #[arg(long, value_name = "FIELD=VALUE", allow_hyphen_values = true)]
     pub set: Vec<String>,
 

@@ -401,7 +401,7 @@ fn basins_beside_a_circuit_are_those_of_single_runs() {
                 (summary.regime, summary.period, summary.side),
                 "{row}"
             );
-            near_relative(attractor.rms_velocity.unwrap(), summary.rms_velocity.unwrap(), 1e-4);
+            near_relative(attractor.rms_velocity.unwrap(), summary.rms_velocity.unwrap(), 5e-3);
         }
         assert!(answer.rows.iter().flatten().count() >= 25, "{:?}", answer.rows);
         rows.push(answer.rows);

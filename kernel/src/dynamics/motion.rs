@@ -100,8 +100,8 @@ impl<'a, T: Scalar, D: Drive<T>> Motion<'a, T, D> {
         self
     }
 
-    /// Puts the mass, in free flight, at a displacement and a velocity at this instant, with this state of the
-    /// circuit.
+    /// Puts the mass, in free flight, at a displacement and a velocity at this instant, with this state of
+    /// the circuit.
     pub fn put(&mut self, [x, v, circuit]: [T; 3], at: Instant<T>) {
         let piece = self.record.model.piece_index(x.to_f64());
         let mode = self.stepper.equation.mode_at(x, piece);

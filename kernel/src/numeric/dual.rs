@@ -1,8 +1,8 @@
 //! Dual numbers: a value with its derivatives with respect to a few quantities.
 //!
-//! A number x + x1 e1 + .. + xn en in which every product of two of the e is 0 (Clifford 1873). Every result comes with its
-//! derivatives, exact to rounding. The value has the same bits as in plain double arithmetic and
-//! decides every comparison.
+//! A number x + x1 e1 + .. + xn en in which every product of two of the e is 0 (Clifford 1873). Every result
+//! comes with its derivatives, exact to rounding. The value has the same bits as in plain double arithmetic
+//! and decides every comparison.
 
 use std::cmp::Ordering;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -138,8 +138,9 @@ macro_rules! scalar {
                 (sine, Self { value: c, slopes: angle.map(|slope| -s * slope) })
             }
 
-            /// The largest magnitude of the value and its derivatives, since the derivatives still change where the
-            /// value is near 0. The value alone counts if a derivative is infinite, as after a grazing impact.
+            /// The largest magnitude of the value and its derivatives, since the derivatives still change
+            /// where the value is near 0. The value alone counts if a derivative is infinite, as after a
+            /// grazing impact.
             #[inline(always)]
             fn magnitude(self) -> f64 {
                 let all =
@@ -152,8 +153,8 @@ macro_rules! scalar {
                 RULES.of(points)
             }
 
-            /// An iteration stops when the value no longer changes; the derivatives may then lag by one step. One
-            /// more step of Newton's method at the root computes them.
+            /// An iteration stops when the value no longer changes; the derivatives may then lag by one step.
+            /// One more step of Newton's method at the root computes them.
             #[inline(always)]
             fn at_root(root: Self, value_and_slope: impl FnOnce(Self) -> (Self, Self)) -> Self {
                 let (value, slope) = value_and_slope(Self::of(root.value));

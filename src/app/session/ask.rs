@@ -15,7 +15,8 @@ use super::accuracy::LiveRun;
 /// Number of thresholds that are kept.
 const KEPT: usize = 64;
 
-/// Thresholds found so far, oldest first: a scene that comes back, by an undo or in a lesson, has its own at once.
+/// Thresholds found so far, oldest first: a scene that comes back, by an undo or in a lesson, has its own at
+/// once.
 static FOUND: Mutex<Vec<(Scene, Arc<Mechanism>, Thresholds)>> = Mutex::new(Vec::new());
 
 fn found() -> MutexGuard<'static, Vec<(Scene, Arc<Mechanism>, Thresholds)>> {

@@ -7,13 +7,13 @@ use clap::Args;
 use interwell::mechanics::{BuildError, Mechanism};
 use interwell::output::{Cut, View, can_show, plan};
 use interwell::questions::{Error, Uncertain, assign_uncertain, column_names, uncertain_draws};
-use interwell::scene::{Document, find_name, read_number};
+use interwell::scene::{Document, find_name, is_manifest, read_number};
 use interwell::study::{Carry, Grid, MAX_DRAWS, Shard, Slice, SummaryField, Sweep, SweepOptions};
 use serde_json::{Value, json};
 
 use super::super::shard::{placed, shard};
 use super::super::support::{check, read, until_settled_on_grid, warn};
-use super::super::{ChartOptions, Common, Failure, Picture, interrupt, refuse, whole};
+use super::super::{ChartOptions, Common, Failure, Picture, interrupt, whole};
 
 #[derive(Debug, Args)]
 pub struct Arguments {
@@ -125,16 +125,16 @@ impl<'a> Prepared<'a> {
         let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
         // a name that is none is reported by `can_show`, with those that there are
         let quantity = SummaryField::named(&options.quantity).map_or(&*options.quantity, |field| field.name);
+        if options.check && !is_manifest(options.scene.as_ref()) {
+            return Err(no_sweep(options));
+        }
         let mut document = read(&options.scene, common)?;
         let swept = document.swept.clone().unwrap_or_default();
         let uncertain = uncertain(options, swept.uncertain);
         assign_uncertain(&uncertain, &mut document)?;
         let warnings = check(&mut document, Some(&options.over))?;
         if options.check && document.swept.is_none() {
-            refuse!(
-                "--check {}: give the manifest of a sweep, such as map.csv.json, as the scene",
-                options.scene
-            );
+            return Err(no_sweep(options));
         }
         // Rows, plan and manifest then refer to the same bytes, even if the files change during the sweep.
         document.cache_files();
@@ -182,6 +182,12 @@ impl<'a> Prepared<'a> {
             view,
         })
     }
+}
+
+/// The error of `--check` without the manifest of a sweep.
+fn no_sweep(options: &Arguments) -> Failure {
+    let problem = "give the manifest of a sweep, such as map.csv.json, as the scene";
+    Failure::argument(format!("--check {}: {problem}", options.scene))
 }
 
 /// The uncertain inputs of the arguments; those of a manifest where they name none.

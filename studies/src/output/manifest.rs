@@ -71,7 +71,8 @@ impl Manifest<'_> {
     /// files; the document is the first of them.
     pub fn of_scenes(&self, scenes: &[(String, Document)]) -> String {
         let scenes = scenes.iter().map(|(name, document)| {
-            json!({ "name": name, "scene_ron": text(document, &document.scene), "files": document.files.cached })
+            let scene = text(document, &document.scene);
+            json!({ "name": name, "scene_ron": scene, "files": document.files.cached })
         });
         let more = json!({ "scenes": scenes.collect::<Vec<_>>() });
         self.written(self.document.map(|document| &document.scene), more)
@@ -173,7 +174,8 @@ impl Manifest<'_> {
     }
 }
 
-/// The text of a scene, this document's or one made from it; `None` if it cannot be written, rather than that of an empty scene.
+/// The text of a scene, this document's or one made from it; `None` if it cannot be written, rather than that
+/// of an empty scene.
 fn text(document: &Document, scene: &Scene) -> Option<String> {
     document.write(scene).ok()
 }

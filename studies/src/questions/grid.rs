@@ -132,16 +132,16 @@ impl Section {
 /// Lyapunov exponents of the settled motion: the rates in 1/s at which small perturbations grow or decay.
 ///
 /// Columns: the fields, `exponent_1_per_s`, `exponent_1_se`, `exponent_2_per_s`, `exponent_2_se` (standard
-/// errors), `sum_per_s`, `exact_sum_per_s` (from damping, circuit and impacts alone) and `dimension` (Kaplan and
-/// Yorke 1979); where there may be a circuit also `exponent_3_per_s`, `exponent_3_se`. The exponents are minus
-/// infinity where the mass rests on a stop, but for one of a circuit.
+/// errors), `sum_per_s`, `exact_sum_per_s` (from damping, circuit and impacts alone) and `dimension` (Kaplan
+/// and Yorke 1979); where there may be a circuit also `exponent_3_per_s`, `exponent_3_se`. The exponents are
+/// minus infinity where the mass rests on a stop, but for one of a circuit.
 ///
 /// Method: of a motion that repeats, ln|multiplier| over its period; otherwise averages over
 /// `options.periods`, 1 to 1e7 (Benettin et al. 1980), through impacts by saltation (Müller 1995), with
 /// standard errors by batch means (Flegal and Jones 2010). More periods cost more and reduce these errors.
 ///
-/// Errors: [`Error::Scene`] or [`Error::Cells`] if the drive changes and does not repeat; [`Error::Failed`] if the motion ends early or touches a stop
-/// without speed (in a grid the values of that cell are missing).
+/// Errors: [`Error::Scene`] or [`Error::Cells`] if the drive changes and does not repeat; [`Error::Failed`]
+/// if the motion ends early or touches a stop without speed (in a grid the values of that cell are missing).
 ///
 /// ```
 /// use interwell_studies::questions::{Exponents, Progress, Simulation};

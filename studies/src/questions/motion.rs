@@ -52,8 +52,8 @@ impl Curve {
 ///
 /// Method: a motion that repeats after n forcing periods is a fixed point of the stroboscopic map, found by
 /// Newton's method. The derivative of the map is carried through impacts and releases by saltation matrices
-/// (Müller 1995; Kong et al. 2024); its eigenvalues are the multipliers, which are 0 where the mass rests on a
-/// stop, but for one of a circuit. It takes the run of the scene and some further periods.
+/// (Müller 1995; Kong et al. 2024); its eigenvalues are the multipliers, which are 0 where the mass rests on
+/// a stop, but for one of a circuit. It takes the run of the scene and some further periods.
 ///
 /// Errors: [`Error::Argument`] for `period` or `phase_deg`; [`Error::Unfit`] if the drive does not repeat or
 /// is 0; [`Error::Failed`] if the run comes to no motion that

@@ -28,8 +28,8 @@ use crate::study::{
 /// Energies, `mean_x_m` and `impact_share` are slower, since they need the energy ledger.
 ///
 /// Errors: [`Error::Cells`] for the first cell that is not a valid scene or, with `carry`, whose drive does
-/// not repeat; [`Error::Argument`] for uncertain inputs that the scene does not have or that lie mostly out of their
-/// range, and for them with `carry`.
+/// not repeat; [`Error::Argument`] for uncertain inputs that the scene does not have or that lie mostly out
+/// of their range, and for them with `carry`.
 ///
 /// ```
 /// use interwell_studies::questions::{Progress, Simulation, Sweep};

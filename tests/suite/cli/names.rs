@@ -127,7 +127,9 @@ fn questions_take_short_names() {
         Sweep { over, columns, ..Sweep::default() }.run(&simulation, &Progress::none())
     };
     let full = columns(&["rms_velocity_m_per_s", "voltage_rms_v"]).unwrap();
-    assert_eq!(columns(&["rms_velocity", "voltage_rms"]).unwrap(), full);
+    let short = columns(&["rms_velocity", "voltage_rms"]).unwrap();
+    // without a transducer a voltage is NaN, which equals nothing
+    assert_eq!(format!("{short:?}"), format!("{full:?}"));
     let best = Best { maximise: "crosings".to_owned(), ..Best::over("mass_g", 10.0, 12.0) };
     let problem = best.run(&simulation, &Progress::none()).unwrap_err().to_string();
     assert!(problem.contains("did you mean `crossings`?"), "{problem}");

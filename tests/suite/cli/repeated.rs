@@ -58,6 +58,10 @@ fn calls(command: &str) -> Vec<&'static str> {
             vec!["SCENE --phase-deg 30", "SCENE --branch excitation.amplitude_g=0.005:0.0052 --plot p.svg"]
         }
         "exponents" => vec!["SCENE --periods 20", "SCENE --over mass_g=900,1000 --until-settled 60"],
+        "escape" => vec![
+            "SCENE --set excitation=Noise(rms_g:0.5,low_hz:0.1,high_hz:2,seed:3,lines:8) --runs 3 --within 5 \
+             --until crossing --over mass_g=900,1000 --plot p.svg",
+        ],
         "identify" => {
             vec!["r.csv --of damping --column x --unit mm --from 0.1 --plot p.svg --summary s.json"]
         }

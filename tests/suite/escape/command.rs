@@ -29,7 +29,7 @@ fn cells_have_the_same_bytes_for_any_threads_and_are_those_of_their_scene() {
     // no run escapes: a rate of 0 with an upper end, and no mean time but its lower end
     let quiet: Vec<&str> = lines[1].split(',').collect();
     let high = 40_f64.ln() / 48.0;
-    assert_eq!(quiet[..8], ["0.001", "15.2", "12", "0", "0", "48", "0", "0"]);
+    assert_eq!(quiet[..8], ["1e-3", "15.2", "12", "0", "0", "48", "0", "0"]);
     assert!((quiet[8].parse::<f64>().unwrap() / high - 1.0).abs() < 1e-6);
     assert_eq!((quiet[9], quiet[11], quiet[12]), ("", "", ""));
     assert!((quiet[10].parse::<f64>().unwrap() * high - 1.0).abs() < 1e-6);
@@ -44,7 +44,7 @@ fn cells_have_the_same_bytes_for_any_threads_and_are_those_of_their_scene() {
 
 #[test]
 fn a_run_is_the_simulation_with_its_seed() {
-    let (runs, within) = (6, 4.0);
+    let (runs, within) = (6, 0.13);
     let line = format!("--within {within} --quiet --until crossing");
     let text = stdout(&format!("escape {} --runs {runs} {line}", scene(1.0)));
     let (mut observed, mut escaped) = (0.0, 0);

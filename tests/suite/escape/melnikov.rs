@@ -36,7 +36,7 @@ fn it_is_that_of_the_duffing_oscillator_to_eight_digits() {
         let angular = draw.between(0.05, 6.0) * (linear / mass).sqrt();
         let exact = of_duffing(mass, damping, linear, cubic, angular);
         let cubic_force = format!("Cubic(linear_n_per_m: {:?}, cubic_n_per_m3: {cubic:?})", -linear);
-        for start in ["", "start: At(x_mm: -1e-3)"] {
+        for start in ["", "start: At(x_mm: -1e-3, v_m_per_s: 0)"] {
             let found = melnikov_threshold(&with_force(mass, damping, &cubic_force, start), angular / TAU);
             near_relative(found.unwrap(), exact, 1e-8);
         }
@@ -80,7 +80,7 @@ fn each_well_of_an_asymmetric_curve_has_its_own() {
     let mut draw = Draw(2);
     for _ in 0..20 {
         let (damping, angular) = (draw.between(0.01, 0.3), draw.between(0.2, 3.0));
-        let left = with_force(1.0, damping, force, "start: At(x_mm: 0)");
+        let left = with_force(1.0, damping, force, "start: At(x_mm: 0, v_m_per_s: 0)");
         let exact = damping * (PI * angular).sinh() / (5.0 * PI * angular * angular);
         near_relative(melnikov_threshold(&left, angular / TAU).unwrap(), exact, 1e-8);
         let right = with_force(1.0, damping, force, "");

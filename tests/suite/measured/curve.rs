@@ -75,10 +75,7 @@ fn the_command_compares_and_says_what_is_wrong() {
         command
     };
     refused(headless("curve --position x"), &["--position", "--measured"]);
-    refused(
-        line("curve --out /dev/null --position Position --measured"),
-        &["pull.csv", "no column Position"],
-    );
+    refused(line("curve --out /dev/null --position Place --measured"), &["pull.csv", "no column Place"]);
     let meters = "curve paper-table --out /dev/null --position-unit m --unit N --measured";
     refused(line(meters), &["pull.csv", "1 of 121 positions", "unit"]);
     refused(line("curve --out /dev/null --unit g --measured"), &["--unit", "`g`", "force", "mN"]);

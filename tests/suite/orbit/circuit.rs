@@ -1,4 +1,5 @@
-//! Periodic motions beside a circuit: three multipliers and exponents, and events of branches, in closed form.
+//! Periodic motions beside a circuit: three multipliers and exponents, and events of branches, in closed
+//! form.
 
 use std::f64::consts::TAU;
 use std::sync::atomic::AtomicBool;
@@ -130,7 +131,8 @@ fn the_multipliers_of_a_linear_oscillator_are_exponentials_of_its_eigenvalues() 
     }
 }
 
-/// With impacts the product of the multipliers is exp(-(c/m + decay) T) times the squared restitution of each.
+/// With impacts the product of the multipliers is exp(-(c/m + decay) T) times the squared restitution of
+/// each.
 #[test]
 fn the_product_of_three_multipliers_is_known_with_impacts_too() {
     let mut random = Noise::new(42);

@@ -56,8 +56,8 @@ impl Jacobian {
         &self.rows
     }
 
-    /// The derivatives of displacement and velocity with respect to displacement and velocity: the unit of the
-    /// second column is s, that of the second row 1/s.
+    /// The derivatives of displacement and velocity with respect to displacement and velocity: the unit of
+    /// the second column is s, that of the second row 1/s.
     pub fn of_motion(&self) -> [[f64; 2]; 2] {
         let [[a, b, _], [c, d, _], _] = self.rows;
         [[a, b], [c, d]]
@@ -94,8 +94,8 @@ impl Jacobian {
         }
     }
 
-    /// The largest of the products of which the determinant is the sum, without their signs; for two rows, the
-    /// sum of both.
+    /// The largest of the products of which the determinant is the sum, without their signs; for two rows,
+    /// the sum of both.
     pub fn products(&self) -> f64 {
         let [[a, b, p], [c, d, q], [r, s, t]] = self.rows.map(|row| row.map(f64::abs));
         let of_motion = a * d + b * c;
@@ -110,8 +110,8 @@ impl Jacobian {
         self.rows[0][0] + self.rows[1][1] + self.rows[2][2]
     }
 
-    /// The value at `unit`, which is 1 or -1, of the characteristic polynomial, up to its sign: 0 where that is
-    /// an eigenvalue.
+    /// The value at `unit`, which is 1 or -1, of the characteristic polynomial, up to its sign: 0 where that
+    /// is an eigenvalue.
     pub fn characteristic(&self, unit: f64, determinant: f64) -> f64 {
         if !self.has_circuit {
             return 1.0 - unit * self.trace() + determinant;

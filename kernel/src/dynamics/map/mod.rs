@@ -3,9 +3,9 @@
 //! The stepper is written for any number type. With [`Dual`] numbers it also computes the derivatives of the
 //! end of a motion with respect to its beginning. Those of a step follow from the arithmetic of its series.
 //! The instant of an event is a root, and one step of Newton's method at the root gives its derivatives; at
-//! an impact this amounts to the saltation matrix (Müller 1995; Kong et al. 2024). After a rest on a stop all
-//! derivatives are 0, since the release depends on the drive alone; beside a circuit it depends on its state
-//! too, which then is all that the later motion remembers.
+//! an impact this amounts to the saltation matrix (Müller 1995; Kong et al. 2024). After a rest on a stop
+//! all derivatives are 0, since the release depends on the drive alone; beside a circuit it depends on its
+//! state too, which then is all that the later motion remembers.
 
 #[cfg(test)]
 mod differences;
@@ -40,8 +40,8 @@ impl From<&Passage> for MapState {
     }
 }
 
-/// Equation, clock and drive in numbers with derivatives: with respect to displacement and velocity, or to the
-/// state of the circuit as well, which only scenes with one need.
+/// Equation, clock and drive in numbers with derivatives: with respect to displacement and velocity, or to
+/// the state of the circuit as well, which only scenes with one need.
 #[derive(Debug)]
 enum DualKernel {
     Motion(Kernel<Dual<2>>),
@@ -180,8 +180,8 @@ impl StroboscopicMap {
         [1.0, unit, self.model.circuit().map_or(0.0, |circuit| unit / circuit.amount)]
     }
 
-    /// Scales of displacement, velocity and the state of the circuit in kernel units. Derivatives are by these,
-    /// so that they affect the length of a step as the state does.
+    /// Scales of displacement, velocity and the state of the circuit in kernel units. Derivatives are by
+    /// these, so that they affect the length of a step as the state does.
     fn kernel_scales(&self) -> [f64; 3] {
         let speed = self.model.scales.speed * self.model.scales.unit();
         [self.model.scales.length, speed, speed]

@@ -75,8 +75,8 @@ impl Model {
         self.damping + self.transducer.map_or(0.0, |transducer| transducer.damping)
     }
 
-    /// Logarithm of the factor by which damping and the circuit contract volumes of states in `time` s without
-    /// impacts; it is negative.
+    /// Logarithm of the factor by which damping and the circuit contract volumes of states in `time` s
+    /// without impacts; it is negative.
     pub fn contraction(&self, time: f64) -> f64 {
         let by_circuit = self.circuit().map_or(0.0, |circuit| circuit.decay * time);
         -(self.total_damping() * time / self.mass + by_circuit)
@@ -198,9 +198,9 @@ impl Model {
     }
 
     /// The same model, continuing from a state of a run of `before`, as in
-    /// [`Run::carried`](crate::dynamics::Run::carried). A stop of this model that lies on the other side of the
-    /// mass carries it along and takes its speed, as does the end of the known curve. A current continues as a
-    /// current and a voltage as a voltage.
+    /// [`Run::carried`](crate::dynamics::Run::carried). A stop of this model that lies on the other side of
+    /// the mass carries it along and takes its speed, as does the end of the known curve. A current continues
+    /// as a current and a voltage as a voltage.
     #[must_use]
     pub fn carried_on(mut self, before: &Self, state: impl Into<MapState>) -> Self {
         let MapState { x, v, electrical } = state.into();

@@ -25,7 +25,8 @@ pub(crate) fn start_state(
             Ok((x, 0.0))
         }
         Start::At { x_mm, v_m_per_s, .. } => {
-            let x = x_mm / 1e3;
+            // the sum with 0 makes a 0 of -0
+            let (x, v_m_per_s) = (x_mm / 1e3 + 0.0, v_m_per_s + 0.0);
             if let Some(stop) = right.filter(|s| x > s.x).or(left.filter(|s| x < s.x)) {
                 let problem = format!("lies beyond the stop at {} mm; start between the stops", stop.x * 1e3);
                 return Err(fault("start.x_mm", x_mm, problem));

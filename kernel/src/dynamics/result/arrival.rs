@@ -3,17 +3,17 @@
 use super::event::{MapState, Side};
 use super::summary::Summary;
 
-/// An ellipse, beside a circuit an ellipsoid, around a stroboscopic state of a known motion. Motions inside it
-/// are known to go to that motion.
+/// An ellipse, beside a circuit an ellipsoid, around a stroboscopic state of a known motion. Motions inside
+/// it are known to go to that motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Capture {
     /// The state of the known motion.
     pub state: MapState,
-    /// The coefficients of the ellipse a x^2 + 2 b x v + c v^2 + 2 w (d x + e v) + f w^2 < 1, with displacement
-    /// x, velocity v and state of the circuit w relative to the state, all in SI.
+    /// The coefficients of the ellipse a x^2 + 2 b x v + c v^2 + 2 w (d x + e v) + f w^2 < 1, with
+    /// displacement x, velocity v and state of the circuit w relative to the state, all in SI.
     pub form: [f64; 6],
-    /// Largest difference from the state at which a motion has arrived. A motion inside the ellipse but further
-    /// away is followed until it is this near.
+    /// Largest difference from the state at which a motion has arrived. A motion inside the ellipse but
+    /// further away is followed until it is this near.
     pub near: MapState,
 }
 

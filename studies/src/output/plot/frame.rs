@@ -1,7 +1,5 @@
 //! Frame with two axes, and the layers that it shows.
 
-use std::collections::HashSet;
-
 use super::axis::PlotAxis;
 use super::cells::{Cell, Cells, Colours};
 use super::chart::{Layer, Marks, Side};
@@ -10,6 +8,7 @@ use super::font;
 use super::mark::{REGIMES, dot, mark, marker};
 use super::role::{Look, Role};
 use super::style::{self, Theme};
+use super::thinned::{extremes, once, thinned};
 
 /// Half the size of the points of a cloud of few points, and of one of many.
 const CLOUD: (f64, f64) = (6.0, 2.2);
@@ -455,56 +454,5 @@ impl Frame {
                 dot(figure, theme.look(of).marker, at, style::MARKER, theme.paper);
             }
         }
-    }
-}
-
-/// Keeps one of the points in the same half pixel.
-fn once(places: &mut Vec<Point>) {
-    let mut taken = HashSet::new();
-    places.retain(|at| taken.insert(((2.0 * at.0) as i64, (2.0 * at.1) as i64)));
-}
-
-/// The first, smallest, largest and last point of a column, in their order.
-fn extremes(column: &[Point]) -> Vec<Point> {
-    let by = |better: fn(f64, f64) -> bool| {
-        (1..column.len()).fold(0, |best, i| if better(column[i].1, column[best].1) { i } else { best })
-    };
-    let mut kept = vec![0, by(|a, b| a < b), by(|a, b| a > b), column.len() - 1];
-    kept.sort_unstable();
-    kept.dedup();
-    kept.into_iter().map(|i| column[i]).collect()
-}
-
-/// The marks of a line at a distance of at least `apart` from the one before, or `close` if the word changes.
-fn thinned<'a>(marks: &[(Point, &'a str)], apart: f64, close: f64) -> Vec<(Point, &'a str)> {
-    let mut kept: Vec<(Point, &str)> = Vec::new();
-    for (at, word) in marks {
-        let stands = kept.last().is_none_or(|(last, other)| {
-            (at.0 - last.0).hypot(at.1 - last.1) >= if other == word { apart } else { close.min(apart) }
-        });
-        if stands {
-            kept.push((*at, word));
-        }
-    }
-    kept
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn markers_on_a_line_stand_apart_and_a_change_is_seen() {
-        let marks: Vec<(Point, &str)> = (0..100)
-            .map(|i| ((f64::from(i) * 4.0, 0.0), if i < 50 { "rest" } else { "interwell" }))
-            .collect();
-        let kept = thinned(&marks, 40.0, 10.0);
-        assert!(kept.windows(2).all(|pair| {
-            let step = pair[1].0.0 - pair[0].0.0;
-            step >= 40.0 || (pair[0].1 != pair[1].1 && step >= 10.0)
-        }));
-        let first = kept.iter().find(|mark| mark.1 == "interwell").unwrap();
-        assert!(first.0.0 <= 200.0 + 10.0, "{first:?}");
-        assert_eq!(thinned(&marks, 0.0, 10.0), marks);
     }
 }

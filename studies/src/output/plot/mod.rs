@@ -45,6 +45,7 @@ mod surface;
 mod svg;
 mod sweep;
 mod swept;
+mod thinned;
 mod threshold;
 
 use std::path::Path;

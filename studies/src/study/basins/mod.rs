@@ -48,8 +48,8 @@ pub enum NoBasins {
     NoPeriod,
     /// It loses no energy.
     #[error(
-        "it has no damping, no transducer and no stop that takes energy, so that no motion attracts others; set damping, \
-         such as damping=Ratio(0.02)"
+        "it has no damping, no transducer and no stop that takes energy, so that no motion attracts others; \
+         set damping, such as damping=Ratio(0.02)"
     )]
     NoLoss,
     /// No start lies between the limits of displacement.
@@ -86,9 +86,9 @@ impl Basins {
     /// Number of forcing periods after which a motion that has reached no known attractor is classified.
     pub const PATIENCE: u64 = PATIENCE;
 
-    /// The map of a scene over these starts, before any run; of the start of the scene only the state of a circuit
-    /// is taken. States are
-    /// taken once per forcing period or, without a drive, once per period of small oscillations.
+    /// The map of a scene over these starts, before any run; of the start of the scene only the state of a
+    /// circuit is taken. States are taken once per forcing period or, without a drive, once per period of
+    /// small oscillations.
     pub fn new(scene: &Scene, mechanism: Arc<Mechanism>, starts: Starts) -> Result<Self, NoBasins> {
         if !loses_energy(scene) {
             return Err(NoBasins::NoLoss);

@@ -1,6 +1,6 @@
 //! Stable periodic orbits of the stroboscopic map, with ellipses around their states from which all motions
-//! go to the orbit. Beside a circuit points have its state as a third coordinate, and the ellipses are ellipsoids;
-//! without one that coordinate is 0.
+//! go to the orbit. Beside a circuit points have its state as a third coordinate, and the ellipses are
+//! ellipsoids; without one that coordinate is 0.
 //!
 //! A motion whose states repeat proposes an orbit. Newton's method on the map over `period` forcing periods
 //! finds the orbit nearby, and the Lyapunov equation M = J^T M J + I gives a norm in which the linearised map

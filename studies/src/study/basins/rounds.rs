@@ -61,7 +61,8 @@ impl Item {
         whole.since(self.after.map_or(Way::default(), |(_, before)| before))
     }
 
-    /// The pursuit of the motion, which begins with this state of the circuit, with at most `max_work` units of work.
+    /// The pursuit of the motion, which begins with this state of the circuit, with at most `max_work` units
+    /// of work.
     pub fn pursuit<'a>(
         &self,
         starts: &Starts,

@@ -4,14 +4,14 @@
 //! finds. Otherwise they are averages over forcing periods (Benettin et al. 1980): a perturbation is mapped
 //! by the derivatives of the stroboscopic map, which include those of impacts (Müller 1995), and is
 //! normalised once per period, and a second one is kept normal to it. The map of the phase plane has two
-//! exponents, beside a circuit three; that of the driven system along the trajectory, which is 0, is not among
-//! them.
+//! exponents, beside a circuit three; that of the driven system along the trajectory, which is 0, is not
+//! among them.
 //!
-//! Their sum has an exact value, since only damping, circuit and impacts contract volumes: -c/m - d, d the rate
-//! at which the circuit decays, + 2 ln(restitution) times the rate of impacts, summed over the stops. The last
-//! exponent is computed as this sum minus the others, so that it is accurate even if it is much smaller. A rest
-//! on a stop removes every perturbation but those of a circuit; all exponents, or all but one, are then minus
-//! infinity.
+//! Their sum has an exact value, since only damping, circuit and impacts contract volumes: -c/m - d, d the
+//! rate at which the circuit decays, + 2 ln(restitution) times the rate of impacts, summed over the stops.
+//! The last exponent is computed as this sum minus the others, so that it is accurate even if it is much
+//! smaller. A rest on a stop removes every perturbation but those of a circuit; all exponents, or all but
+//! one, are then minus infinity.
 
 mod average;
 mod orbit;
@@ -247,8 +247,8 @@ impl Exponents {
     }
 
     /// Kaplan-Yorke dimension of the stroboscopic section (Kaplan and Yorke 1979): the largest number of
-    /// exponents whose sum is not below 0, and the share of the next one that makes it 0. The dimension of the
-    /// trajectory in continuous time is larger by 1. NaN if it depends on an exponent that is not known.
+    /// exponents whose sum is not below 0, and the share of the next one that makes it 0. The dimension of
+    /// the trajectory in continuous time is larger by 1. NaN if it depends on an exponent that is not known.
     pub fn dimension(&self) -> f64 {
         let (mut sum, mut whole) = (0.0, 0.0);
         for Estimate { per_s, .. } in [Some(self.first), Some(self.second), self.third].into_iter().flatten()

@@ -2,11 +2,12 @@
 //!
 //! An orbit that turns back at the time t, at a gap g before a stop at s, leaves the state (s - g, 0) and
 //! returns to it one period later. An orbit that strikes the stop at a speed u leaves (s, -e u) and returns
-//! to (s, u). A circuit is then in a state w, to which it returns. If the stop is ignored near t, both flights
-//! are smooth functions of t, of g or u, of w and of the field, and for g = 0 or u = 0 they are the same orbit, which grazes the stop. So Newton's method finds it
-//! from either side, and the two parts of the branch that meet there can be started from it, although the
-//! stroboscopic map changes like the square root of the distance from it (Nordmark 1991). For a symmetric
-//! orbit half a period is computed, so that it grazes both stops at once.
+//! to (s, u). A circuit is then in a state w, to which it returns. If the stop is ignored near t, both
+//! flights are smooth functions of t, of g or u, of w and of the field, and for g = 0 or u = 0 they are the
+//! same orbit, which grazes the stop. So Newton's method finds it from either side, and the two parts of the
+//! branch that meet there can be started from it, although the stroboscopic map changes like the square root
+//! of the distance from it (Nordmark 1991). For a symmetric orbit half a period is computed, so that it
+//! grazes both stops at once.
 
 use std::ops::Range;
 

@@ -1,9 +1,10 @@
 //! Periodic orbits, by Newton's method on the stroboscopic map, and their branches over a field.
 //!
 //! A periodic orbit of n forcing periods is a fixed point of the map from a state to the state n periods
-//! later ([`StroboscopicMap`]). Its Floquet multipliers are the eigenvalues of the derivative of that map, two
-//! or, beside a circuit, three; it is stable if all are inside the unit circle. After a rest on a stop the
-//! motion no longer depends on the state before it, so that all are 0 but one beside a circuit, which remembers.
+//! later ([`StroboscopicMap`]). Its Floquet multipliers are the eigenvalues of the derivative of that map,
+//! two or, beside a circuit, three; it is stable if all are inside the unit circle. After a rest on a stop
+//! the motion no longer depends on the state before it, so that all are 0 but one beside a circuit, which
+//! remembers.
 //!
 //! [`orbit`] finds the orbit near the settled motion of a run, [`orbit_near`] the one near a state;
 //! [`branch()`] follows it over a field.
