@@ -49,7 +49,8 @@ fn a_run_until_its_crossing_is_the_beginning_of_the_whole_run() {
             for events in [true, false] {
                 let request = Request { events, until_crossing: true, ..Request::default() };
                 let alone = model.run(&request);
-                let together = interwell::dynamics::Model::run_together(&[model.clone()], &request);
+                let together =
+                    interwell::dynamics::Model::run_together(std::slice::from_ref(&model), &request);
                 for run in [&alone, &together[0]] {
                     let Some(first) = first else {
                         assert_eq!(run.summary.total_crossings, 0, "{name}");

@@ -133,7 +133,7 @@ fn a_bouncing_ball_doubles_its_period_where_the_formula_says() {
         assert_eq!(flips.len(), 1);
         near_relative(flips[0], ball.flip(), 1e-8);
         for (value, orbit) in found.values.iter().zip(&found.orbits) {
-            let [first, second] = two(&orbit);
+            let [first, second] = two(orbit);
             near(first.re + second.re, ball.sum(*value), 1e-7);
             near(orbit.determinant(), ball.e * ball.e, 1e-15);
             assert_eq!(orbit.passage.impacts, 1);

@@ -346,7 +346,7 @@ fn number(argument: &str, value: &str, name: &str) -> Result<&'static SummaryFie
     let known: Vec<&str> = SUMMARY_FIELDS.iter().filter(is_number).map(|field| field.name).collect();
     let named = if name == POWER_ALIAS.0 { POWER_ALIAS.1 } else { name };
     let found = find_name("number", named, &known);
-    found.and_then(|column| SummaryField::named(column)).map_err(|problem| {
+    found.and_then(SummaryField::named).map_err(|problem| {
         let which = if value == name { String::new() } else { format!("{name}: ") };
         Error::argument(argument, value, format!("{which}{problem}"))
     })

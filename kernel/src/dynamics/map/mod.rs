@@ -44,18 +44,19 @@ impl From<&Passage> for MapState {
 /// the state of the circuit as well, which only scenes with one need.
 #[derive(Debug)]
 enum DualKernel {
-    Motion(Kernel<Dual<2>>),
-    WithCircuit { equation: Equation<Dual<3>>, clock: Clock<Dual<3>>, drive: General<Dual<3>> },
+    Motion(Box<Kernel<Dual<2>>>),
+    WithCircuit(Box<(Equation<Dual<3>>, Clock<Dual<3>>, General<Dual<3>>)>),
 }
 
 impl DualKernel {
     fn new(model: &Model) -> Self {
         if !model.has_electrical_state() {
-            return Self::Motion(Kernel::new(model));
+            return Self::Motion(Box::new(Kernel::new(model)));
         }
         let unit = model.scales.unit();
         let clock = clock(model, unit);
-        Self::WithCircuit { equation: Equation::new(model, unit), drive: general(model, &clock), clock }
+        let drive = general(model, &clock);
+        Self::WithCircuit(Box::new((Equation::new(model, unit), clock, drive)))
     }
 }
 
@@ -155,7 +156,8 @@ impl StroboscopicMap {
         let MapState { x, v, electrical } = state.into();
         let model = &self.model;
         match &self.dual {
-            DualKernel::Motion(Kernel { equation, clock, drive }) => {
+            DualKernel::Motion(kernel) => {
+                let Kernel { equation, clock, drive } = &**kernel;
                 let [x, v] = self.variables([x, v]);
                 let (start, span) = ([x, v, Dual::of(0.0)], self.span(clock, span));
                 let traced = with_drive!(drive, drive => {
@@ -165,7 +167,8 @@ impl StroboscopicMap {
                 let [by_x, by_v] = self.slopes([x, v], traced.passage.rested);
                 (traced.passage, Jacobian::mechanical([by_x, by_v]))
             }
-            DualKernel::WithCircuit { equation, clock, drive } => {
+            DualKernel::WithCircuit(kernel) => {
+                let (equation, clock, drive) = &**kernel;
                 let (start, span) = (self.variables([x, v, electrical]), self.span(clock, span));
                 let Traced { passage, end } = passage::trace(model, equation, *clock, drive, start, span);
                 let rows = self.slopes(end, false);
