@@ -42,8 +42,8 @@ pub(super) fn average(
     let part = std::f64::consts::FRAC_1_SQRT_2;
     let mut changes = [[part, part, 0.0], [0.0, 0.0, 1.0]];
     let mut all = vec![Batches::new(periods); if has_circuit { 3 } else { 2 }];
-    let mut measured = CompensatedSum::<f64>::new();
-    let mut exact = Some(CompensatedSum::<f64>::new());
+    let mut measured = LogSum::new();
+    let mut exact = Some(LogSum::new());
     for number in 0..ALIGNMENT + periods {
         if cancel.load(atomic::Ordering::Relaxed) {
             return Err(NoExponents::Cancelled);
@@ -93,6 +93,30 @@ pub(super) fn average(
         period: None,
         span: (periods, time),
     })
+}
+
+/// A sum of logarithms of factors, of which 0 makes the product 0.
+#[derive(Clone, Copy)]
+struct LogSum {
+    sum: CompensatedSum<f64>,
+    has_zero: bool,
+}
+
+impl LogSum {
+    fn new() -> Self {
+        Self { sum: CompensatedSum::new(), has_zero: false }
+    }
+
+    fn add(&mut self, logarithm: f64) {
+        match logarithm == f64::NEG_INFINITY {
+            true => self.has_zero = true,
+            false => self.sum.add(logarithm),
+        }
+    }
+
+    fn value(&self) -> f64 {
+        if self.has_zero { f64::NEG_INFINITY } else { self.sum.value() }
+    }
 }
 
 /// Maps a perturbation of length 1 by a derivative, removes its part along `other`, which is of length 1 too,
