@@ -186,7 +186,7 @@ fn circuits_in_free_flight_and_at_impacts() {
 #[test]
 fn a_circuit_remembers_over_a_rest() {
     let stops = "stops: Rigid(travel_limit_mm: 500, restitution: 0.3)";
-    let strong = "excitation: Sine(frequency_hz: 0.2, amplitude_g: 0.08)";
+    let strong = "excitation: Sine(frequency_hz: 0.2, amplitude_g: 0.05)";
     for circuit in CIRCUITS {
         let fields = format!("{WELL}, {strong}, {DAMPED}, {circuit}, {stops}");
         let mut remembered = 0;
