@@ -21,6 +21,13 @@ def _shown(value: object) -> str:
     return " ".join(reprlib.repr(value).split())
 
 
+def _without(problem: str, **arguments: tuple[object, object]) -> None:
+    """Refuse the first argument whose value is not its default, given as ``(value, default)``."""
+    for name, (value, default) in arguments.items():
+        if value is not default and value != default:
+            raise _wrong(name, _shown(value), problem)
+
+
 def _numbers(name: str, values: npt.ArrayLike) -> npt.NDArray[Any]:
     """Return the values as an array of one axis."""
     try:

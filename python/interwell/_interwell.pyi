@@ -132,6 +132,18 @@ class Simulation:
         of: str,
         resolution: float | None = None,
         until_settled: float | None = None,
+        melnikov: bool = False,
+        threads: int | None = None,
+        progress: _Told = None,
+    ) -> Answer: ...
+    def probable_threshold(
+        self,
+        over: _Over,
+        field: str,
+        probability: float,
+        runs: int | None = None,
+        within: float | None = None,
+        resolution: float | None = None,
         threads: int | None = None,
         progress: _Told = None,
     ) -> Answer: ...

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _interwell
-from ._check import _count, _entries, _mapping, _names, _near, _numbers, _shown, _wrong
+from ._check import _count, _entries, _mapping, _names, _near, _numbers, _shown, _without, _wrong
 from ._errors import SceneError
 from ._table import Array, Basins, Grid, Identified, Run, Table, _write
 
@@ -817,6 +817,10 @@ class Scene(Mapping[str, Any]):
         resolution: float | None = None,
         over: Over | None = None,
         until_settled: float | None = None,
+        melnikov: bool = False,
+        probability: float | None = None,
+        runs: int | None = None,
+        within: float | None = None,
         threads: int | None = None,
         progress: Progress = False,
     ) -> Table:
@@ -841,6 +845,16 @@ class Scene(Mapping[str, Any]):
         until_settled : float, optional
             Time in s up to which each run goes on until its motion repeats; by default 1000 forcing periods
             beyond the scene's run.
+        melnikov : bool
+            Whether the column ``melnikov_g`` is added, Melnikov's threshold of the amplitude of a sine.
+        probability : float, optional
+            Under a noise: share of the runs, above 0 and below 1, that cross the barrier at the threshold.
+        runs : int, optional
+            With ``probability``: runs of each cell, 1 to 1e6, by default 100; run number i, from 0, has the
+            seed of the scene plus i.
+        within : float, optional
+            With ``probability``: time in s within which a run is to cross; by default the duration of the
+            scene's run.
         threads, progress
             See :meth:`sweep`.
 
@@ -850,29 +864,50 @@ class Scene(Mapping[str, Any]):
             The fields of ``over``, ``of``, ``value`` (NaN where none of the range does it), ``low`` and
             ``high`` (the nearest values tried that are known not to do it, and to do it), all three in the
             unit of the field, ``undecided`` (bool), ``windows`` (how often the answer changes above).
+            With ``probability``, ``low`` and ``high`` are a 95 % interval, and ``probability``, ``runs`` and
+            ``crossed`` (runs that cross at the end of the range) stand in place of the last two columns.
 
         Raises
         ------
         SceneError
-            If an argument is wrong, no value of the range makes a valid scene, or ``of="interwell"`` and the
-            drive does not repeat.
+            If an argument is wrong, no value of the range makes a valid scene, ``of="interwell"`` and the
+            drive does not repeat, or ``probability`` is given and the scene has no noise.
 
         Notes
         -----
         Release under one sine has a closed form. Otherwise each step is run from rest and the first change is
-        bisected; the values that cross need not form an interval.
+        bisected; the values that cross need not form an interval. With ``probability`` each run is bisected
+        with its own random numbers; the interval lies between two of the values found, whose ranks are
+        binomial (David and Nagaraja 2003, section 7.1). Melnikov's threshold is that of Guckenheimer and
+        Holmes (1983, section 4.5), along the orbit that leaves the top of the barrier and returns to it.
 
         Examples
         --------
         >>> scene.threshold(of="release")["value"].round(4)
         array([0.7229])
+        >>> noisy = scene.set(excitation="Noise(rms_g: 1, low_hz: 0.5, high_hz: 10, seed: 5)")
+        >>> found = noisy.threshold("excitation.rms_g", (0, 4), probability=0.5, runs=9, within=2)
+        >>> bool(found["low"][0] <= found["value"][0] <= found["high"][0])
+        True
         """
         axes, _ = _over(over)
         ends = ":".join(_value(end) for end in _entries("range", range, "(first, last)", 2))
         searched = f"{field}={ends}" + ("" if step is None else f":{_value(float(step))}")
-        with _Told(progress, "values") as told:
-            answer = self._simulation.threshold(
-                axes, searched, of, resolution, until_settled, _count("threads", threads), told
+        if probability is None:
+            _without("leave it out, or give `probability` too", runs=(runs, None), within=(within, None))
+            with _Told(progress, "values") as told:
+                answer = self._simulation.threshold(
+                    axes, searched, of, resolution, until_settled, melnikov, _count("threads", threads), told
+                )
+            return Table(answer)
+        _without(
+            "leave it out, or leave out `probability`",
+            of=(of, "crossing"), until_settled=(until_settled, None), melnikov=(melnikov, False),
+        )
+        with _Told(progress, "runs") as told:
+            answer = self._simulation.probable_threshold(
+                axes, searched, probability, _count("runs", runs), within, resolution,
+                _count("threads", threads), told
             )
         return Table(answer)
 

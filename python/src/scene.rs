@@ -14,8 +14,8 @@ use interwell_studies::output::{
     section_chart, spectrum_chart, summary, sweep_chart, threshold_chart,
 };
 use interwell_studies::questions::{
-    self, Basins, Best, Branch, Compare, Curve, Error, Escape, Exponents, Identify, Orbit, Section, Spectrum,
-    Sweep, Threshold, Uncertain, WhatToIdentify, needs_a_sine,
+    self, Basins, Best, Branch, Compare, Curve, Error, Escape, Exponents, Identify, Orbit, ProbableThreshold,
+    Section, Spectrum, Sweep, Threshold, Uncertain, WhatToIdentify, needs_a_sine,
 };
 use interwell_studies::study::{
     Carry, ExponentOptions, Identity, Keep, Onset, Sampling, SectionAt, SectionOptions, Signal, Table, Until,
@@ -73,6 +73,27 @@ impl Simulation {
 
     fn new(inner: questions::Simulation) -> Self {
         Self { inner }
+    }
+
+    /// Thresholds of a field, with their picture if they are those of a grid.
+    fn thresholds(
+        &self,
+        py: Python<'_>,
+        table: Table,
+        over: &Over,
+        field: String,
+        onset: Onset,
+    ) -> PyResult<Answer> {
+        let answer = Answer::new(py, table, self.caption());
+        if over.is_empty() {
+            return Ok(answer);
+        }
+        let (grid, shown) = (checked(py, self.inner.grid(over))?, self.inner.clone());
+        Ok(answer.drawn(move |rows, asked| {
+            let (grid, scene, field, ranges) = (&grid, shown.scene(), field.as_str(), asked.ranges);
+            let picture = ThresholdPicture { rows, grid, scene, field, onset, ranges };
+            threshold_chart(&picture).map_err(|problem| problem.to_string())
+        }))
     }
 
     /// Whether a run takes some milliseconds at most.
@@ -420,7 +441,8 @@ impl Simulation {
         }))
     }
 
-    #[pyo3(signature = (over, field, of, resolution=None, until_settled=None, threads=None, progress=None))]
+    #[pyo3(signature = (over, field, of, resolution=None, until_settled=None, melnikov=false, threads=None,
+                        progress=None))]
     #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
     fn threshold(
         &self,
@@ -430,23 +452,37 @@ impl Simulation {
         of: &str,
         resolution: Option<f64>,
         until_settled: Option<f64>,
+        melnikov: bool,
         threads: Option<usize>,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Answer> {
         let of = named(py, "of", of, &Onset::ALL, Onset::name)?;
-        let question = Threshold { over, field, of, resolution, until_settled, melnikov: false };
+        let question = Threshold { over, field, of, resolution, until_settled, melnikov };
         let table = work(py, &Way { threads, progress }, |progress| question.run(&self.inner, progress))?;
-        let answer = Answer::new(py, table, self.caption());
-        if question.over.is_empty() {
-            return Ok(answer);
-        }
-        let (grid, shown) = (checked(py, self.inner.grid(&question.over))?, self.inner.clone());
-        let field = checked(py, question.scan(self.inner.document()))?.field;
-        Ok(answer.drawn(move |rows, asked| {
-            let (grid, scene, field, ranges) = (&grid, shown.scene(), field.as_str(), asked.ranges);
-            let picture = ThresholdPicture { rows, grid, scene, field, onset: of, ranges };
-            threshold_chart(&picture).map_err(|problem| problem.to_string())
-        }))
+        let scan = checked(py, question.scan(self.inner.document()))?;
+        self.thresholds(py, table, &question.over, scan.field, of)
+    }
+
+    #[pyo3(signature = (over, field, probability, runs=None, within=None, resolution=None, threads=None,
+                        progress=None))]
+    #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
+    fn probable_threshold(
+        &self,
+        py: Python<'_>,
+        over: Over,
+        field: String,
+        probability: f64,
+        runs: Option<u64>,
+        within: Option<f64>,
+        resolution: Option<f64>,
+        threads: Option<usize>,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Answer> {
+        let runs = runs.unwrap_or(Escape::RUNS);
+        let question = ProbableThreshold { over, field, probability, runs, within, resolution };
+        let table = work(py, &Way { threads, progress }, |progress| question.run(&self.inner, progress))?;
+        let scan = checked(py, question.scan(self.inner.document()))?;
+        self.thresholds(py, table, &question.over, scan.field, Onset::Crossing)
     }
 
     #[pyo3(signature = (period=None, phase_deg=0.0))]

@@ -91,6 +91,22 @@ def test_threshold(command: Command) -> None:
     assert found.csv() == command("threshold", "paper", "--of", "release", "--field", field, option)
 
 
+def test_thresholds_of_melnikov_and_in_probability(command: Command) -> None:
+    scene = iw.Scene.preset("duffing")
+    frequencies = {"excitation.frequency_hz": [0.15, 0.2]}
+    found = scene.threshold("excitation.amplitude_g", (0, 0.1), step=0.05, over=frequencies, melnikov=True)
+    fields = "--field=excitation.amplitude_g=0.0:0.1:0.05", "--over=excitation.frequency_hz=0.15,0.2"
+    assert found.csv() == command("threshold", "duffing", *fields, "--melnikov")
+    noise = "Noise(rms_g: 0.3, low_hz: 1, high_hz: 20, seed: 1, lines: 64)"
+    noisy = iw.Scene.preset("nominal-cubic").set(excitation=noise)
+    limits = {"stops.travel_limit_mm": [2.0, 4.0]}
+    found = noisy.threshold("excitation.rms_g", (0, 4), probability=0.25, runs=9, within=2.0, over=limits)
+    fields = "--field=excitation.rms_g=0.0:4.0", "--over=stops.travel_limit_mm=2.0,4.0"
+    chance = "--probability", "0.25", "--runs", "9", "--within", "2"
+    assert found.csv() == command("threshold", "nominal-cubic", "--set", f"excitation={noise}", *fields, *chance)
+    assert "melnikov" not in found.csv() and "<svg" in found.plot()._repr_svg_()
+
+
 def test_basins(command: Command, tmp_path: pathlib.Path) -> None:
     attractors = tmp_path / "attractors.csv"
     found = iw.Scene.preset("paper").basins((-1.5, 1.5, 11), (-0.5, 0.5, 11))
