@@ -9,11 +9,13 @@ use super::data::*;
 use super::error::Fault;
 use super::field_table::{MAX_COEFFICIENTS, row};
 use super::fields::{Field, FieldPath, for_each, in_range};
+use super::harmonic::Harmonic;
 use super::mechanism::Mechanism;
 use super::pieces;
 use super::shape;
 use super::stops::Stops;
 use super::transducer::Transducer;
+use super::unit::STANDARD_GRAVITY;
 use crate::numeric::number_text;
 
 /// Largest number of sines of an excitation, including the lines of noises: four noises with the largest
@@ -47,7 +49,7 @@ pub fn check(scene: &Scene) -> Checked {
     }
     transducer(scene, &mut checked);
     relations(scene, &mut checked);
-    bands(&scene.excitation, "excitation", &mut checked);
+    drive(&scene.excitation, "excitation", scene.mass_g, &mut checked);
     sines(&scene.excitation, &mut checked);
     hints(scene, &mut checked);
     sweep(scene, &mut checked);
@@ -69,7 +71,7 @@ pub(crate) fn is_sound(scene: &Scene) -> bool {
     let mut checked = Checked::default();
     stops("stops", &numbers.stops, &mut checked);
     transducer(&numbers, &mut checked);
-    bands(&numbers.excitation, "excitation", &mut checked);
+    drive(&numbers.excitation, "excitation", numbers.mass_g, &mut checked);
     checked.faults.is_empty() && in_range(&mut numbers)
 }
 
@@ -279,9 +281,25 @@ fn relations(scene: &Scene, checked: &mut Checked) {
     }
 }
 
-/// Checks the bands of noises, also inside sums.
-fn bands(excitation: &Excitation, path: &str, checked: &mut Checked) {
+/// Checks the bands of noises, and the acceleration that a force gives the mass, also inside sums.
+fn drive(excitation: &Excitation, path: &str, mass_g: f64, checked: &mut Checked) {
+    let largest = row("excitation.amplitude_g").range;
     match excitation {
+        Excitation::Force { amplitude_n, .. }
+            if row("excitation.amplitude_n").range.contains(*amplitude_n)
+                && row("mass_g").range.contains(mass_g)
+                && !largest.contains(amplitude_n / (mass_g / 1e3) / STANDARD_GRAVITY) =>
+        {
+            checked.fault(
+                format!("{path}.amplitude_n"),
+                number_text(*amplitude_n),
+                format!(
+                    "must give the mass, mass_g = {}, an acceleration of at most {} g; take a smaller force",
+                    number_text(mass_g),
+                    number_text(largest.high)
+                ),
+            )
+        }
         Excitation::Noise { low_hz, high_hz, .. }
             if low_hz >= high_hz
                 && row("excitation.low_hz").range.contains(*low_hz)
@@ -295,7 +313,7 @@ fn bands(excitation: &Excitation, path: &str, checked: &mut Checked) {
         }
         Excitation::Sum(terms) => {
             for (i, term) in terms.iter().enumerate() {
-                bands(term, &format!("{path}.{i}"), checked);
+                drive(term, &format!("{path}.{i}"), mass_g, checked);
             }
         }
         _ => {}
@@ -306,7 +324,8 @@ fn bands(excitation: &Excitation, path: &str, checked: &mut Checked) {
 fn sines(excitation: &Excitation, checked: &mut Checked) {
     fn count(excitation: &Excitation) -> u64 {
         match excitation {
-            Excitation::Sine { .. } | Excitation::AmplitudeRamp { .. } | Excitation::Chirp { .. } => 1,
+            Excitation::Sine { .. } | Excitation::Cosine { .. } | Excitation::Force { .. } => 1,
+            Excitation::AmplitudeRamp { .. } | Excitation::Chirp { .. } => 1,
             Excitation::Noise { lines, .. } => *lines,
             Excitation::Sum(terms) => terms.iter().map(count).fold(0, u64::saturating_add),
             _ => 0,
@@ -342,13 +361,16 @@ fn hints(scene: &Scene, checked: &mut Checked) {
     }
     let window = duration_s - settle_s.unwrap_or(duration_s / 2.0);
     let warn = |term: &Excitation, warnings: &mut Vec<String>| match *term {
-        Excitation::Sine { frequency_hz, .. } if window * frequency_hz < 1.0 - 1e-9 => {
-            warnings.push(format!(
-                "run: the settled window of {} s is shorter than a forcing period of {} s, so that RMS and \
-                 regime say little; run longer or settle earlier",
-                number_text(window),
-                number_text(1.0 / frequency_hz)
-            ));
+        Excitation::Sine { .. } | Excitation::Cosine { .. } | Excitation::Force { .. } => {
+            let Some(Harmonic { frequency_hz, .. }) = term.harmonic(1.0) else { return };
+            if window * frequency_hz < 1.0 - 1e-9 {
+                warnings.push(format!(
+                    "run: the settled window of {} s is shorter than a forcing period of {} s, so that RMS \
+                     and regime say little; run longer or settle earlier",
+                    number_text(window),
+                    number_text(1.0 / frequency_hz)
+                ));
+            }
         }
         Excitation::AmplitudeRamp { over_s, .. } | Excitation::Chirp { over_s, .. }
             if over_s > duration_s =>

@@ -73,7 +73,7 @@ pub enum Damping {
     },
 }
 
-/// Acceleration of the base, positive to the right.
+/// Acceleration of the base, positive to the right, or a force on the mass.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum Excitation {
@@ -91,6 +91,27 @@ pub enum Excitation {
         frequency_hz: f64,
         /// Amplitude in g, -1e30 to 1e30; 0 and negative are valid.
         amplitude_g: f64,
+        /// Phase in degrees, -1e15 to 1e15, reduced exactly at multiples of 90.
+        #[serde(default)]
+        phase_deg: f64,
+    },
+    /// amplitude cos(w t + phase), in SI.
+    Cosine {
+        /// Amplitude of the base acceleration in m/s^2, -1e30 to 1e30; 0 and negative are valid.
+        amplitude_m_per_s2: f64,
+        /// Angular frequency w in rad/s, 1e-15 to 1e15.
+        frequency_rad_per_s: f64,
+        /// Phase in degrees, -1e15 to 1e15, reduced exactly at multiples of 90.
+        #[serde(default)]
+        phase_deg: f64,
+    },
+    /// A force on the mass in place of an acceleration of the base: amplitude cos(w t + phase), whatever the
+    /// mass. The motion is that of the base acceleration -force/mass.
+    Force {
+        /// Amplitude in N, -1e30 to 1e30; 0 and negative are valid.
+        amplitude_n: f64,
+        /// Angular frequency w in rad/s, 1e-15 to 1e15.
+        frequency_rad_per_s: f64,
         /// Phase in degrees, -1e15 to 1e15, reduced exactly at multiples of 90.
         #[serde(default)]
         phase_deg: f64,

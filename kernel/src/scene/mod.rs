@@ -37,6 +37,7 @@ mod error;
 mod field_table;
 mod fields;
 mod files;
+mod harmonic;
 pub mod lesson;
 mod link;
 mod manifest;
@@ -71,6 +72,7 @@ pub use field_table::{
 };
 pub use fields::{FieldPath, all_fields, is_whole, numeric_fields};
 pub use files::{FileError, Files, MAX_TABLE_BYTES};
+pub use harmonic::Harmonic;
 pub use link::{LinkError, is_link, linked_lesson};
 pub use manifest::{PROGRAM, SweepRequest, Uncertain, is_manifest};
 pub use measured::{

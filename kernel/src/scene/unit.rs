@@ -145,7 +145,7 @@ impl Unit {
 }
 
 /// Endings of names with their units, the longest first: `_m_per_s2` also ends like a name in seconds.
-const ENDINGS: [(&str, &str); 28] = [
+const ENDINGS: [(&str, &str); 29] = [
     ("_m_per_s2", "m/s\u{b2}"),
     ("_m_per_s", "m/s"),
     ("_n_per_m3", "N/m\u{b3}"),
@@ -156,6 +156,7 @@ const ENDINGS: [(&str, &str); 28] = [
     ("_s_per_m", "s/m"),
     ("_n_per_v", "N/V"),
     ("_n_mm4", "N mm\u{2074}"),
+    ("_rad_per_s", "rad/s"),
     ("_per_s", "1/s"),
     ("_kohm", "kohm"),
     ("_ohm", "ohm"),

@@ -246,6 +246,8 @@ fields! {
         Self::None {}
         Self::Constant { accel_g }
         Self::Sine { frequency_hz, amplitude_g, phase_deg }
+        Self::Cosine { amplitude_m_per_s2, frequency_rad_per_s, phase_deg }
+        Self::Force { amplitude_n, frequency_rad_per_s, phase_deg }
         Self::AmplitudeRamp { frequency_hz, from_g, to_g, over_s }
         Self::Chirp { from_hz, to_hz, over_s, amplitude_g }
         Self::Noise { rms_g, low_hz, high_hz, seed, lines }

@@ -13,7 +13,7 @@ use crate::dynamics::model::Model;
 use crate::dynamics::model::excitation::TonePart;
 use crate::dynamics::model::scales::Scales;
 use crate::numeric::pieces::Piece;
-use crate::numeric::{Ratio, Scalar};
+use crate::numeric::Scalar;
 use crate::scene;
 
 /// Permitted change of the speed by a polynomial that replaces lines of a record, as a share of the
@@ -80,7 +80,7 @@ pub(crate) fn form<T: Scalar>(model: &Model, clock: &Clock<T>) -> Form<T> {
     match drive.tones.as_slice() {
         [] if alone => Form::Constant(Constant { acceleration: T::of(drive.constant * (unit * unit)) }),
         [part] if alone && drive.constant == 0.0 && part.ramp.is_none() => {
-            Form::Sine(Sine { tone: tone(part, part.frequency, unit, |_| None), clock: *clock })
+            Form::Sine(Sine { tone: tone(part, part, unit, |_| None), clock: *clock })
         }
         _ => Form::General(sum(model, clock)),
     }
@@ -120,7 +120,7 @@ fn circuit<T: Scalar>(model: &Model, unit: f64) -> Option<Circuit<T>> {
 /// A tone; `holds_from` gives the segment of the drive that begins where a ramp of this length in s ends.
 fn tone<T: Scalar>(
     tone: &TonePart,
-    fastest: f64,
+    fastest: &TonePart,
     unit: f64,
     holds_from: impl Fn(f64) -> Option<usize>,
 ) -> Tone<T> {
@@ -128,8 +128,9 @@ fn tone<T: Scalar>(
     Tone {
         amplitude: T::of(tone.amplitude * square),
         frequency: T::of(tone.frequency * unit),
-        ratio: Ratio::of_decimals(tone.frequency, fastest)
-            .map_or(TurnsPerCycle::Rounded(tone.frequency / fastest), TurnsPerCycle::Exact),
+        ratio: tone
+            .ratio_to(fastest)
+            .map_or(TurnsPerCycle::Rounded(tone.frequency / fastest.frequency), TurnsPerCycle::Exact),
         phase: T::of(tone.phase),
         quarter: tone.quarter,
         ramp: tone.ramp.map(|(from, over)| Ramp {
@@ -156,8 +157,9 @@ fn sum<T: Scalar>(model: &Model, clock: &Clock<T>) -> General<T> {
     // the segment that begins at a time
     let segment = |time: f64| ends.partition_point(|end| *end <= time);
     let holds_from = |over: f64| (over <= model.duration).then(|| segment(over));
-    let clocked = drive.fastest().unwrap_or(0.0);
-    let tones: Vec<Tone<T>> = drive.tones.iter().map(|part| tone(part, clocked, unit, holds_from)).collect();
+    let clocked = drive.fastest_tone();
+    let tones = drive.tones.iter().map(|part| tone(part, clocked.unwrap_or(part), unit, holds_from));
+    let tones: Vec<Tone<T>> = tones.collect();
     let is_line = |tone: &Tone<T>| !tone.quarter && tone.ramp.is_none();
     let many = tones.iter().filter(|tone| is_line(tone)).count() > FEW_TONES;
     let (steady, tones): (Vec<_>, Vec<_>) = tones.into_iter().partition(|tone| many && is_line(tone));

@@ -51,6 +51,8 @@ pub struct TonePart {
     pub amplitude: f64,
     /// Frequency in Hz.
     pub frequency: f64,
+    /// Angular frequency in rad/s, where the scene gives that in place of a frequency in Hz.
+    pub rate: Option<f64>,
     /// Phase in turns without the quarter turn, 0 <= phase < 1.
     pub phase: f64,
     /// Whether the tone is a quarter turn ahead.
@@ -65,6 +67,15 @@ impl TonePart {
     /// Magnitude in m/s^2 of the largest amplitude.
     pub(crate) fn largest(&self) -> f64 {
         self.amplitude.abs().max(self.ramp.map_or(0.0, |(from, _)| from.abs()))
+    }
+
+    /// Frequency over that of another tone, if both are written in the same unit and the ratio of the decimals
+    /// has a small enough numerator and denominator.
+    pub(crate) fn ratio_to(&self, other: &Self) -> Option<Ratio> {
+        match (self.rate, other.rate) {
+            (Some(rate), Some(other)) => Ratio::of_decimals(rate, other),
+            _ => Ratio::of_decimals(self.frequency, other.frequency),
+        }
     }
 
     /// Amplitude in m/s^2 at a time in s.
@@ -107,36 +118,37 @@ pub struct NoisePart {
 }
 
 impl ExcitationParts {
-    /// Fails if a record has not been read.
-    pub(crate) fn new(excitation: &Excitation) -> Result<Self, Fault> {
+    /// The drive of a proof mass in kg. Fails if a record has not been read.
+    pub(crate) fn new(excitation: &Excitation, mass: f64) -> Result<Self, Fault> {
         let mut parts = Self::default();
-        parts.add(excitation, "excitation")?;
+        parts.add(excitation, mass, "excitation")?;
         Ok(parts)
     }
 
-    fn add(&mut self, excitation: &Excitation, path: &str) -> Result<(), Fault> {
+    fn add(&mut self, excitation: &Excitation, mass: f64, path: &str) -> Result<(), Fault> {
+        if let Some(harmonic) = excitation.harmonic(mass) {
+            let (quarters, phase) = harmonic.turns();
+            self.tones.push(TonePart {
+                amplitude: if quarters >= 2 { -harmonic.acceleration } else { harmonic.acceleration },
+                frequency: harmonic.frequency_hz,
+                rate: harmonic.rate,
+                phase,
+                quarter: quarters % 2 == 1,
+                ramp: None,
+                noise: false,
+            });
+            return Ok(());
+        }
         match excitation {
-            Excitation::None => {}
+            Excitation::None
+            | Excitation::Sine { .. }
+            | Excitation::Cosine { .. }
+            | Excitation::Force { .. } => {}
             Excitation::Constant { accel_g } => self.constant += accel_g * STANDARD_GRAVITY,
-            Excitation::Sine { frequency_hz, amplitude_g, phase_deg } => {
-                // Exact, since the remainder and the multiple of 90 degrees are.
-                let reduced = phase_deg.rem_euclid(360.0);
-                let quarters = (reduced / 90.0).floor();
-                let rest = reduced - 90.0 * quarters;
-                let quarters = quarters as i64 & 3;
-                let amplitude = amplitude_g * STANDARD_GRAVITY;
-                self.tones.push(TonePart {
-                    amplitude: if quarters >= 2 { -amplitude } else { amplitude },
-                    frequency: *frequency_hz,
-                    phase: rest / 360.0,
-                    quarter: quarters % 2 == 1,
-                    ramp: None,
-                    noise: false,
-                });
-            }
             Excitation::AmplitudeRamp { frequency_hz, from_g, to_g, over_s } => self.tones.push(TonePart {
                 amplitude: to_g * STANDARD_GRAVITY,
                 frequency: *frequency_hz,
+                rate: None,
                 phase: 0.0,
                 quarter: false,
                 ramp: Some((from_g * STANDARD_GRAVITY, *over_s)),
@@ -161,7 +173,7 @@ impl ExcitationParts {
             },
             Excitation::Sum(terms) => {
                 for (i, term) in terms.iter().enumerate() {
-                    self.add(term, &format!("{path}.{i}"))?;
+                    self.add(term, mass, &format!("{path}.{i}"))?;
                 }
             }
         }
@@ -181,7 +193,8 @@ impl ExcitationParts {
             let phase = uniform();
             // a line at 0 Hz would be a constant
             let frequency = frequency.max(f64::MIN_POSITIVE);
-            let line = TonePart { amplitude, frequency, phase, quarter: false, ramp: None, noise: true };
+            let quarter = false;
+            let line = TonePart { amplitude, frequency, rate: None, phase, quarter, ramp: None, noise: true };
             self.tones.push(line);
         }
         self.noises.push(noise);
@@ -251,9 +264,14 @@ impl ExcitationParts {
         parts
     }
 
+    /// The fastest tone, the first of equal ones.
+    pub(crate) fn fastest_tone(&self) -> Option<&TonePart> {
+        self.tones.iter().reduce(|a, b| if b.frequency > a.frequency { b } else { a })
+    }
+
     /// Frequency of the fastest tone in Hz.
     pub fn fastest(&self) -> Option<f64> {
-        self.tones.iter().map(|t| t.frequency).reduce(f64::max)
+        Some(self.fastest_tone()?.frequency)
     }
 
     /// Periods of the fastest tone in the common period of all parts, if there is one of at most 10 000.
@@ -261,10 +279,10 @@ impl ExcitationParts {
         if !self.has_only_tones() || !self.noises.is_empty() {
             return None;
         }
-        let fastest = self.fastest()?;
+        let fastest = self.fastest_tone()?;
         let mut common: u64 = 1;
         for tone in &self.tones {
-            let denominator = Ratio::of_decimals(tone.frequency, fastest)?.denominator;
+            let denominator = tone.ratio_to(fastest)?.denominator;
             let shared = greatest_common_divisor(common.into(), denominator.into()) as u64;
             common = (common / shared).checked_mul(denominator)?;
             if common > LONGEST_COMMON_PERIOD {

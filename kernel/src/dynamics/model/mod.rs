@@ -12,7 +12,7 @@ pub(crate) mod transducer;
 use std::sync::Arc;
 
 use crate::mechanics::{Hertz, Mechanism};
-use crate::scene::{self, Damping, Excitation, Fault, Scene, Start};
+use crate::scene::{self, Damping, Fault, Scene, Start};
 use excitation::{ExcitationParts, Rhythm};
 use scales::{Scales, scales};
 use start::{fault, start_state};
@@ -117,7 +117,7 @@ impl Model {
         let stops = StopPair::of(&scene.stops);
         let compliant = Hertz::of(&scene.stops);
         let start = value_or_fault(start_state(scene, &mechanism, stops, compliant), &mut faults);
-        let drive = value_or_fault(ExcitationParts::new(&scene.excitation), &mut faults);
+        let drive = value_or_fault(ExcitationParts::new(&scene.excitation, mass), &mut faults);
         let periods = drive.fastest().unwrap_or(0.0) * scene.run.duration_s;
         if periods > MAX_PERIODS {
             let problem = format!(
@@ -165,10 +165,7 @@ impl Model {
             crossing_level: landscape.crossing_position(),
             one_well: barrier.is_none(),
             cycles_per_period: common.map_or(0, |c| c as i64),
-            start_phase: match scene.excitation {
-                Excitation::Sine { phase_deg, .. } => phase_deg.rem_euclid(360.0) / 360.0,
-                _ => 0.0,
-            },
+            start_phase: scene.harmonic().map_or(0.0, |drive| drive.phase_deg.rem_euclid(360.0) / 360.0),
             mechanism,
         };
         model.choose_barrier();
