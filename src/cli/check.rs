@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use interwell::scene::Excitation;
+use interwell::numeric::short;
 use interwell::study::{can_cross, inspect};
 
 use super::shard::line;
@@ -58,14 +58,21 @@ fn report(spec: &str, common: &Common) -> Result<String, Failure> {
     let lines = inspect(&document.scene, &mechanism).map_err(|faults| document.error_from(faults))?;
     let mut text = format!("{}: {}\n", document.name, document.scene.title);
     lines.iter().for_each(|line| text += &format!("  {line}\n"));
-    if let Excitation::Sine { .. } = document.scene.excitation
+    if let Some(drive) = document.scene.harmonic()
         && can_cross(&document.scene, &mechanism)
     {
+        // the default is the amplitude of a Sine
+        let field = drive.rate.map(|_| {
+            let present = drive.amplitude_of(drive.acceleration).abs();
+            format!("{}=0:{}", drive.amplitude_path(), short(if present > 0.0 { 2.0 * present } else { 1.0 }))
+        });
         // the search takes long, so its command is named instead
         let set = common.set.iter().flat_map(|set| ["--set", set]);
         let tolerance = common.tolerance.iter().flat_map(|tolerance| ["--tolerance", tolerance]);
         let search = ["interwell", "--headless", "threshold", spec, "--of", "crossing"].into_iter();
-        text += &format!("  least amplitude that crosses: {}\n", line(search.chain(set).chain(tolerance)));
+        let words =
+            search.chain(field.iter().flat_map(|field| ["--field", field])).chain(set).chain(tolerance);
+        text += &format!("  least amplitude that crosses: {}\n", line(words));
     }
     let warnings = warnings.iter().map(String::as_str).chain(mechanism.warnings());
     warnings.for_each(|warning| text += &format!("  warning: {warning}\n"));

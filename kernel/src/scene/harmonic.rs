@@ -1,7 +1,8 @@
 //! Drives of one frequency as accelerations of the base.
 
 use super::data::{Excitation, Scene};
-use super::unit::STANDARD_GRAVITY;
+use super::unit::{STANDARD_GRAVITY, unit_ending};
+use crate::numeric::short;
 
 /// A drive of one frequency, as the base acceleration
 /// `acceleration` sin(2 pi `frequency_hz` t + `phase_deg` + 90 degrees times `quarters`) with the same motion:
@@ -22,17 +23,17 @@ pub struct Harmonic {
     path: &'static str,
     /// Base acceleration in m/s^2 of an amplitude of 1 in the unit of the field, as a numerator and a
     /// denominator.
-    unit: [f64; 2],
+    acceleration_of_one: [f64; 2],
 }
 
 impl Excitation {
     /// This drive as an acceleration of the base, for a proof mass in kg; `None` unless it has one frequency
     /// and one amplitude. A sum has not.
     pub fn harmonic(&self, mass: f64) -> Option<Harmonic> {
-        let (amplitude, frequency, phase_deg, quarters, path, unit) = match *self {
+        let (amplitude, frequency, phase_deg, quarters, path, of_one) = match *self {
             Self::Sine { frequency_hz, amplitude_g, phase_deg } => {
-                let unit = [STANDARD_GRAVITY, 1.0];
-                (amplitude_g, Ok(frequency_hz), phase_deg, 0, "excitation.amplitude_g", unit)
+                let of_one = [STANDARD_GRAVITY, 1.0];
+                (amplitude_g, Ok(frequency_hz), phase_deg, 0, "excitation.amplitude_g", of_one)
             }
             Self::Cosine { amplitude_m_per_s2, frequency_rad_per_s, phase_deg } => {
                 let path = "excitation.amplitude_m_per_s2";
@@ -46,13 +47,13 @@ impl Excitation {
         };
         Some(Harmonic {
             frequency_hz: frequency.unwrap_or_else(|rate| rate / std::f64::consts::TAU),
-            acceleration: amplitude * unit[0] / unit[1],
+            acceleration: amplitude * of_one[0] / of_one[1],
             phase_deg,
             quarters,
             rate: frequency.err(),
             amplitude,
             path,
-            unit,
+            acceleration_of_one: of_one,
         })
     }
 
@@ -80,6 +81,14 @@ impl Harmonic {
         self.path
     }
 
+    /// The frequency in the unit of its field, such as `3 Hz` or `1 rad/s`.
+    pub fn frequency_in_words(&self) -> String {
+        match self.rate {
+            Some(rate) => format!("{} rad/s", short(rate)),
+            None => format!("{} Hz", short(self.frequency_hz)),
+        }
+    }
+
     /// Path of the field of the frequency.
     pub fn frequency_path(&self) -> &'static str {
         match self.rate {
@@ -88,9 +97,14 @@ impl Harmonic {
         }
     }
 
+    /// Unit of the amplitude, as a person writes it.
+    pub fn unit(&self) -> &'static str {
+        unit_ending(self.path).map_or("", |(_, unit)| unit)
+    }
+
     /// The amplitude, in the unit of its field, with which the base has this acceleration in m/s^2.
     pub fn amplitude_of(&self, acceleration: f64) -> f64 {
-        acceleration * self.unit[1] / self.unit[0]
+        acceleration * self.acceleration_of_one[1] / self.acceleration_of_one[0]
     }
 
     /// Amplitude in g: of a [`Sine`](Excitation::Sine) as the scene has it.

@@ -7,7 +7,7 @@ use std::mem::discriminant;
 use eframe::egui::{self, ComboBox, Ui};
 
 use crate::app::session::Session;
-use crate::scene::{Excitation, Stops};
+use crate::scene::{Excitation, Harmonic, STANDARD_GRAVITY, Stops};
 
 use super::controls::{field_ui, fields_ui};
 
@@ -26,6 +26,8 @@ fn kind_name(excitation: &Excitation) -> &'static str {
         Excitation::None => "none",
         Excitation::Constant { .. } => "constant",
         Excitation::Sine { .. } => "sine",
+        Excitation::Cosine { .. } => "cosine",
+        Excitation::Force { .. } => "force on the mass",
         Excitation::AmplitudeRamp { .. } => "amplitude ramp",
         Excitation::Chirp { .. } => "chirp",
         Excitation::Noise { .. } => "noise",
@@ -34,24 +36,32 @@ fn kind_name(excitation: &Excitation) -> &'static str {
     }
 }
 
-/// Shaking of each kind, with the amplitude and frequency of `from`, or of `suiting` if it has none.
-fn choices(from: &Excitation, suiting: &Excitation) -> [Excitation; 6] {
+/// Shaking of each kind, with the amplitude and frequency of `from`, or of `suiting` if it has none, for a
+/// proof mass in kg.
+fn choices(from: &Excitation, suiting: &Excitation, mass: f64) -> [Excitation; 8] {
     let (suiting_f, suiting_g) = match suiting {
         Excitation::Sine { frequency_hz, amplitude_g, .. } => (*frequency_hz, *amplitude_g),
         _ => (3.0, 0.5),
     };
     let (f, g) = match from {
-        Excitation::Sine { frequency_hz, amplitude_g, .. } => (*frequency_hz, *amplitude_g),
+        Excitation::Sine { .. } | Excitation::Cosine { .. } | Excitation::Force { .. } => {
+            let as_sine = |drive: Harmonic| (drive.frequency_hz, drive.amplitude_g());
+            from.harmonic(mass).map_or((suiting_f, suiting_g), as_sine)
+        }
         Excitation::AmplitudeRamp { frequency_hz, to_g, .. } => (*frequency_hz, *to_g),
         Excitation::Chirp { from_hz, to_hz, amplitude_g, .. } => (0.5 * (from_hz + to_hz), *amplitude_g),
         Excitation::Noise { rms_g, low_hz, high_hz, .. } => (0.5 * (low_hz + high_hz), *rms_g),
         Excitation::Constant { accel_g } => (suiting_f, *accel_g),
         _ => (suiting_f, suiting_g),
     };
+    let frequency_rad_per_s = std::f64::consts::TAU * f;
+    let amplitude_m_per_s2 = g * STANDARD_GRAVITY;
     [
         Excitation::None,
         Excitation::Constant { accel_g: g },
         Excitation::Sine { frequency_hz: f, amplitude_g: g, phase_deg: 0.0 },
+        Excitation::Cosine { amplitude_m_per_s2, frequency_rad_per_s, phase_deg: 0.0 },
+        Excitation::Force { amplitude_n: mass * amplitude_m_per_s2, frequency_rad_per_s, phase_deg: 0.0 },
         Excitation::AmplitudeRamp { frequency_hz: f, from_g: 0.0, to_g: g, over_s: 60.0 },
         Excitation::Chirp { from_hz: 0.5 * f, to_hz: 2.0 * f, over_s: 60.0, amplitude_g: g },
         Excitation::Noise { rms_g: g.abs(), low_hz: 0.5 * f, high_hz: 2.0 * f, seed: 1, lines: 256 },
@@ -64,7 +74,7 @@ fn kind_ui(ui: &mut Ui, session: &mut Session) {
     let name = ui.label("kind of shaking");
     let combo = ComboBox::from_id_salt("kind of shaking").selected_text(kind_name(present));
     let combo = combo.show_ui(ui, |ui| {
-        for choice in choices(present, &session.suiting_sine()) {
+        for choice in choices(present, &session.suiting_sine(), session.scene().mass_g / 1e3) {
             let is_present = discriminant(&choice) == discriminant(present);
             if ui.selectable_label(is_present, kind_name(&choice)).clicked() && !is_present {
                 wanted = Some(choice);
@@ -95,7 +105,9 @@ fn kind_ui(ui: &mut Ui, session: &mut Session) {
 fn excitation_ui(ui: &mut Ui, session: &mut Session, width: f32) {
     let paths: &[&'static str] = match &session.scene().excitation {
         Excitation::Constant { .. } => &["excitation.accel_g"],
-        Excitation::Sine { .. } => &["excitation.phase_deg"],
+        Excitation::Sine { .. } | Excitation::Cosine { .. } | Excitation::Force { .. } => {
+            &["excitation.phase_deg"]
+        }
         Excitation::AmplitudeRamp { .. } => {
             &["excitation.from_g", "excitation.to_g", "excitation.frequency_hz", "excitation.over_s"]
         }
@@ -193,7 +205,7 @@ mod tests {
         for preset in crate::scene::PRESETS {
             let scene = Document::load(preset.name).unwrap().scene;
             let sine = Excitation::Sine { frequency_hz: 3.0, amplitude_g: 0.5, phase_deg: 0.0 };
-            for excitation in choices(&scene.excitation, &sine) {
+            for excitation in choices(&scene.excitation, &sine, scene.mass_g / 1e3) {
                 let kind = kind_name(&excitation);
                 let changed = Scene { excitation, sweep: Vec::new(), ..scene.clone() };
                 assert!(check(&changed).faults.is_empty(), "{} {kind}", preset.name);

@@ -37,8 +37,11 @@ const SEARCH_HOVER: &str = "Looks for the distance of the stops with which the s
 
 const STOPS_OFF: &str = "The stops are off. This is where they will stand: switch them on first.";
 
-/// Of a sine.
-const FREQUENCY: &str = "excitation.frequency_hz";
+/// Of a sine, a cosine or a force.
+const FREQUENCY: [&str; 2] = ["excitation.frequency_hz", "excitation.frequency_rad_per_s"];
+/// Amplitudes of shaking that has one amplitude.
+const AMPLITUDE: [&str; 4] =
+    ["excitation.amplitude_g", "excitation.rms_g", "excitation.amplitude_m_per_s2", "excitation.amplitude_n"];
 /// The travel limit of the stops, or of each stop. While the stops are off their control is grey, and shows
 /// the limit that they will have.
 const LIMITS: [&str; 3] = ["stops.travel_limit_mm", "stops.left_mm", "stops.right_mm"];
@@ -53,7 +56,7 @@ pub fn column_ui(ui: &mut Ui, session: &mut Session, more: &mut bool) {
     let width = (ui.available_width() - 84.0).max(80.0);
     heading_ui(ui, "Shaking");
     shaking_ui(ui, session, width);
-    field_ui(ui, session, FREQUENCY, width);
+    fields_ui(ui, session, &FREQUENCY, width);
     ui.add_space(14.0);
     stops_switch_ui(ui, session);
     fields_ui(ui, session, &LIMITS, width);
@@ -75,7 +78,7 @@ pub fn column_ui(ui: &mut Ui, session: &mut Session, more: &mut bool) {
 
 /// What opens beside the views in a compact window, whose row has no room for the frequency.
 pub fn beside_ui(ui: &mut Ui, session: &mut Session, width: f32) {
-    field_ui(ui, session, FREQUENCY, width);
+    fields_ui(ui, session, &FREQUENCY, width);
     more_ui(ui, session, width);
 }
 
@@ -158,9 +161,11 @@ fn heading_ui(ui: &mut Ui, text: &str) {
 
 fn shaking_ui(ui: &mut Ui, session: &mut Session, width: f32) {
     let text = match &session.scene().excitation {
-        Excitation::Sine { .. } | Excitation::Chirp { .. } | Excitation::Noise { .. } => {
-            return fields_ui(ui, session, &["excitation.amplitude_g", "excitation.rms_g"], width);
-        }
+        Excitation::Sine { .. }
+        | Excitation::Cosine { .. }
+        | Excitation::Force { .. }
+        | Excitation::Chirp { .. }
+        | Excitation::Noise { .. } => return fields_ui(ui, session, &AMPLITUDE, width),
         Excitation::None => {
             let sine = session.suiting_sine();
             let Excitation::Sine { frequency_hz, amplitude_g, .. } = sine else { return };

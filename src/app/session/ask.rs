@@ -6,7 +6,7 @@ use std::time::Duration;
 use crate::app::task::Identity;
 use crate::app::words::status;
 use crate::mechanics::Mechanism;
-use crate::scene::{Excitation, Scene, Start};
+use crate::scene::{Scene, Start};
 use crate::study::{self, Task, Thresholds};
 
 use super::Session;
@@ -143,17 +143,18 @@ impl Session {
 
     fn can_search(&self) -> bool {
         self.fault.is_none()
-            && matches!(self.built.excitation, Excitation::Sine { .. })
+            && self.built.harmonic().is_some()
             && study::can_cross(&self.built, &self.mechanism)
     }
 }
 
-/// A scene from rest with a sine of 0 g: scenes that differ only in amplitude and start have the same
-/// thresholds.
+/// A scene from rest with a sine of 0 g in place of a harmonic drive: scenes that differ only in amplitude and
+/// start have the same thresholds in g.
 pub(super) fn unshaken(scene: &Scene) -> Scene {
     let mut scene = Scene { start: Start::Rest, ..scene.clone() };
-    if let Excitation::Sine { amplitude_g, .. } = &mut scene.excitation {
-        *amplitude_g = 0.0;
+    if let Some(drive) = scene.harmonic() {
+        scene.excitation = drive.sine();
+        scene.excitation.amplitude_mut().into_iter().for_each(|amplitude| *amplitude = 0.0);
     }
     scene
 }

@@ -23,7 +23,7 @@ use crate::app::task::{Background, Wake};
 use crate::app::words::status::{self, DrivenMotion, Sentence};
 use crate::dynamics::{Model, Outcome, Summary};
 use crate::mechanics::{FLEXURE_TOLERANCE, Mechanism};
-use crate::scene::{self, Excitation, Scene, Stops};
+use crate::scene::{self, Scene, Stops};
 use crate::study::{self, Thresholds};
 
 use accuracy::{Accuracy, LiveRun};
@@ -362,12 +362,9 @@ impl Session {
         self.changed_at
     }
 
-    /// Amplitude of the excitation in g, if it is a sine.
+    /// Amplitude of the excitation in g, if it is harmonic.
     pub fn amplitude_g(&self) -> Option<f64> {
-        match self.scene().excitation {
-            Excitation::Sine { amplitude_g, .. } => Some(amplitude_g),
-            _ => None,
-        }
+        Some(self.scene().harmonic()?.amplitude_g())
     }
 
     pub fn sentence(&self) -> Sentence {

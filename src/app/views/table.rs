@@ -330,6 +330,8 @@ fn in_shaking(excitation: &Excitation, number: &str) -> bool {
     let all: &[&str] = match excitation {
         Excitation::Constant { .. } => &["accel_g"],
         Excitation::Sine { .. } => &["amplitude_g", "frequency_hz"],
+        Excitation::Cosine { .. } => &["amplitude_m_per_s2", "frequency_rad_per_s"],
+        Excitation::Force { .. } => &["amplitude_n", "frequency_rad_per_s"],
         Excitation::AmplitudeRamp { .. } => &["from_g", "to_g"],
         Excitation::Chirp { .. } => &["amplitude_g", "from_hz", "to_hz"],
         Excitation::Noise { .. } => &["rms_g"],
@@ -348,6 +350,12 @@ pub(super) fn shaking(scene: &Scene) -> String {
         Excitation::Constant { accel_g } => format!("{} g, constant", g(*accel_g)),
         Excitation::Sine { amplitude_g, frequency_hz, .. } => {
             format!("{} g, {} Hz", g(*amplitude_g), hz(*frequency_hz))
+        }
+        Excitation::Cosine { amplitude_m_per_s2, frequency_rad_per_s, .. } => {
+            format!("{} m/s\u{b2}, {} rad/s", g(*amplitude_m_per_s2), g(*frequency_rad_per_s))
+        }
+        Excitation::Force { amplitude_n, frequency_rad_per_s, .. } => {
+            format!("{} N, {} rad/s", g(*amplitude_n), g(*frequency_rad_per_s))
         }
         Excitation::AmplitudeRamp { from_g, to_g, .. } => format!("{} to {} g", g(*from_g), g(*to_g)),
         Excitation::Chirp { from_hz, to_hz, amplitude_g, .. } => {

@@ -77,20 +77,28 @@ impl Compare {
     }
 }
 
-/// Returns frequency in Hz and amplitude in g of a sine; other excitations are refused.
+/// Returns frequency in Hz and amplitude in g of a sine or cosine; other excitations are refused.
 pub fn needs_a_sine(environment: &Document) -> Result<(f64, f64), Error> {
-    let Excitation::Sine { frequency_hz, amplitude_g, .. } = environment.scene.excitation else {
-        let problem = "its excitation is no Sine; amplitude and frequency of one are searched: name a scene \
-                       with a Sine first, or by --environment";
-        return Err(Error::unfit(environment, problem));
+    let problem = match (&environment.scene.excitation, environment.scene.harmonic()) {
+        (Excitation::Force { .. }, _) => {
+            "its excitation is a Force, which shakes scenes of different masses differently: name a scene with \
+             a Sine or Cosine first, or by --environment"
+        }
+        (_, Some(drive)) => return Ok((drive.frequency_hz, drive.amplitude_g())),
+        _ => {
+            "its excitation is no Sine; amplitude and frequency of one are searched: name a scene with a Sine \
+             first, or by --environment"
+        }
     };
-    Ok((frequency_hz, amplitude_g))
+    Err(Error::unfit(environment, problem))
 }
 
 /// A scene at rest, with the excitation and the run settings of another one.
 pub fn in_environment(document: &Document, environment: &Document) -> Document {
     let mut changed = document.clone();
-    changed.scene.excitation = environment.scene.excitation.clone();
+    // thresholds and bands of a cosine are searched in g and Hz
+    let drive = environment.scene.harmonic().map(|drive| drive.sine());
+    changed.scene.excitation = drive.unwrap_or_else(|| environment.scene.excitation.clone());
     changed.scene.run = environment.scene.run;
     changed.scene.start = Start::Rest;
     changed.scene.sweep.clear(); // the other excitation may not have its fields

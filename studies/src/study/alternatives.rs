@@ -11,7 +11,7 @@ use super::{Cancelled, Family, Found, Onset, SummaryField, Table, Task};
 use crate::dynamics::{Model, Run, Summary};
 use crate::mechanics::Mechanism;
 use crate::numeric::round::decade;
-use crate::scene::{Excitation, FieldPath, Files, Scene, Start, numeric_fields};
+use crate::scene::{Excitation, FieldPath, Files, STANDARD_GRAVITY, Scene, Start, numeric_fields};
 use crate::system::threads::Pool;
 
 /// A scene of a comparison, with the common excitation.
@@ -149,7 +149,7 @@ impl Rating<'_> {
         let model = Model::build(&trial, Arc::clone(&scene.mechanism)).map_err(|_| Cancelled)?;
         Ok(Rated {
             name: scene.name.clone(),
-            release_g: frees_at(&trial, &scene.mechanism),
+            release_g: frees_at(&trial, &scene.mechanism).map(|acceleration| acceleration / STANDARD_GRAVITY),
             crossing,
             summary: settled_within(&model, self.until_settled, self.task.cancel).ok_or(Cancelled)?,
             crosses_hz: self.band(scene, &trial)?,

@@ -9,11 +9,8 @@ use super::{Cancelled, Family, Found, Onset, Task, Verdict};
 use crate::dynamics::{Model, Request, STANDARD_GRAVITY};
 use crate::mechanics::{Landscape, Mechanism};
 use crate::numeric::round::{ONE_TWO_FIVE, decade, round_down};
-use crate::scene::{Excitation, Files, Scene, Start, Stops};
+use crate::scene::{Files, Scene, Start, Stops};
 use crate::system::threads::Pool;
-
-/// The field of the amplitude of a sine.
-pub(super) const AMPLITUDE: &str = "excitation.amplitude_g";
 
 /// The place value of the third significant digit.
 fn third_digit(value: f64) -> f64 {
@@ -49,12 +46,13 @@ const GAP_STEPS: u32 = 50;
 /// Length of such a step, as a share of the threshold.
 const GAP_STEP: f64 = 0.01;
 
-/// The thresholds of the amplitude. `None` if the drive is not a sine, without a barrier between the stops,
+/// The thresholds of the amplitude. `None` if the drive is not harmonic, without a barrier between the stops,
 /// or if cancelled.
 pub fn thresholds(scene: &Scene, mechanism: &Arc<Mechanism>, task: &Task) -> Option<Thresholds> {
     let found = crossing(scene, mechanism, None, None, Above::Searched, task);
     let (crossing, searched_to) = found.ok().flatten()?;
-    Some(Thresholds { frees_at: frees_at(scene, mechanism), crossing, searched_to })
+    let frees_at = frees_at(scene, mechanism).map(|acceleration| acceleration / STANDARD_GRAVITY);
+    Some(Thresholds { frees_at, crossing, searched_to })
 }
 
 /// Whether the range above a threshold is searched for windows, gaps and values known to cross.
@@ -64,9 +62,9 @@ pub(super) enum Above {
     Skipped,
 }
 
-/// The smallest amplitude of a sine whose settled motion from rest crosses, and the largest amplitude
-/// searched. Runs continue up to `until_settled` in s, if given. `None` without a sine, or without a
-/// barrier between the stops.
+/// The smallest amplitude in g of a harmonic drive whose settled motion from rest crosses, and the largest
+/// amplitude searched. Runs continue up to `until_settled` in s, if given. `None` without such a drive, or
+/// without a barrier between the stops.
 pub(super) fn crossing(
     scene: &Scene,
     mechanism: &Arc<Mechanism>,
@@ -75,7 +73,7 @@ pub(super) fn crossing(
     above: Above,
     task: &Task,
 ) -> Result<Option<(Found, f64)>, Cancelled> {
-    let Excitation::Sine { .. } = scene.excitation else { return Ok(None) };
+    let Some(drive) = scene.harmonic() else { return Ok(None) };
     let Some(push) = holding_push(scene, mechanism) else { return Ok(None) };
     let step = push / f64::from(FINE_STEPS);
     let mut values: Vec<f64> = (1..=2 * FINE_STEPS).map(|i| step * f64::from(i)).collect();
@@ -86,9 +84,9 @@ pub(super) fn crossing(
     values.iter_mut().for_each(|value| *value = multiple(*value, third_digit(*value)));
     values.dedup();
     let searched_to = values.last().copied().unwrap_or(push);
-    let trial = Scene { start: Start::Rest, ..scene.clone() };
+    let trial = Scene { start: Start::Rest, excitation: drive.sine(), ..scene.clone() };
     let files = Files::default(); // an amplitude changes no mechanism
-    let family = Family::new(&trial, &files, mechanism, AMPLITUDE);
+    let family = Family::new(&trial, &files, mechanism, "excitation.amplitude_g");
     let search = Search { family, onset: Onset::Crossing, until_settled, task, pool, ahead: 1 };
     let (mut answers, mut resolution) = (Answers::default(), third_digit(push));
     for part in values.chunks(TOGETHER) {
@@ -141,13 +139,14 @@ fn stops(scene: &Scene) -> [Option<f64>; 2] {
     scene.stops.positions_mm().map(|stop| stop.map(|mm| mm / 1e3))
 }
 
-/// The amplitude in g whose inertial force equals the force that presses a resting mass on its stop.
+/// The amplitude in m/s^2 of a harmonic drive whose inertial force equals the force that presses a resting
+/// mass on its stop.
 pub(super) fn frees_at(scene: &Scene, mechanism: &Mechanism) -> Option<f64> {
-    let Excitation::Sine { .. } = scene.excitation else { return None };
+    scene.harmonic()?;
     let right = stops(scene)[1]?;
     let well = mechanism.landscape.right_stable()?.x;
     let press = -mechanism.curve.force(right);
-    (right < well && press > 0.0).then(|| press / (scene.mass_g / 1e3) / STANDARD_GRAVITY)
+    (right < well && press > 0.0).then(|| press / (scene.mass_g / 1e3))
 }
 
 /// Smallest number of steps from the well to the middle in the search for stops; the largest is 2.5 times as

@@ -10,7 +10,7 @@ use crate::dynamics::Model;
 use crate::mechanics::flexure::{Accuracy, Geometry, Group};
 use crate::mechanics::{Equilibrium, ForceExtremum, Kink, Landscape, Mechanism};
 use crate::numeric::short;
-use crate::scene::{Damping, Fault, Scene};
+use crate::scene::{Damping, Excitation, Fault, Scene};
 
 /// The description of a scene in lines, or all faults that are found only when the model is built.
 ///
@@ -18,6 +18,10 @@ use crate::scene::{Damping, Fault, Scene};
 pub fn inspect(scene: &Scene, mechanism: &Arc<Mechanism>) -> Result<Vec<String>, Vec<Fault>> {
     let model = Model::build(scene, Arc::clone(mechanism))?;
     let mut lines = model.describe();
+    if let (Excitation::Force { amplitude_n, .. }, Some(drive)) = (&scene.excitation, scene.harmonic()) {
+        let (size, frequency) = (short(amplitude_n.abs()), drive.frequency_in_words());
+        lines.push(format!("this is a force on the mass of {size} N at {frequency}, as -force/mass"));
+    }
     if mechanism.parts.is_empty() {
         lines.extend(force(mechanism));
     } else {
@@ -35,8 +39,9 @@ pub fn inspect(scene: &Scene, mechanism: &Arc<Mechanism>) -> Result<Vec<String>,
     if mechanism.landscape.barrier.is_some() && !can_cross(scene, mechanism) {
         lines.push("the barrier does not lie between the stops, so that nothing crosses it".to_owned());
     }
-    lines.extend(frees_at(scene, mechanism).map(|amplitude| {
-        format!("at rest on its right stop the mass is released from {} g on", short(amplitude))
+    lines.extend(scene.harmonic().zip(frees_at(scene, mechanism)).map(|(drive, acceleration)| {
+        let (amplitude, unit) = (short(drive.amplitude_of(acceleration)), drive.unit());
+        format!("at rest on its right stop the mass is released from {amplitude} {unit} on")
     }));
     lines.extend(strikes_in_words(&model, scene));
     Ok(lines)

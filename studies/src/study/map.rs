@@ -1,12 +1,11 @@
 //! Cells of a map, and the lines at which motions begin to cross.
 
-use super::amplitudes::AMPLITUDE;
 use super::grid::name_of;
 use super::{Grid, Table, Values};
-use crate::dynamics::{Regime, STANDARD_GRAVITY};
+use crate::dynamics::Regime;
 use crate::mechanics::Mechanism;
 use crate::numeric::extent;
-use crate::scene::{Axis, Excitation, Scene, Start};
+use crate::scene::{Axis, Scene, Start};
 
 /// The travel limit, over which the release is known in closed form.
 const LIMIT: &str = "stops.travel_limit_mm";
@@ -17,17 +16,18 @@ const CROSS: [&str; 3] = [Regime::Interwell.name(), Regime::Irregular.name(), Re
 /// Points of the line of releases.
 const POINTS: usize = 400;
 
-/// `travel_limit_mm,amplitude_g`: the smallest amplitude of a sine that releases a mass from the stop on
+/// `travel_limit_mm` and the amplitude of the drive, such as `amplitude_g`: the smallest that releases a mass from the stop on
 /// which it rests: mass times base acceleration reaches the force that presses it there, amplitude =
 /// |F(D)|/m.
 ///
 /// Only for a grid over these two fields, from rest, and for travel limits inside the right-hand well:
 /// further out the mass does not rest on the stop.
 pub fn release_line(scene: &Scene, mechanism: &Mechanism, grid: &Grid) -> Option<Table> {
+    let drive = scene.harmonic()?;
     let applies = scene.stops.travel_limit_mm().is_some()
-        && matches!(scene.excitation, Excitation::Sine { .. })
+        && axis(grid, drive.amplitude_path()).is_some()
         && scene.start == Start::Rest;
-    let limits = axis(grid, LIMIT).filter(|_| applies && axis(grid, AMPLITUDE).is_some())?;
+    let limits = axis(grid, LIMIT).filter(|_| applies)?;
     let well = mechanism.landscape.right_stable()?.x;
     let (from, last) = extent(limits.values.iter().copied());
     let to = last.min(well * 1e3);
@@ -39,9 +39,9 @@ pub fn release_line(scene: &Scene, mechanism: &Mechanism, grid: &Grid) -> Option
     let pressed = |mm: f64| (-mechanism.curve.force(mm / 1e3)).max(0.0);
     let mass = scene.mass_g / 1e3;
     let limits: Vec<f64> = (0..POINTS).map(place).collect();
-    let amplitudes = limits.iter().map(|mm| pressed(*mm) / mass / STANDARD_GRAVITY).collect();
+    let amplitudes = limits.iter().map(|mm| drive.amplitude_of(pressed(*mm) / mass)).collect();
     let table = Table::new().with("travel_limit_mm", Values::Numbers(limits));
-    Some(table.with("amplitude_g", Values::Numbers(amplitudes)))
+    Some(table.with(name_of(drive.amplitude_path()), Values::Numbers(amplitudes)))
 }
 
 /// For each value of the other field the smallest amplitude, 0 or above, whose cell crosses, or NaN. The two
@@ -50,7 +50,7 @@ pub fn release_line(scene: &Scene, mechanism: &Mechanism, grid: &Grid) -> Option
 /// Only for a grid over two fields of which one is an amplitude. `rows` are all rows of the sweep.
 pub fn first_crossing(grid: &Grid, rows: &Table) -> Option<Table> {
     let [a, b] = grid.axes() else { return None };
-    let amplitude = |axis: &Axis| name_of(&axis.field) == "amplitude_g";
+    let amplitude = |axis: &Axis| name_of(&axis.field).starts_with("amplitude_");
     let (other, amplitude_axis) = match (amplitude(a), amplitude(b)) {
         (false, true) => (0, 1),
         (true, false) => (1, 0),

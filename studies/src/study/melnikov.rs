@@ -6,13 +6,12 @@
 //! Holmes 1983, section 4.5). It has zeros for some t_0 if the amplitude a of the base's acceleration is
 //! above c integral of v^2 dt / (m |integral of v exp(i w t) dt|).
 
-use super::amplitudes::AMPLITUDE;
 use super::grid_study::Cells;
 use super::thresholds::from_rest;
 use super::{Cancelled, Grid, NoThresholds, Table, Task};
-use crate::dynamics::{Model, STANDARD_GRAVITY};
+use crate::dynamics::Model;
 use crate::mechanics::Homoclinic;
-use crate::scene::{Excitation, Files, Scene};
+use crate::scene::{Files, Scene};
 use crate::system::threads::Pool;
 
 /// Melnikov's threshold in m/s^2 of the base's acceleration under a sine of this frequency in Hz, for the
@@ -49,8 +48,9 @@ pub fn melnikov_threshold(model: &Model, frequency_hz: f64) -> Option<f64> {
     threshold.is_finite().then_some(threshold)
 }
 
-/// A table of thresholds with one more column, `melnikov_g`: Melnikov's threshold in g in each cell of
-/// `grid`, missing where it does not apply and where the excitation is no sine. The runs begin at rest.
+/// A table of thresholds with one more column, `melnikov_g` for a sine, `melnikov_m_per_s2` or `melnikov_n` for
+/// a harmonic drive in SI: Melnikov's threshold of the amplitude in its unit in each cell of `grid`, missing
+/// where it does not apply and where the drive is not harmonic. The runs begin at rest.
 pub fn with_melnikov(
     table: Table,
     scene: &Scene,
@@ -63,16 +63,18 @@ pub fn with_melnikov(
     let threshold = |scene: &mut Scene, cell: usize| {
         task.check_cancelled()?;
         let built = cells.mechanism(cell as u64, 0, scene, task.cancel).ok_or(Cancelled)?;
-        let Excitation::Sine { frequency_hz, .. } = scene.excitation else { return Ok(None) };
+        let Some(drive) = scene.harmonic() else { return Ok(None) };
         let model = built.ok().and_then(|mechanism| Model::build(&from_rest(scene), mechanism).ok());
-        Ok(model.and_then(|model| melnikov_threshold(&model, frequency_hz)))
+        let threshold = model.and_then(|model| melnikov_threshold(&model, drive.frequency_hz));
+        Ok(threshold.map(|acceleration| drive.amplitude_of(acceleration)))
     };
     let found = pool.map(grid.cells() as usize, || cells.base.clone(), threshold);
     let found = found.map_err(|Cancelled| NoThresholds::Cancelled)?;
-    Ok(table.each("melnikov_g", &found, |found| found.map(|value| value / STANDARD_GRAVITY)))
+    let unit = scene.harmonic().and_then(|drive| drive.amplitude_path().strip_prefix("excitation.amplitude"));
+    Ok(table.each(&format!("melnikov{}", unit.unwrap_or("_g")), &found, |found| *found))
 }
 
 /// Whether Melnikov's threshold can stand beside a threshold of this field.
 pub fn suits_melnikov(scene: &Scene, field: &str) -> bool {
-    field == AMPLITUDE && matches!(scene.excitation, Excitation::Sine { .. })
+    scene.harmonic().is_some_and(|drive| drive.amplitude_path() == field)
 }

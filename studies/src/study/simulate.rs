@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicBool;
 use super::Table;
 use crate::dynamics::{Event, Model, Outcome, Output, Request, Sample, Summary};
 use crate::numeric::{Decimal, greatest_common_divisor, short};
-use crate::scene::{Excitation, Scene, TOLERANCES};
+use crate::scene::{Excitation, Harmonic, Scene, TOLERANCES};
 
 /// When to sample.
 #[derive(Debug, Clone, PartialEq)]
@@ -51,11 +51,12 @@ pub fn sample_times(
     let step = match sampling {
         Sampling::At(times) => return listed_times(times, duration),
         Sampling::Every(dt) => SamplingStep::part(*dt, 1),
-        Sampling::Default => match (&scene.excitation, model.forcing_period()) {
-            (Excitation::Sine { frequency_hz, .. } | Excitation::AmplitudeRamp { frequency_hz, .. }, _) => {
-                SamplingStep::period_of(*frequency_hz)
+        Sampling::Default => match (scene.harmonic(), &scene.excitation, model.forcing_period()) {
+            (Some(Harmonic { frequency_hz, .. }), ..)
+            | (_, &Excitation::AmplitudeRamp { frequency_hz, .. }, _) => {
+                SamplingStep::period_of(frequency_hz)
             }
-            (_, Some(period)) => SamplingStep::part(period, 60),
+            (_, _, Some(period)) => SamplingStep::part(period, 60),
             _ => SamplingStep::part(duration, 1000),
         },
     };

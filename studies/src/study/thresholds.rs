@@ -9,7 +9,7 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-use super::amplitudes::{AMPLITUDE, frees_at};
+use super::amplitudes::frees_at;
 use super::bisection::{Trial, between, next_between};
 use super::grid_study::Cells;
 use super::settled::{followed, runs_from};
@@ -267,8 +267,9 @@ impl Search<'_> {
     /// The threshold of `scene` with its `mechanism`; the family of models must be theirs.
     fn found(&self, scene: &Scene, mechanism: &Mechanism, scan: &Scan) -> Result<Found, Cancelled> {
         if self.onset == Onset::Release
-            && scan.field == AMPLITUDE
-            && let Some(frees) = frees_at(scene, mechanism)
+            && let Some(drive) = scene.harmonic().filter(|drive| drive.amplitude_path() == scan.field)
+            && let Some(frees) =
+                frees_at(scene, mechanism).map(|acceleration| drive.amplitude_of(acceleration))
             && let (Some(&first), Some(&last)) = (scan.values.first(), scan.values.last())
             && first > -frees
         {

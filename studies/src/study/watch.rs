@@ -401,15 +401,18 @@ pub fn continued_scene(scene: &Scene, here: &Model) -> Option<Scene> {
     put_phases(&mut scene.excitation, &mut turns).then_some(scene)
 }
 
-/// Sets the phases of all sines of an excitation. `turns` gives for each its phase and its offset for a
+/// Sets the phases of all sines and cosines of an excitation. `turns` gives for each its phase and its offset for a
 /// negative amplitude, in turns. False if another kind of excitation has a phase.
 fn put_phases(excitation: &mut Excitation, turns: &mut impl Iterator<Item = (f64, f64)>) -> bool {
+    let quarters = excitation.harmonic(1.0).map_or(0, |drive| drive.quarters) as f64;
     match excitation {
         Excitation::None | Excitation::Constant { .. } => true,
-        Excitation::Sine { amplitude_g, phase_deg, .. } => {
+        Excitation::Sine { amplitude_g: amplitude, phase_deg, .. }
+        | Excitation::Cosine { amplitude_m_per_s2: amplitude, phase_deg, .. }
+        | Excitation::Force { amplitude_n: amplitude, phase_deg, .. } => {
             let Some((turn, half)) = turns.next() else { return false };
-            let half = if *amplitude_g < 0.0 { 0.5 - half } else { half };
-            *phase_deg = 360.0 * (turn + half);
+            let half = if *amplitude < 0.0 { 0.5 - half } else { half };
+            *phase_deg = 360.0 * (turn + half - 0.25 * quarters);
             true
         }
         Excitation::Sum(terms) => terms.iter_mut().all(|term| put_phases(term, turns)),

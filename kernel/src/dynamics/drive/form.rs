@@ -12,8 +12,8 @@ use crate::dynamics::equation::Equation;
 use crate::dynamics::model::Model;
 use crate::dynamics::model::excitation::TonePart;
 use crate::dynamics::model::scales::Scales;
-use crate::numeric::pieces::Piece;
 use crate::numeric::Scalar;
+use crate::numeric::pieces::Piece;
 use crate::scene;
 
 /// Permitted change of the speed by a polynomial that replaces lines of a record, as a share of the

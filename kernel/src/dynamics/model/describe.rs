@@ -70,7 +70,11 @@ impl Model {
                 }
                 None => format!("{} m/s^2", short(tone.amplitude.abs())),
             };
-            lines.push(format!("base acceleration: sine of {} Hz, amplitude {size}", short(tone.frequency)));
+            let frequency = match tone.rate {
+                Some(rate) => format!("{} rad/s", short(rate)),
+                None => format!("{} Hz", short(tone.frequency)),
+            };
+            lines.push(format!("base acceleration: sine of {frequency}, amplitude {size}"));
         }
         for noise in &drive.noises {
             let [rms, low, high] = [noise.rms, noise.low, noise.high].map(short);

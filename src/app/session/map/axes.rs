@@ -58,7 +58,10 @@ pub fn default_axes(scene: &Scene, when_on: Stops, well_mm: Option<f64>) -> Opti
         return Some([a.clone(), b.clone()]);
     }
     let first = known.iter().find(|path| path.ends_with("travel_limit_mm"));
-    let second = known.iter().find(|path| path.ends_with("amplitude_g") || path.ends_with("rms_g"));
+    let is_amplitude = |path: &str| {
+        path.ends_with("rms_g") || path.rsplit('.').next().is_some_and(|name| name.starts_with("amplitude_"))
+    };
+    let second = known.iter().find(|path| is_amplitude(path));
     let rest = || known.iter().filter(|path| Some(*path) != first && Some(*path) != second);
     let a = first.or_else(|| rest().next())?;
     let b = second.or_else(|| rest().find(|path| *path != a))?;
@@ -86,6 +89,10 @@ pub fn axis(path: &str, scene: &Scene, when_on: Stops, well_mm: Option<f64>) -> 
         "amplitude_g" | "rms_g" if (0.3..=AMPLITUDES_G.1).contains(&present) => AMPLITUDES_G,
         "amplitude_g" | "rms_g" => {
             let to = if present > 0.0 { round_up(2.0 * present) } else { AMPLITUDES_G.1 };
+            (0.0, to, decimal(to / 100.0))
+        }
+        name if name.starts_with("amplitude_") && present > 0.0 => {
+            let to = round_up(2.0 * present);
             (0.0, to, decimal(to / 100.0))
         }
         "xi" => {

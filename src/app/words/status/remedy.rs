@@ -1,18 +1,15 @@
 //! Sentences about what it would take to cross, and how much amplitude there is to spare.
 
 use crate::dynamics::{Regime, Summary};
-use crate::scene::{Excitation, Scene, Stops};
+use crate::scene::{Scene, Stops};
 use crate::study::{Found, Thresholds};
 
 use super::super::capital;
 use super::super::numbers::{grams, grams_apart, grams_up};
 
-/// Amplitude in g of a drive that is one sine.
+/// Amplitude in g of a drive that is harmonic.
 pub(super) fn amplitude(scene: &Scene) -> Option<f64> {
-    match scene.excitation {
-        Excitation::Sine { amplitude_g, .. } => Some(amplitude_g.abs()),
-        _ => None,
-    }
+    Some(scene.harmonic()?.amplitude_g().abs())
 }
 
 /// Gaps that end below this multiple of the least amplitude that crosses are not mentioned.

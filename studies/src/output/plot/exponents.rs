@@ -7,8 +7,7 @@ use super::figure::Point;
 use super::role::Role;
 use super::sweep::{MAX_PICTURE_CELLS, NoPicture};
 use super::swept::{ascending, swept_axis};
-use crate::numeric::short;
-use crate::scene::{Excitation, Scene};
+use crate::scene::Scene;
 use crate::study::{Grid, Table};
 
 /// What the picture is drawn from.
@@ -88,13 +87,8 @@ pub fn exponents_chart(picture: &ExponentPicture) -> Result<Chart, NoPicture> {
 /// What is shown, in one line.
 fn about(picture: &ExponentPicture) -> String {
     let swept = picture.grid.axes().iter().map(|axis| axis.values.len()).sum::<usize>();
-    let shaken = match picture.scene.excitation {
-        Excitation::Sine { frequency_hz, .. }
-            if !picture.grid.axes().iter().any(|axis| axis.field == "excitation.frequency_hz") =>
-        {
-            format!(", shaken at {} Hz", short(frequency_hz))
-        }
-        _ => String::new(),
-    };
+    let is_swept = |field: &str| picture.grid.axes().iter().any(|axis| axis.field == field);
+    let drive = picture.scene.harmonic().filter(|drive| !is_swept(drive.frequency_path()));
+    let shaken = drive.map_or(String::new(), |drive| format!(", shaken at {}", drive.frequency_in_words()));
     format!("rates at which small changes of the settled motion grow, {swept} motions{shaken}")
 }

@@ -10,7 +10,7 @@ use super::role::Role;
 use super::surface::MAX_SURFACE_CELLS;
 use super::swept::{SweepPicture, View, ascending, cells, drawn, marks, of_each, swept_axis};
 use crate::numeric::short;
-use crate::scene::{Excitation, Scene, Start, find_name};
+use crate::scene::{Scene, Start, find_name};
 use crate::study::{DIRECTION, Direction, Grid, SUMMARY_FIELDS, Table};
 
 /// Largest number of cells in a picture: more than its pixels can distinguish.
@@ -194,10 +194,8 @@ pub fn sweep_about(grid: &Grid, scene: &Scene, walked: &[Direction], until_settl
     } else if scene.start == Start::Rest {
         parts.push("each from rest".to_owned());
     }
-    if let Excitation::Sine { frequency_hz, .. } = scene.excitation
-        && !swept("excitation.frequency_hz")
-    {
-        parts.push(format!("shaken at {} Hz", short(frequency_hz)));
+    if let Some(drive) = scene.harmonic().filter(|drive| !swept(drive.frequency_path())) {
+        parts.push(format!("shaken at {}", drive.frequency_in_words()));
     }
     parts.join(", ")
 }

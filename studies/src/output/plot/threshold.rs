@@ -29,8 +29,8 @@ pub struct ThresholdPicture<'a> {
     pub ranges: Ranges,
 }
 
-/// The column of Melnikov's threshold.
-const MELNIKOV: &str = "melnikov_g";
+/// The column of Melnikov's threshold, in the unit of the amplitude.
+const MELNIKOV: [&str; 3] = ["melnikov_g", "melnikov_m_per_s2", "melnikov_n"];
 
 /// Whether thresholds over this grid can be shown.
 pub fn can_show_thresholds(grid: &Grid) -> Result<(), NoPicture> {
@@ -72,7 +72,7 @@ pub fn threshold_chart(picture: &ThresholdPicture) -> Result<Chart, NoPicture> {
     };
     let names = grid.columns().iter().map(String::as_str);
     let more: Vec<&str> =
-        ["windows", MELNIKOV].into_iter().filter(|name| rows.column(name).is_some()).collect();
+        ["windows"].into_iter().chain(MELNIKOV).filter(|name| rows.column(name).is_some()).collect();
     let all = names.chain([&*least, "low", "high"]).chain(more.iter().copied());
     let mut drawn = Drawn::new(all, &[]);
     let fields = grid.columns().iter().map(String::as_str);
@@ -114,7 +114,7 @@ fn lines(picture: &ThresholdPicture, x: &str, series: Option<&str>, up: &str) ->
         .map(|row| [places[row], low[row], high[row]])
         .filter(|bar| !estimated || bar.iter().all(|end| end.is_finite()))
         .collect();
-    let melnikov = rows.numbers(MELNIKOV).unwrap_or_default();
+    let melnikov = MELNIKOV.iter().find_map(|name| rows.numbers(name)).unwrap_or_default();
     let ends = bars.iter().flat_map(|bar| [bar[1], bar[2]]);
     let from_zero = values.iter().copied().chain(ends).chain(melnikov.iter().copied()).chain([0.0]);
     let upward = PlotAxis::around(from_zero, 0.05, up).or_given(ranges.y);
