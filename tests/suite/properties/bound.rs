@@ -55,7 +55,10 @@ fn far(a: &[f64], b: &[f64]) -> f64 {
 fn shake(excitation: &mut Excitation, by: f64) {
     match excitation {
         Excitation::Constant { accel_g } => *accel_g *= by,
-        Excitation::Sine { amplitude_g, .. } | Excitation::Chirp { amplitude_g, .. } => *amplitude_g *= by,
+        Excitation::Sine { amplitude_g: amplitude, .. }
+        | Excitation::Chirp { amplitude_g: amplitude, .. }
+        | Excitation::Cosine { amplitude_m_per_s2: amplitude, .. }
+        | Excitation::Force { amplitude_n: amplitude, .. } => *amplitude *= by,
         Excitation::AmplitudeRamp { from_g, to_g, .. } => {
             *from_g *= by;
             *to_g *= by;

@@ -83,6 +83,12 @@ fn excitation() -> impl Strategy<Value = Excitation> {
             amplitude_g,
             phase_deg,
         }),
+        1 => (hz(), g(), signed(-15, 15)).prop_map(|(frequency_rad_per_s, amplitude_n, phase_deg)| {
+            Excitation::Force { amplitude_n, frequency_rad_per_s, phase_deg }
+        }),
+        1 => (hz(), g(), signed(-15, 15)).prop_map(|(frequency_rad_per_s, amplitude_m_per_s2, phase_deg)| {
+            Excitation::Cosine { amplitude_m_per_s2, frequency_rad_per_s, phase_deg }
+        }),
         1 => (hz(), g(), g(), magnitude(-15, 15)).prop_map(|(frequency_hz, from_g, to_g, over_s)| {
             Excitation::AmplitudeRamp { frequency_hz, from_g, to_g, over_s }
         }),

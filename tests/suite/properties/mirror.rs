@@ -14,8 +14,10 @@ fn opposite(excitation: &Excitation) -> Option<Excitation> {
     Some(match excitation {
         Excitation::None => Excitation::None,
         Excitation::Constant { accel_g } => Excitation::Constant { accel_g: -accel_g },
-        Excitation::Sine { frequency_hz, amplitude_g, phase_deg } => {
-            Excitation::Sine { frequency_hz: *frequency_hz, amplitude_g: -amplitude_g, phase_deg: *phase_deg }
+        Excitation::Sine { .. } | Excitation::Cosine { .. } | Excitation::Force { .. } => {
+            let mut other = excitation.clone();
+            other.amplitude_mut().into_iter().for_each(|amplitude| *amplitude = -*amplitude);
+            other
         }
         Excitation::AmplitudeRamp { frequency_hz, from_g, to_g, over_s } => Excitation::AmplitudeRamp {
             frequency_hz: *frequency_hz,

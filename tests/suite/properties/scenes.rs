@@ -96,13 +96,27 @@ fn frequency() -> impl Strategy<Value = f64> {
     prop_oneof![10 => 0.05..1.0f64, 1 => 1.0..30.0f64, 1 => 1e-4..0.05f64]
 }
 
+fn phase() -> impl Strategy<Value = f64> {
+    prop_oneof![Just(0.0), Just(90.0), Just(180.0), Just(270.0), -400.0..400.0f64]
+}
+
 /// One sine, in natural units.
 pub fn sine() -> impl Strategy<Value = Excitation> {
-    let phase = prop_oneof![Just(0.0), Just(90.0), Just(180.0), Just(270.0), -400.0..400.0f64];
-    (frequency(), amplitude(), phase).prop_map(|(frequency_hz, amplitude_g, phase_deg)| Excitation::Sine {
+    (frequency(), amplitude(), phase()).prop_map(|(frequency_hz, amplitude_g, phase_deg)| Excitation::Sine {
         frequency_hz,
         amplitude_g,
         phase_deg,
+    })
+}
+
+/// One cosine of the base or of a force, in natural units.
+pub fn cosine() -> impl Strategy<Value = Excitation> {
+    let rate = frequency().prop_map(|frequency| std::f64::consts::TAU * frequency);
+    (rate, amplitude(), phase(), any::<bool>()).prop_map(|(frequency_rad_per_s, a, phase_deg, force)| {
+        match force {
+            true => Excitation::Force { amplitude_n: a, frequency_rad_per_s, phase_deg },
+            false => Excitation::Cosine { amplitude_m_per_s2: a, frequency_rad_per_s, phase_deg },
+        }
     })
 }
 
@@ -143,6 +157,7 @@ fn part() -> Union<BoxedStrategy<Excitation>> {
         (2, Just(Excitation::None).boxed()),
         (2, (-2.0..2.0f64).prop_map(|accel_g| Excitation::Constant { accel_g }).boxed()),
         (6, sine().boxed()),
+        (2, cosine().boxed()),
         (2, ramp.boxed()),
         (2, chirp.boxed()),
         (1, noise.boxed()),

@@ -141,6 +141,16 @@ impl Units {
                 amplitude_g: self.gravities(*amplitude_g),
                 phase_deg: *phase_deg,
             },
+            Excitation::Cosine { amplitude_m_per_s2, frequency_rad_per_s, phase_deg } => Excitation::Cosine {
+                amplitude_m_per_s2: amplitude_m_per_s2 * self.length / (self.time * self.time),
+                frequency_rad_per_s: hz(*frequency_rad_per_s),
+                phase_deg: *phase_deg,
+            },
+            Excitation::Force { amplitude_n, frequency_rad_per_s, phase_deg } => Excitation::Force {
+                amplitude_n: amplitude_n * self.force(),
+                frequency_rad_per_s: hz(*frequency_rad_per_s),
+                phase_deg: *phase_deg,
+            },
             Excitation::AmplitudeRamp { frequency_hz, from_g, to_g, over_s } => Excitation::AmplitudeRamp {
                 frequency_hz: hz(*frequency_hz),
                 from_g: self.gravities(*from_g),

@@ -128,6 +128,9 @@ fn every_damping_and_stop_and_start_reads_and_writes() {
 #[test]
 fn every_excitation_reads_and_writes() {
     let sine = |phase_deg| Excitation::Sine { frequency_hz: 3.0, amplitude_g: -1.0, phase_deg };
+    let (frequency_rad_per_s, phase_deg) = (3.0, 90.0);
+    let cosine = Excitation::Cosine { amplitude_m_per_s2: -2.0, frequency_rad_per_s, phase_deg };
+    let force = Excitation::Force { amplitude_n: 0.4, frequency_rad_per_s, phase_deg: 0.0 };
     let constant = Excitation::Constant { accel_g: 0.1 };
     let ramp = Excitation::AmplitudeRamp { frequency_hz: 3.0, from_g: 0.0, to_g: 2.0, over_s: 10.0 };
     for (text, excitation) in [
@@ -135,6 +138,8 @@ fn every_excitation_reads_and_writes() {
         ("Constant(accel_g: 0.1)", constant.clone()),
         ("Sine(frequency_hz: 3, amplitude_g: -1)", sine(0.0)),
         ("Sine(frequency_hz: 3, amplitude_g: -1, phase_deg: 90)", sine(90.0)),
+        ("Cosine(amplitude_m_per_s2: -2, frequency_rad_per_s: 3, phase_deg: 90)", cosine),
+        ("Force(amplitude_n: 0.4, frequency_rad_per_s: 3)", force),
         ("AmplitudeRamp(frequency_hz: 3, from_g: 0, to_g: 2, over_s: 10)", ramp.clone()),
         (
             "Chirp(from_hz: 1, to_hz: 9, over_s: 5, amplitude_g: 0.5)",
@@ -206,7 +211,7 @@ fn structural_errors_have_a_place_and_the_known_names() {
         (
             ("excitation", "Sum([\n  Shock(peak_g: 1)])"),
             "s.ron:7:3: excitation.0: unknown choice `Shock` in Excitation; known: None, Constant, Sine, \
-             AmplitudeRamp, Chirp, Noise, Recorded, Sum",
+             Cosine, Force, AmplitudeRamp, Chirp, Noise, Recorded, Sum",
         ),
         (("excitation", "Noise(seed: 1)"), "`rms_g` is missing in Noise"),
         (
