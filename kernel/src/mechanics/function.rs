@@ -36,8 +36,9 @@ const BESIDE: usize = 4;
 /// Largest error of the extrapolation, relative to the change of the force that the corner makes.
 const CORNER_ERROR: f64 = 1e-3;
 
-/// Width, relative to the range, down to which the interval around a corner is narrowed.
-const CORNER_WIDTH: f64 = 1e-6;
+/// Width, relative to the range, down to which the interval around a corner is narrowed where rounding does not
+/// end it earlier.
+const CORNER_WIDTH: f64 = 1e-10;
 
 /// Why a function or samples have no force curve.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -245,9 +246,12 @@ impl<F: Fn(f64) -> f64> Sampled<F> {
             if compared.refined.is_empty() {
                 return Ok(Attempt::Curve(curve.with_fit(compared.report)));
             }
-            let mut corners = Vec::new();
+            // a corner beside a sample is seen from the intervals on both sides of it, and counts once
+            let (mut corners, mut known) = (Vec::new(), ends.clone());
             for interval in &compared.refined {
-                corners.extend(self.corner(*interval, &ends)?);
+                let corner = self.corner(*interval, &known)?;
+                corners.extend(corner);
+                known.extend(corner);
             }
             if !corners.is_empty() {
                 return Ok(Attempt::Corners(corners));
@@ -306,16 +310,17 @@ impl<F: Fn(f64) -> f64> Sampled<F> {
         Ok(Compared { report, refined })
     }
 
-    /// The corner in an interval, if the function has one there and is smooth beside it, up to the next of
-    /// `ends`. Narrower and narrower intervals around it locate it to rounding.
-    fn corner(&self, interval: (f64, f64), ends: &[f64]) -> Result<Option<f64>, FunctionError> {
-        let (low, high) = (ends[0], ends[ends.len() - 1]);
+    /// The corner in an interval, if the function has one there and is smooth beside it, up to the next of the
+    /// corners and ends of the range that are `known`. Narrower and narrower intervals around it locate it to
+    /// rounding.
+    fn corner(&self, interval: (f64, f64), known: &[f64]) -> Result<Option<f64>, FunctionError> {
+        let (low, high) = known.iter().fold((f64::MAX, f64::MIN), |(low, high), x| (low.min(*x), high.max(*x)));
         let (mut from, mut to) = interval;
         loop {
             let width = to - from;
             let beside = BESIDE as f64 * width;
             let (left, right) = (from - beside, to + beside);
-            if left < low || high < right || ends.iter().any(|end| left < *end && *end < right) {
+            if left < low || high < right || known.iter().any(|x| left < *x && *x < right) {
                 return Ok(None);
             }
             let Some((x, is_located)) = self.meeting(from, to)? else { return Ok(None) };
