@@ -63,7 +63,7 @@ fn report(spec: &str, common: &Common) -> Result<String, Failure> {
     {
         // the default is the amplitude of a Sine
         let field = drive.rate.map(|_| {
-            let present = drive.amplitude_of(drive.acceleration).abs();
+            let present = drive.amplitude().abs();
             format!("{}=0:{}", drive.amplitude_path(), short(if present > 0.0 { 2.0 * present } else { 1.0 }))
         });
         // the search takes long, so its command is named instead

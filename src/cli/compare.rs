@@ -26,7 +26,7 @@ pub struct Arguments {
     #[arg(value_name = "SCENE", default_value = "paper")]
     pub scenes: Vec<String>,
 
-    /// The scene whose excitation, a sine, and run all of them have [default: the first]
+    /// The scene whose excitation, a sine or cosine, and run all of them have [default: the first]
     #[arg(long, value_name = "SCENE")]
     pub environment: Option<String>,
 

@@ -75,8 +75,8 @@ pub struct Arguments {
     #[arg(long, value_name = "SECONDS", allow_hyphen_values = true, requires = "probability")]
     pub within: Option<String>,
 
-    /// Add the column melnikov_g: Melnikov's threshold of the amplitude of a sine, from quadrature; of a Cosine
-    /// or Force melnikov_m_per_s2 or melnikov_n
+    /// Add the column melnikov_g: Melnikov's threshold of the amplitude of a Sine, from quadrature; of a
+    /// Cosine or Force melnikov_m_per_s2 or melnikov_n
     #[arg(long, conflicts_with = "probability")]
     pub melnikov: bool,
 

@@ -363,7 +363,8 @@ pub const FIELDS: &[FieldInfo] = &[
         .control("force", ((0.0, 1.0, 0.01), Scale::Value), (0.0, 1e9),
             "Increase: the mass is pushed harder. Beyond some amplitude it crosses to the other well.")
         .axis(43),
-    field("excitation.frequency_rad_per_s", POSITIVE, "give an angular frequency in rad/s: 2 pi times that in Hz")
+    field("excitation.frequency_rad_per_s", POSITIVE,
+            "give an angular frequency in rad/s: 2 pi times that in Hz")
         .control("frequency", ((1.0, 100.0, 0.5), Scale::Value), (1e-3, 1e6),
             "Increase: the pushes follow each other faster and last less long.")
         .axis(44),

@@ -4,9 +4,9 @@ use super::data::{Excitation, Scene};
 use super::unit::{STANDARD_GRAVITY, unit_ending};
 use crate::numeric::short;
 
-/// A drive of one frequency, as the base acceleration
-/// `acceleration` sin(2 pi `frequency_hz` t + `phase_deg` + 90 degrees times `quarters`) with the same motion:
-/// a force F(t) on the mass m moves it like the base acceleration -F(t)/m.
+/// A drive of one frequency, as the base acceleration with the same motion, `acceleration`
+/// sin(2 pi `frequency_hz` t + `phase_deg` + 90 degrees times `quarters`): a force F(t) on the mass m moves it
+/// as the base acceleration -F(t)/m does.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Harmonic {
     /// Frequency in Hz.
@@ -76,6 +76,11 @@ impl Scene {
 }
 
 impl Harmonic {
+    /// Amplitude in the unit of its field.
+    pub fn amplitude(&self) -> f64 {
+        self.amplitude
+    }
+
     /// Path of the field of the amplitude.
     pub fn amplitude_path(&self) -> &'static str {
         self.path

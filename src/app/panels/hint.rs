@@ -8,7 +8,6 @@ use crate::app::ui::widgets::fitting;
 use crate::app::words::numbers::unbroken;
 use crate::app::words::status::grams;
 use crate::dynamics::EventKind;
-use crate::scene::Excitation;
 
 /// Distance in mm by which the stops have to be moved before the trade-off counts as tried.
 const TRIED_MM: f64 = 0.3;
@@ -141,13 +140,12 @@ impl Hint {
 
     /// Whether only the shaking and the stops differ from the scene as it was opened.
     fn is_fair_comparison(&self, session: &Session) -> bool {
-        let mut scene = session.scene().clone();
-        let opened = session.editor.saved();
-        scene.stops = opened.stops;
-        if let Excitation::Sine { amplitude_g, .. } = &mut scene.excitation {
-            *amplitude_g = self.opened_g;
+        let (scene, mut opened) = (session.scene(), session.editor.saved().clone());
+        opened.stops = scene.stops;
+        if let (Some(amplitude), Some(drive)) = (opened.excitation.amplitude_mut(), scene.harmonic()) {
+            *amplitude = drive.amplitude();
         }
-        scene == *opened
+        *scene == opened
     }
 
     pub fn dismiss(&mut self) {

@@ -148,8 +148,8 @@ impl Session {
     }
 }
 
-/// A scene from rest with a sine of 0 g in place of a harmonic drive: scenes that differ only in amplitude and
-/// start have the same thresholds in g.
+/// A scene from rest with a sine of 0 g in place of a harmonic drive: scenes that differ only in amplitude
+/// and start have the same thresholds in g.
 pub(super) fn unshaken(scene: &Scene) -> Scene {
     let mut scene = Scene { start: Start::Rest, ..scene.clone() };
     if let Some(drive) = scene.harmonic() {

@@ -3,12 +3,12 @@
 //! Undo is a stack of scenes: a scene is plain, comparable data of a few hundred bytes, and one gesture (a
 //! drag, a click, a number typed) is one step.
 
+use std::mem::discriminant;
 use std::path::Path;
 
 use crate::output::write_file;
 use crate::scene::{
-    Document, Excitation, FileError, Files, Scene, SceneError, Source, Start, is_link, named_paths,
-    numeric_fields,
+    Document, FileError, Files, Scene, SceneError, Source, Start, is_link, named_paths, numeric_fields,
 };
 use crate::system;
 
@@ -117,9 +117,9 @@ impl Editor {
     pub fn is_play(&self) -> bool {
         let (scene, mut played) = (&self.document.scene, self.saved.clone());
         (played.stops, played.start) = (scene.stops, scene.start);
-        if let (Excitation::Sine { phase_deg, .. }, Excitation::Sine { phase_deg: before, .. }) =
-            (&scene.excitation, &played.excitation)
-            && phase_deg == before
+        if let (Some(drive), Some(before)) = (scene.harmonic(), played.harmonic())
+            && discriminant(&scene.excitation) == discriminant(&played.excitation)
+            && drive.phase_deg == before.phase_deg
         {
             played.excitation = scene.excitation.clone();
         }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use crate::app::session::Session;
-use crate::app::session::map::ground;
+use crate::app::session::map::{ground, is_amplitude};
 use crate::app::task::{Background, Identity, pool};
 use crate::app::words::numbers::decimal;
 use crate::dynamics::Model;
@@ -119,7 +119,7 @@ impl Session {
             return Some(chosen.clone());
         }
         let known = self.map_fields();
-        let path = known.iter().find(|path| path.ends_with("amplitude_g")).or(known.first())?;
+        let path = known.iter().find(|path| is_amplitude(path)).or(known.first())?;
         Some(self.map_axis(path))
     }
 

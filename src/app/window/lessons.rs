@@ -463,7 +463,8 @@ fn names_control(word: &str, path: &str) -> bool {
     let label = name.trim_end_matches(" ±").to_lowercase();
     match path {
         "stops" => ["stops", "stop"].contains(&word),
-        "excitation.amplitude_g" | "excitation.rms_g" => word == "shaking" || word == label,
+        "excitation.rms_g" => word == "shaking" || word == label,
+        _ if path.starts_with("excitation.amplitude_") => word == "shaking" || word == label,
         "stops.travel_limit_mm" => ["travel limit", "position"].contains(&word),
         "start.v_m_per_s" => ["flick", "start", "velocity", label.as_str()].contains(&word),
         _ => word == label,

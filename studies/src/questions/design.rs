@@ -81,13 +81,13 @@ impl Compare {
 pub fn needs_a_sine(environment: &Document) -> Result<(f64, f64), Error> {
     let problem = match (&environment.scene.excitation, environment.scene.harmonic()) {
         (Excitation::Force { .. }, _) => {
-            "its excitation is a Force, which shakes scenes of different masses differently: name a scene with \
-             a Sine or Cosine first, or by --environment"
+            "its excitation is a Force, which shakes scenes of different masses differently: name a scene \
+             with a Sine or Cosine first, or by --environment"
         }
         (_, Some(drive)) => return Ok((drive.frequency_hz, drive.amplitude_g())),
         _ => {
-            "its excitation is no Sine; amplitude and frequency of one are searched: name a scene with a Sine \
-             first, or by --environment"
+            "its excitation is no Sine; amplitude and frequency of one are searched: name a scene with a \
+             Sine first, or by --environment"
         }
     };
     Err(Error::unfit(environment, problem))

@@ -244,8 +244,8 @@ impl Default for Threshold {
 }
 
 /// Why there is no Melnikov's threshold of a field.
-pub const NO_MELNIKOV: &str = "it is an amplitude of one sine: take a Sine, Cosine or Force, and search its amplitude, such as \
-     excitation.amplitude_g";
+pub const NO_MELNIKOV: &str = "it is an amplitude of one sine: take a Sine, Cosine or Force, and search its \
+                               amplitude, such as excitation.amplitude_g";
 
 /// The field and range of the default question.
 const DEFAULT_FIELD: &str = "excitation.amplitude_g=0:2";

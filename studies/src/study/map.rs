@@ -16,9 +16,9 @@ const CROSS: [&str; 3] = [Regime::Interwell.name(), Regime::Irregular.name(), Re
 /// Points of the line of releases.
 const POINTS: usize = 400;
 
-/// `travel_limit_mm` and the amplitude of the drive, such as `amplitude_g`: the smallest that releases a mass from the stop on
-/// which it rests: mass times base acceleration reaches the force that presses it there, amplitude =
-/// |F(D)|/m.
+/// `travel_limit_mm` and the amplitude of the drive, such as `amplitude_g`: the smallest that releases a mass
+/// from the stop on which it rests. Mass times base acceleration reaches the force that presses it there,
+/// acceleration = |F(D)|/m.
 ///
 /// Only for a grid over these two fields, from rest, and for travel limits inside the right-hand well:
 /// further out the mass does not rest on the stop.

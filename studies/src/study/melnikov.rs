@@ -48,9 +48,9 @@ pub fn melnikov_threshold(model: &Model, frequency_hz: f64) -> Option<f64> {
     threshold.is_finite().then_some(threshold)
 }
 
-/// A table of thresholds with one more column, `melnikov_g` for a sine, `melnikov_m_per_s2` or `melnikov_n` for
-/// a harmonic drive in SI: Melnikov's threshold of the amplitude in its unit in each cell of `grid`, missing
-/// where it does not apply and where the drive is not harmonic. The runs begin at rest.
+/// A table of thresholds with one more column, `melnikov_g` for a sine, `melnikov_m_per_s2` or `melnikov_n`
+/// for a harmonic drive in SI: Melnikov's threshold of the amplitude in its unit in each cell of `grid`,
+/// missing where it does not apply and where the drive is not harmonic. The runs begin at rest.
 pub fn with_melnikov(
     table: Table,
     scene: &Scene,

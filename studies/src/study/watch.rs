@@ -401,8 +401,8 @@ pub fn continued_scene(scene: &Scene, here: &Model) -> Option<Scene> {
     put_phases(&mut scene.excitation, &mut turns).then_some(scene)
 }
 
-/// Sets the phases of all sines and cosines of an excitation. `turns` gives for each its phase and its offset for a
-/// negative amplitude, in turns. False if another kind of excitation has a phase.
+/// Sets the phases of all sines and cosines of an excitation. `turns` gives for each its phase and its offset
+/// for a negative amplitude, in turns. False if another kind of excitation has a phase.
 fn put_phases(excitation: &mut Excitation, turns: &mut impl Iterator<Item = (f64, f64)>) -> bool {
     let quarters = excitation.harmonic(1.0).map_or(0, |drive| drive.quarters) as f64;
     match excitation {

@@ -8,7 +8,7 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 
 use super::start::fault;
 use crate::numeric::{Ratio, greatest_common_divisor};
-use crate::scene::{Excitation, Fault, Record};
+use crate::scene::{Excitation, Fault, Harmonic, Record};
 
 pub use crate::scene::STANDARD_GRAVITY;
 
@@ -69,8 +69,21 @@ impl TonePart {
         self.amplitude.abs().max(self.ramp.map_or(0.0, |(from, _)| from.abs()))
     }
 
-    /// Frequency over that of another tone, if both are written in the same unit and the ratio of the decimals
-    /// has a small enough numerator and denominator.
+    fn of(drive: Harmonic) -> Self {
+        let (quarters, phase) = drive.turns();
+        Self {
+            amplitude: if quarters >= 2 { -drive.acceleration } else { drive.acceleration },
+            frequency: drive.frequency_hz,
+            rate: drive.rate,
+            phase,
+            quarter: quarters % 2 == 1,
+            ramp: None,
+            noise: false,
+        }
+    }
+
+    /// Frequency over that of another tone, if both are written in the same unit and the ratio of the
+    /// decimals has a small enough numerator and denominator.
     pub(crate) fn ratio_to(&self, other: &Self) -> Option<Ratio> {
         match (self.rate, other.rate) {
             (Some(rate), Some(other)) => Ratio::of_decimals(rate, other),
@@ -126,24 +139,11 @@ impl ExcitationParts {
     }
 
     fn add(&mut self, excitation: &Excitation, mass: f64, path: &str) -> Result<(), Fault> {
-        if let Some(harmonic) = excitation.harmonic(mass) {
-            let (quarters, phase) = harmonic.turns();
-            self.tones.push(TonePart {
-                amplitude: if quarters >= 2 { -harmonic.acceleration } else { harmonic.acceleration },
-                frequency: harmonic.frequency_hz,
-                rate: harmonic.rate,
-                phase,
-                quarter: quarters % 2 == 1,
-                ramp: None,
-                noise: false,
-            });
-            return Ok(());
-        }
         match excitation {
-            Excitation::None
-            | Excitation::Sine { .. }
-            | Excitation::Cosine { .. }
-            | Excitation::Force { .. } => {}
+            Excitation::None => {}
+            Excitation::Sine { .. } | Excitation::Cosine { .. } | Excitation::Force { .. } => {
+                self.tones.extend(excitation.harmonic(mass).map(TonePart::of));
+            }
             Excitation::Constant { accel_g } => self.constant += accel_g * STANDARD_GRAVITY,
             Excitation::AmplitudeRamp { frequency_hz, from_g, to_g, over_s } => self.tones.push(TonePart {
                 amplitude: to_g * STANDARD_GRAVITY,

@@ -149,8 +149,8 @@ impl Model {
         &self.excitation
     }
 
-    /// Phase of the drive at a time in s, in turns: the argument of its sine or cosine, or for a sum the fraction of
-    /// the common period since the start. `None` if the drive does not repeat.
+    /// Phase of the drive at a time in s, in turns: the argument of its sine or cosine, or for a sum the
+    /// fraction of the common period since the start. `None` if the drive does not repeat.
     pub fn drive_phase(&self, t: f64) -> Option<f64> {
         let frequency = self.excitation.fastest().filter(|_| self.repeats())?;
         let cycles = DoubleDouble::of(self.window_periods().1 as f64);

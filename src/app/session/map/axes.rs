@@ -58,14 +58,16 @@ pub fn default_axes(scene: &Scene, when_on: Stops, well_mm: Option<f64>) -> Opti
         return Some([a.clone(), b.clone()]);
     }
     let first = known.iter().find(|path| path.ends_with("travel_limit_mm"));
-    let is_amplitude = |path: &str| {
-        path.ends_with("rms_g") || path.rsplit('.').next().is_some_and(|name| name.starts_with("amplitude_"))
-    };
-    let second = known.iter().find(|path| is_amplitude(path));
+    let second = known.iter().find(|path| is_amplitude(path) || path.ends_with("rms_g"));
     let rest = || known.iter().filter(|path| Some(*path) != first && Some(*path) != second);
     let a = first.or_else(|| rest().next())?;
     let b = second.or_else(|| rest().find(|path| *path != a))?;
     Some([a, b].map(|path| axis(path, scene, when_on, well_mm)))
+}
+
+/// Whether a field is the amplitude of a drive.
+pub fn is_amplitude(path: &str) -> bool {
+    path.rsplit('.').next().is_some_and(|name| name.starts_with("amplitude_"))
 }
 
 /// An axis over a field, around its present value; `well_mm` is the position of the right-hand well.

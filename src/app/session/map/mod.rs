@@ -17,7 +17,7 @@ use crate::scene::{Axis, FieldPath, Scene, Stops, SweepAxis};
 use crate::study::{Cell, RMS_VELOCITY, STANDARD_COLUMNS, SummaryField, Task};
 
 pub use crate::numeric::short;
-pub use axes::{ground, label, over, part};
+pub use axes::{ground, is_amplitude, label, over, part};
 pub use cells::Map;
 
 /// Time in s without a change after which a map is begun in the middle of a gesture.

@@ -283,6 +283,10 @@ impl Bench<'_> {
     }
 }
 
+/// Ends of the fields of a drive that are amplitudes.
+const AMPLITUDES: &[&str] =
+    &["accel_g", "amplitude_g", "amplitude_m_per_s2", "amplitude_n", ".from_g", ".to_g", "rms_g"];
+
 /// The scene with one datum changed at a time: mass, speed, drive, damping, restitution and electrical data,
 /// each given by the begin and the ends of its field paths.
 fn changed(setup: &Setup, change: f64) -> Vec<Setup> {
@@ -290,7 +294,7 @@ fn changed(setup: &Setup, change: f64) -> Vec<Setup> {
     let data: [(&str, &[&str], f64); 9] = [
         ("mass_g", &[""], more),
         ("start.v_m_per_s", &[""], more),
-        ("excitation.", &["accel_g", "amplitude_g", ".from_g", ".to_g", "rms_g"], more),
+        ("excitation.", AMPLITUDES, more),
         ("damping.", &[""], more),
         ("stops.restitution", &[""], less),
         ("start.electrical", &[""], more),
