@@ -846,7 +846,8 @@ class Scene(Mapping[str, Any]):
             Time in s up to which each run goes on until its motion repeats; by default 1000 forcing periods
             beyond the scene's run.
         melnikov : bool
-            Whether the column ``melnikov_g`` is added, Melnikov's threshold of the amplitude of a sine.
+            Whether the column ``melnikov_g`` is added, Melnikov's threshold of the amplitude of a sine; of a
+            ``Cosine`` or ``Force`` it is ``melnikov_m_per_s2`` or ``melnikov_n``.
         probability : float, optional
             Under a noise: share of the runs, above 0 and below 1, that cross the barrier at the threshold.
         runs : int, optional
@@ -1269,8 +1270,8 @@ class Scene(Mapping[str, Any]):
         Raises
         ------
         SceneError
-            If an argument is no scene, the excitation of this scene is no sine, another scene cannot be read,
-            or one has faults under it.
+            If an argument is no scene, the excitation of this scene is no sine or cosine, another scene
+            cannot be read, or one has faults under it.
 
         Notes
         -----

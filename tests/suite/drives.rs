@@ -1,5 +1,7 @@
 //! Chirps, noise and records: the acceleration of the base, and the motion of the mass.
 
+mod harmonic;
+
 use std::f64::consts::TAU;
 
 use interwell::dynamics::{EventKind, Request, STANDARD_GRAVITY};

@@ -3,6 +3,7 @@
 mod circuit;
 mod events;
 mod leaps;
+mod literature;
 mod one_stop;
 
 use std::f64::consts::{PI, TAU};
@@ -24,12 +25,17 @@ fn find(model: &Model, phase: f64, period: Option<u32>) -> Result<Orbit, NoOrbit
     orbit(model, phase, period, &AtomicBool::new(false))
 }
 
+/// The branch over a field of a scene, of motions with their states at this phase in turns.
+fn over(field: &str, document: &Document, range: (f64, f64), phase: f64, period: Option<u32>) -> Branch {
+    let mechanism = Arc::new(Mechanism::build(&document.scene.mechanism, &document.files).unwrap());
+    let family = Family::new(&document.scene, &document.files, &mechanism, field);
+    let task = Task { tick: &|| (), cancel: &AtomicBool::new(false) };
+    branch(&family, field, range, phase, period, &task).unwrap_or_else(|error| panic!("{error}"))
+}
+
 /// The branch over the amplitude of a scene.
 fn over_amplitude(document: &Document, range: (f64, f64), period: Option<u32>) -> Branch {
-    let mechanism = Arc::new(Mechanism::build(&document.scene.mechanism, &document.files).unwrap());
-    let family = Family::new(&document.scene, &document.files, &mechanism, AMPLITUDE);
-    let task = Task { tick: &|| (), cancel: &AtomicBool::new(false) };
-    branch(&family, AMPLITUDE, range, 0.0, period, &task).unwrap_or_else(|error| panic!("{error}"))
+    over(AMPLITUDE, document, range, 0.0, period)
 }
 
 /// The multipliers of an orbit without a circuit.

@@ -5,8 +5,8 @@ use super::unit::{STANDARD_GRAVITY, unit_ending};
 use crate::numeric::short;
 
 /// A drive of one frequency, as the base acceleration with the same motion, `acceleration`
-/// sin(2 pi `frequency_hz` t + `phase_deg` + 90 degrees times `quarters`): a force F(t) on the mass m moves it
-/// as the base acceleration -F(t)/m does.
+/// sin(2 pi `frequency_hz` t + `phase_deg` + 90 degrees times `quarters`): a force F(t) on the mass m moves
+/// it as the base acceleration -F(t)/m does.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Harmonic {
     /// Frequency in Hz.

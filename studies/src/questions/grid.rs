@@ -231,8 +231,9 @@ pub struct Threshold {
     pub resolution: Option<f64>,
     /// Each run continues until its motion repeats, at most up to this time in s.
     pub until_settled: Option<f64>,
-    /// Whether the column `melnikov_g` is added: Melnikov's threshold, in closed form up to quadrature
-    /// ([`melnikov_threshold`](crate::study::melnikov_threshold)). It needs a sine's amplitude as field.
+    /// Whether the column `melnikov_g` is added, of a cosine or force in SI `melnikov_m_per_s2` or
+    /// `melnikov_n`: Melnikov's threshold, in closed form up to quadrature
+    /// ([`melnikov_threshold`](crate::study::melnikov_threshold)). It needs the drive's amplitude as field.
     pub melnikov: bool,
 }
 

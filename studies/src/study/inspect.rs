@@ -20,7 +20,7 @@ pub fn inspect(scene: &Scene, mechanism: &Arc<Mechanism>) -> Result<Vec<String>,
     let mut lines = model.describe();
     if let (Excitation::Force { amplitude_n, .. }, Some(drive)) = (&scene.excitation, scene.harmonic()) {
         let (size, frequency) = (short(amplitude_n.abs()), drive.frequency_in_words());
-        lines.push(format!("this is a force on the mass of {size} N at {frequency}, as -force/mass"));
+        lines.push(format!("that is -force/mass of a force on the mass: {size} N at {frequency}"));
     }
     if mechanism.parts.is_empty() {
         lines.extend(force(mechanism));

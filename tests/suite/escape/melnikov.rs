@@ -3,9 +3,10 @@
 use std::f64::consts::{PI, TAU};
 
 use interwell::dynamics::Model;
+use interwell::questions::{Progress, Simulation, Threshold};
 use interwell::study::melnikov_threshold;
 
-use crate::support::{Draw, model, near_relative};
+use crate::support::{Draw, build, documented, model, near_relative};
 
 /// The threshold in m/s^2 of m x'' + c x' - k x + a x^3 = -m A sin(w t), from
 /// 4 d cosh(pi w/2)/(3 sqrt(2) pi w) in the units of the oscillator (Guckenheimer and Holmes 1983, section
@@ -109,4 +110,52 @@ fn it_is_left_out_where_it_does_not_apply() {
     assert_eq!(of(0.1, corner, "", 0.2), None);
     let short = "Pieces(ends_m: [-1.3, 1.3], pieces: [(coefficients_si: [0, -1, 0, 1])])";
     assert_eq!(of(0.1, short, "", 0.2), None);
+}
+
+/// x'' + g x' - x (1 - x^2)/2 = f cos(w t): f = sqrt(2) g cosh(pi w/sqrt(2))/(3 pi w).
+fn of_moon_and_holmes(damping: f64, angular: f64) -> f64 {
+    2_f64.sqrt() * damping * (PI * angular / 2_f64.sqrt()).cosh() / (3.0 * PI * angular)
+}
+
+#[test]
+fn the_beam_of_moon_and_holmes_has_its_own_as_a_force() {
+    let document = documented("Magnetoelastic beam of Moon and Holmes");
+    let exact = of_moon_and_holmes(0.0168, 1.0);
+    assert!(include_str!("../../../docs/scene.md").contains(&format!("here {exact:.7};")), "{exact}");
+    let mut draw = Draw(3);
+    let mut drawn = vec![(0.0168, 1.0)];
+    drawn.extend((0..20).map(|_| (draw.between(0.001, 0.3), draw.between(0.2, 4.0))));
+    for (damping, angular) in drawn {
+        let mut document = document.clone();
+        document.set(&format!("damping.c_n_s_per_m={damping:?}")).unwrap();
+        document.set(&format!("excitation.frequency_rad_per_s={angular:?}")).unwrap();
+        let drive = document.scene.harmonic().unwrap();
+        let found = melnikov_threshold(&build(&document), drive.frequency_hz).unwrap();
+        near_relative(drive.amplitude_of(found), of_moon_and_holmes(damping, angular), 1e-8);
+    }
+}
+
+#[test]
+fn of_a_force_it_is_in_newtons_for_the_mass_of_each_cell() {
+    let (linear, cubic, damping, angular) = (1.0, 1.0, 0.1, 0.9);
+    let scene = format!(
+        "(title: \"\", mass_g: 1000, mechanism: Cubic(linear_n_per_m: {:?}, cubic_n_per_m3: {cubic:?}), \
+         damping: Coefficient(c_n_s_per_m: {damping:?}), run: (duration_s: 60), \
+         excitation: Force(amplitude_n: 0, frequency_rad_per_s: {angular:?}))",
+        -linear
+    );
+    let masses = [400.0, 1000.0, 2500.0];
+    let simulation = Simulation::from_text("force", &scene).unwrap();
+    let question = Threshold {
+        over: vec![("mass_g".to_owned(), masses.to_vec())],
+        field: "excitation.amplitude_n=0:0.01:0.005".to_owned(),
+        melnikov: true,
+        ..Threshold::default()
+    };
+    let table = question.run(&simulation, &Progress::none()).unwrap();
+    let found = table.numbers("melnikov_n").unwrap();
+    for (mass_g, found) in masses.iter().zip(found) {
+        let mass = mass_g / 1e3;
+        near_relative(*found, mass * of_duffing(mass, damping, linear, cubic, angular), 1e-8);
+    }
 }

@@ -5,7 +5,7 @@ use interwell::numeric::{DoubleDouble, Number, Scalar};
 use interwell::scene::{Mechanism, Moments};
 
 use super::{build, close};
-use crate::support::Draw;
+use crate::support::{Draw, documented};
 
 fn magnet(strength_n_mm4: f64, gap_mm: f64) -> Mechanism {
     Mechanism::Magnet { strength_n_mm4, gap_mm, moments: Moments::Transverse }
@@ -115,5 +115,35 @@ fn beside_a_spring_the_equilibria_are_those_of_the_closed_form() {
             magnet(-strength * 1e12, gap * 1e3),
         ]));
         assert_eq!(attracting.landscape.equilibria.len(), 1);
+    }
+}
+
+/// The equation of Cottone, Vocca and Gammaitoni (2009): wells at x^2 = (3 K/k)^(2/5) - D^2, two of them
+/// where D is below (3 K/k)^(1/5).
+#[test]
+fn the_pendulum_of_cottone_vocca_and_gammaitoni_has_two_wells_up_to_the_distance_of_the_formula() {
+    let document = documented("Pendulum of Cottone, Vocca and Gammaitoni");
+    let (strength, k) = (5e-10_f64, 25.0);
+    let most = (3.0 * strength / k).powf(0.2);
+    let well = |gap: f64| (most * most - gap * gap).sqrt();
+    let page = include_str!("../../../docs/scene.md");
+    assert!(page.contains(&format!("here x = {:.3} mm", 1e3 * well(8e-3))), "{}", well(8e-3));
+    assert!(page.contains(&format!("here {:.3} mm", 1e3 * most)), "{most}");
+    let mut draw = Draw(14);
+    let mut gaps = vec![8e-3, most * 0.999, most * 1.001];
+    gaps.extend((0..20).map(|_| most * draw.between(0.3, 1.7)));
+    for gap in gaps {
+        let mut document = document.clone();
+        document.set(&format!("mechanism.1.gap_mm={:?}", 1e3 * gap)).unwrap();
+        let landscape = &build(document.scene.mechanism.clone()).landscape;
+        let places: Vec<f64> = landscape.equilibria.iter().map(|one| one.x).collect();
+        if gap > most {
+            assert_eq!(places, [0.0], "{gap}");
+            continue;
+        }
+        assert_eq!(places.len(), 3, "{gap}");
+        for (x, exact) in places.iter().zip([-well(gap), 0.0, well(gap)]) {
+            assert!((x - exact).abs() < 1e-5 * most, "{x} {exact}");
+        }
     }
 }

@@ -40,7 +40,7 @@ impl OneStop {
     }
 
     /// What the free motion makes of a state in a period.
-    fn free(&self) -> [[f64; 2]; 2] {
+    pub fn free(&self) -> [[f64; 2]; 2] {
         let decay = 0.5 * self.damping;
         let turn = (1.0 - decay * decay).sqrt();
         let time = self.time();
@@ -71,7 +71,7 @@ impl OneStop {
     }
 
     /// The sum of the multipliers at an impact of this speed.
-    fn sum(&self, speed: f64) -> f64 {
+    pub fn sum(&self, speed: f64) -> f64 {
         let [[a, b], [_, d]] = self.free();
         (1.0 + self.e) * (self.push() - self.w * self.w / speed) * b - self.e * (a + d)
     }

@@ -51,6 +51,9 @@ fn excitation() -> impl Strategy<Value = Excitation> {
         (number(), number(), number()).prop_map(|(frequency_hz, amplitude_g, phase_deg)| {
             Excitation::Sine { frequency_hz, amplitude_g, phase_deg }
         }),
+        (number(), number(), number()).prop_map(|(frequency_rad_per_s, amplitude_n, phase_deg)| {
+            Excitation::Force { amplitude_n, frequency_rad_per_s, phase_deg }
+        }),
         (number(), number(), number(), number()).prop_map(|(frequency_hz, from_g, to_g, over_s)| {
             Excitation::AmplitudeRamp { frequency_hz, from_g, to_g, over_s }
         }),
