@@ -198,7 +198,7 @@ fn the_keys_of_a_manifest_are_documented() {
 #[test]
 fn scenes_in_the_documents_are_valid() {
     let scenes: Vec<&str> = [README, SCENE].iter().flat_map(|page| blocks(page, "ron")).collect();
-    assert_eq!(scenes.len(), 5);
+    assert_eq!(scenes.len(), 9);
     for text in scenes {
         Document::from_text("document", text, Files::default()).unwrap().check().unwrap();
     }

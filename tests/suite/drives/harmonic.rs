@@ -8,12 +8,13 @@ use interwell::scene::{Document, Excitation, Files, Scene, check};
 use interwell::study::{Watch, continued_scene};
 use proptest::prelude::*;
 
+use crate::cli::stdout;
 use crate::properties::harness::{hold_for, text};
 use crate::properties::scenes;
 use crate::support::{Draw, build, changed, every, model, near, near_relative, preset, run_at, same_bits};
 
-/// A drive in SI and the sine of the base with the same motion, for a mass of a power of two in kg: amplitude,
-/// frequency and phase of both are then the same to the last bit.
+/// A drive in SI and the sine of the base with the same motion, for a mass of a power of two in kg:
+/// amplitude, frequency and phase of both are then the same to the last bit.
 fn twins(acceleration_g: f64, rate: f64, turns: i32, mass: f64, force: bool) -> [Excitation; 2] {
     // whole parts of a degree, so that a quarter turn more is exact
     let phase_deg = f64::from(turns) / 1024.0;
@@ -71,6 +72,7 @@ const ROUNDING: f64 = 4e-15;
 #[test]
 fn a_force_moves_a_mass_as_the_sine_of_its_amplitude_over_the_mass_to_rounding() {
     let mut draw = Draw(21);
+    let mut worst = [0.0_f64; 2];
     for _ in 0..60 {
         let (mass, rate) = (10_f64.powf(draw.between(-4.0, 2.0)), draw.between(0.2, 3.0));
         let (force, phase) = (draw.between(-2.0, 2.0), draw.between(-400.0, 400.0));
@@ -100,12 +102,51 @@ fn a_force_moves_a_mass_as_the_sine_of_its_amplitude_over_the_mass_to_rounding()
             let apart = si.base_acceleration(one.t) - sine.base_acceleration(one.t);
             near(apart, 0.0, ROUNDING * acceleration);
             // a linear oscillator passes on what the drive has, and each step rounds once more
-            near(one.x, other.x, 1e-12 * size);
+            near(one.x, other.x, 1e-13 * size);
+            worst[0] = worst[0].max(apart.abs() / acceleration);
+            worst[1] = worst[1].max((one.x - other.x).abs() / size);
         }
     }
+    println!("apart by {:.1e} of the amplitude, {:.1e} of the motion", worst[0], worst[1]);
 }
 
-/// A linear oscillator under a force, whose steady motion has the speed F w/|k - m w^2 + i c w|/sqrt(2) (rms).
+#[test]
+fn every_command_says_of_a_force_what_it_says_of_its_sine() {
+    const TONES: [(&str, &str); 2] = [
+        ("Force(amplitude_n:A*9.80665,frequency_rad_per_s:0.9,phase_deg:90)", "--phase-deg 90"),
+        ("Sine(frequency_hz:0.9/(2*pi),amplitude_g:A,phase_deg:360)", "--phase-deg 0"),
+    ];
+    let coil =
+        "--set transducer=Electromagnetic(coupling_v_s_per_m:0.1,coil_ohm:1,load_ohm:1,inductance_mh:100)";
+    // each with a mass of 1 kg; PHASE is that at which both drives have the same acceleration
+    for line in [
+        "simulate duffing",
+        "simulate duffing COIL",
+        "sweep duffing --over damping.c_n_s_per_m=0.1:0.5:0.1 --carry both",
+        "section duffing PHASE",
+        "exponents duffing --periods 100 COIL",
+        "spectrum duffing",
+        "best duffing --over damping.c_n_s_per_m=0.1:0.5:0.1",
+        "orbit duffing PHASE COIL",
+        "orbit duffing PHASE --branch damping.c_n_s_per_m=0.3:0.4",
+        "basins duffing --x-mm -1500:1500:5 --v -1:1:5",
+        "threshold duffing --field damping.c_n_s_per_m=0.01:0.5:0.05 --of interwell",
+    ] {
+        let [force, sine] = TONES.map(|(tone, phase)| {
+            let line = line.replace("PHASE", phase).replace("COIL", coil);
+            stdout(&format!("{line} --set excitation={} --quiet", tone.replace('A', "0.05")))
+        });
+        assert!(force.lines().count() > 1 && force == sine, "{line}\n{force}\n{sine}");
+    }
+    let [force, sine] = TONES.map(|(tone, _)| {
+        let noise = "Noise(rms_g:0.1,low_hz:0,high_hz:1,seed:3)";
+        let drive = format!("Sum([{},{noise}])", tone.replace('A', "0.01"));
+        stdout(&format!("escape duffing --runs 5 --set excitation={drive} --quiet"))
+    });
+    assert_eq!(force, sine);
+}
+
+/// A linear oscillator under a force: the speed of its steady motion is F w/|k - m w^2 + i c w|/sqrt(2), rms.
 #[test]
 fn cells_of_a_sweep_over_the_mass_have_the_acceleration_of_their_own_mass() {
     let mut draw = Draw(22);
@@ -153,8 +194,8 @@ fn the_phase_is_the_argument_of_the_cosine_and_a_motion_goes_on_in_a_scene_of_it
         ("Cosine(amplitude_m_per_s2: 0.2, frequency_rad_per_s: 0.7, phase_deg: 300)", 0.2),
     ] {
         let text = format!(
-            "(title: \"\", mass_g: 2000, mechanism: Cubic(linear_n_per_m: -1, cubic_n_per_m3: 1), excitation: {drive}, \
-             run: (duration_s: 20, tolerance: 1e-12))"
+            "(title: \"\", mass_g: 2000, mechanism: Cubic(linear_n_per_m: -1, cubic_n_per_m3: 1), \
+             excitation: {drive}, run: (duration_s: 20, tolerance: 1e-12))"
         );
         let document = Document::from_text("s.ron", &text, Files::default()).unwrap();
         let model = build(&document);
@@ -201,7 +242,7 @@ fn a_comparison_takes_a_cosine_as_its_sine_and_refuses_a_force() {
     near(sine.phase_deg, 120.0, 1e-13);
     let refused = needs_a_sine(&environment("Force(amplitude_n: 1, frequency_rad_per_s: 20)"));
     let said = refused.unwrap_err().to_string();
-    assert!(said.contains("is a Force") && said.contains("--environment"), "{said}");
+    assert!(said.contains("is a Force") && said.contains("`environment`"), "{said}");
 }
 
 #[test]

@@ -13,10 +13,10 @@ use crate::support::{Draw, build, documented, near, near_relative, of_kind, run}
 /// A unit mass on a unit spring with a stop of restitution `e` at the place of rest, and on it the force
 /// sin(w t) (Thompson and Ghaffari 1982), with one impact in every `n` periods of the force.
 ///
-/// From (0, e u) after an impact to (0, -u) before the next the motion is the swing (p, q) of the force plus a
-/// free one over the time T = 2 pi n/w. Both conditions give p = -(1 + e) u/2 cot(T/2) and q = -(1 - e) u/2 at
-/// the impact, and p^2 + (q/w)^2 = 1/(w^2 - 1)^2 the speed u. The map from impact to impact is the free motion,
-/// then [[-e, 0], [-(1 + e) a/u, -e]] with the acceleration a = (1 - w^2) p.
+/// From (0, e u) after an impact to (0, -u) before the next the motion is the swing (p, q) of the force plus
+/// a free one over the time T = 2 pi n/w. Both conditions give p = -(1 + e) u/2 cot(T/2) and
+/// q = -(1 - e) u/2 at the impact, and p^2 + (q/w)^2 = 1/(w^2 - 1)^2 the speed u. The map from impact to
+/// impact is the free motion, then [[-e, 0], [-(1 + e) a/u, -e]] with the acceleration a = (1 - w^2) p.
 struct AtRest {
     e: f64,
     n: u32,
