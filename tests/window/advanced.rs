@@ -20,9 +20,14 @@ fn opened(preset: &str) -> Harness<'static, Window> {
 #[test]
 fn the_kind_of_shaking_is_chosen() {
     let mut harness = opened("first-look");
-    for (kind, slider) in
-        [("noise", "highest"), ("chirp", "over"), ("constant", "acceleration"), ("sine", "phase")]
-    {
+    for (kind, slider) in [
+        ("noise", "highest"),
+        ("chirp", "over"),
+        ("constant", "acceleration"),
+        ("cosine", "amplitude"),
+        ("force on the mass", "force"),
+        ("sine", "phase"),
+    ] {
         harness.get_by_role_and_label(Role::ComboBox, "kind of shaking").click();
         harness.run_steps(3);
         harness.get_by_role_and_label(Role::Button, kind).click();

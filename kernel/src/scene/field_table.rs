@@ -51,6 +51,8 @@ pub enum Scale {
     Value,
     /// The acceleration that the mechanism itself gives the mass.
     Push,
+    /// The force that the mechanism itself has on the mass.
+    Force,
     /// The frequency at which the mass swings without a drive.
     Rate,
     /// The distance of the wells, or of the stops if there is none.
@@ -358,14 +360,14 @@ pub const FIELDS: &[FieldInfo] = &[
     field("excitation.amplitude_g", ACCELERATION, AMPLITUDE_REMEDY)
         .control("amplitude", PUSH, TYPED_SIZE, SHAKING_HOVER).axis(2),
     field("excitation.amplitude_m_per_s2", ACCELERATION, "give an amplitude in m/s^2, of either sign or 0")
-        .control("amplitude", ((0.0, 20.0, 0.1), Scale::Value), (0.0, 1e5), SHAKING_HOVER).axis(42),
+        .control("amplitude", ((0.0, 20.0, 0.1), Scale::Push), (0.0, 1e5), SHAKING_HOVER).axis(42),
     field("excitation.amplitude_n", ACCELERATION, "give the amplitude of the force in N, of either sign or 0")
-        .control("force", ((0.0, 1.0, 0.01), Scale::Value), (0.0, 1e9),
+        .control("force", ((0.0, 0.3, 0.002), Scale::Force), (0.0, 1e9),
             "Increase: the mass is pushed harder. Beyond some amplitude it crosses to the other well.")
         .axis(43),
     field("excitation.frequency_rad_per_s", POSITIVE,
             "give an angular frequency in rad/s: 2 pi times that in Hz")
-        .control("frequency", ((1.0, 100.0, 0.5), Scale::Value), (1e-3, 1e6),
+        .control("frequency", ((3.0, 125.0, 0.5), Scale::Rate), (1e-3, 1e6),
             "Increase: the pushes follow each other faster and last less long.")
         .axis(44),
     field("excitation.phase_deg", (-1e15, 1e15), "give a phase in degrees")

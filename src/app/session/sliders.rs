@@ -17,6 +17,10 @@ pub fn reach(control: &Control, session: &Session) -> Reach {
         Scale::Fixed => None,
         Scale::Value => saved.map(|value| 2.5 * value.abs()),
         Scale::Push => Some(0.15 * high * scales.length / scales.time.powi(2) / STANDARD_GRAVITY),
+        // the force in the prototype is 1 N
+        Scale::Force => {
+            Some(high * session.editor.saved().mass_g / 1e3 * scales.length / scales.time.powi(2))
+        }
         Scale::Rate => Some(0.065 * high / (std::f64::consts::TAU * scales.time)),
         Scale::Travel => return travel(session),
         Scale::Preload => return preload(session).unwrap_or(Reach::even(low, high, step)),
@@ -26,7 +30,9 @@ pub fn reach(control: &Control, session: &Session) -> Reach {
     };
     let fits = saved.is_none_or(|value| (low..=high).contains(&value))
         && match control.scale {
-            Scale::Push | Scale::Rate => scaled.is_none_or(|end| (0.25..=4.0).contains(&(end / high))),
+            Scale::Push | Scale::Force | Scale::Rate => {
+                scaled.is_none_or(|end| (0.25..=4.0).contains(&(end / high)))
+            }
             Scale::Value => saved.is_none_or(|value| value == 0.0 || value.abs() > high / 200.0),
             _ => true,
         };
