@@ -10,9 +10,10 @@ use std::sync::atomic::AtomicBool;
 
 use interwell::dynamics::STANDARD_GRAVITY;
 use interwell::study::{
-    Answer, Basins, Branch, BranchEvent, Carry, EvenRange, ExponentOptions, Family, Grid, Onset, Orbit, Scan,
-    SectionAt, SectionOptions, Sections, Signal, SpectrumOptions, Starts, Sweep, SweepOptions, Table, Task,
-    branch, check_lesson, exponents, result_fields, spectrum, threshold, threshold_table,
+    Answer, Basins, Branch, BranchEvent, BranchOptions, Carry, EvenRange, ExponentOptions, Family, Grid,
+    Onset, Orbit, Scan, SectionAt, SectionOptions, Sections, Signal, SpectrumOptions, Starts, Sweep,
+    SweepOptions, Table, Task, branch, check_lesson, exponents, result_fields, spectrum, threshold,
+    threshold_table,
 };
 use interwell::system::threads::Pool;
 
@@ -118,7 +119,7 @@ fn branches() {
         let mechanism = std::sync::Arc::new(mechanism);
         let field = "excitation.amplitude_g";
         let family = Family::new(&document.scene, &document.files, &mechanism, field);
-        of(&branch(&family, field, (from, to), 0.0, Some(1), &task).unwrap())
+        of(&branch(&family, field, (from, to), &BranchOptions::new(0.0, Some(1)), &task).unwrap())
     };
     // the swing of the linear spring whose amplitude is the distance of the stop, 1 m
     let (w, c) = (0.7_f64, 0.2);

@@ -1020,6 +1020,9 @@ class Scene(Mapping[str, Any]):
         *,
         period: int | None = None,
         phase_deg: float = 0.0,
+        step: float = 0.01,
+        count: int = 5000,
+        switch: int = 0,
         progress: Progress = False,
     ) -> Table:
         """Follow the periodic motion over a field, through folds; a row for each motion.
@@ -1033,6 +1036,13 @@ class Scene(Mapping[str, Any]):
             goes.
         period, phase_deg
             See :meth:`orbit`.
+        step : float
+            The longest step, as a share of the range and of the scales of the state, 0.0001 to 0.05.
+        count : int
+            The largest number of motions, 1 to 1 000 000.
+        switch : int
+            The levels of branches, 0 to 10, that are followed too: with 1 those that begin at flips and breakings
+            of the symmetry, with 2 also those that begin on them.
         progress
             See :meth:`sweep`; the number of all motions is not known.
 
@@ -1040,7 +1050,8 @@ class Scene(Mapping[str, Any]):
         -------
         Table
             The field, the columns of :meth:`orbit`, and ``event``: empty, ``fold``, ``flip``, ``symmetry`` or
-            ``grazing``. ``table.words`` says where and why the branch ended inside the range.
+            ``grazing``; with ``switch`` first ``branch``, a number from 1. ``table.words`` says where and why a
+            branch ended inside the range.
 
         Raises
         ------
@@ -1063,7 +1074,71 @@ class Scene(Mapping[str, Any]):
         """
         with _Told(progress, "motions") as told:
             answer = self._simulation.branch(
-                field, (start, end), _count("period", period), phase_deg, told
+                field, (start, end), step, count, switch, _count("period", period), phase_deg, told
+            )
+        return Table(answer)
+
+    def locus(
+        self,
+        event: str,
+        field: str,
+        range: tuple[float, float],
+        second: str,
+        second_range: tuple[float, float],
+        *,
+        period: int | None = None,
+        phase_deg: float = 0.0,
+        step: float = 0.01,
+        count: int = 5000,
+        progress: Progress = False,
+    ) -> Table:
+        """Follow the events of a branch over a second field; a row for each motion.
+
+        Parameters
+        ----------
+        event : str
+            ``"grazing"``, ``"fold"``, ``"flip"`` or ``"symmetry"``.
+        field, range
+            The field of the branch, and its value at the first motion with that towards which the branch goes.
+            See :meth:`branch`.
+        second, second_range
+            The other field, its value on the branch and that towards which the loci go.
+        period, phase_deg, step, count, progress
+            See :meth:`branch`.
+
+        Returns
+        -------
+        Table
+            ``locus`` (its number from 1), both fields, the columns of :meth:`orbit`, and ``event``: empty,
+            ``cusp``, ``fold-flip``, ``grazing-fold``, ``grazing-flip``, ``grazing-symmetry`` or
+            ``grazing-grazing``. ``table.words`` says where and why each locus ended.
+
+        Raises
+        ------
+        SceneError
+            As :meth:`branch`, for both fields.
+        ComputationError
+            If the branch has no such event.
+
+        Notes
+        -----
+        Pseudo-arclength in the state and both fields, with the characteristic polynomial of the map at 1 or -1
+        as one more equation (Kuznetsov 2004, section 10.3), or with the touch of the stop.
+
+        Examples
+        --------
+        >>> oscillator = iw.Scene.preset("impact-oscillator")
+        >>> locus = oscillator.locus(
+        ...     "grazing", "excitation.amplitude_g", (0.05, 0.07), "excitation.frequency_hz", (0.1, 0.116)
+        ... )
+        >>> w = 2 * np.pi * locus["frequency_hz"]
+        >>> reached = 9.80665 * locus["amplitude_g"] / np.hypot(1 - w**2, 0.2 * w)
+        >>> bool(abs(reached - 1).max() < 1e-8)
+        True
+        """
+        with _Told(progress, "motions") as told:
+            answer = self._simulation.locus(
+                event, field, range, second, second_range, step, count, _count("period", period), phase_deg, told
             )
         return Table(answer)
 

@@ -10,16 +10,17 @@ use interwell_kernel::scene::{Excitation, FieldPath, PRESETS, all_fields, write}
 use interwell_studies::output::{
     Caption, ComparisonPicture, EscapePicture, ExponentPicture, Overlay, Provenance, Ranges, RunPanel,
     SectionPicture, SpectrumQuantity, SweepPicture, ThresholdPicture, View, basins_chart, branch_chart,
-    comparison_chart, curve_chart, escape_chart, exponents_chart, identified, identified_chart, run_chart,
-    section_chart, spectrum_chart, summary, sweep_chart, threshold_chart,
+    comparison_chart, curve_chart, escape_chart, exponents_chart, identified, identified_chart, loci_chart,
+    run_chart, section_chart, spectrum_chart, summary, sweep_chart, threshold_chart,
 };
 use interwell_studies::questions::{
-    self, Basins, Best, Branch, Compare, Curve, Error, Escape, Exponents, Identify, Orbit, ProbableThreshold,
-    Section, Spectrum, Sweep, Threshold, Uncertain, WhatToIdentify, needs_a_sine,
+    self, Basins, Best, Branch, Compare, Curve, Error, Escape, Exponents, Identify, Locus, Orbit,
+    ProbableThreshold, Section, Spectrum, Sweep, Threshold, Uncertain, WhatToIdentify, branches_remarks,
+    needs_a_sine,
 };
 use interwell_studies::study::{
-    Carry, ExponentOptions, Identity, Keep, Onset, Sampling, SectionAt, SectionOptions, Signal, Table, Until,
-    sample_times, simulate_with_trace, stop_positions,
+    BranchEvent, Carry, ExponentOptions, Identity, Keep, Onset, Sampling, Second, SectionAt, SectionOptions,
+    Signal, Table, Until, branches_table, loci_table, sample_times, simulate_with_trace, stop_positions,
 };
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -492,22 +493,53 @@ impl Simulation {
         Ok(Answer::new(py, found.table(), self.caption()))
     }
 
-    #[pyo3(signature = (field, range, period=None, phase_deg=0.0, progress=None))]
+    #[pyo3(signature = (field, range, step, count, switch, period=None, phase_deg=0.0, progress=None))]
+    #[expect(clippy::too_many_arguments, reason = "they are those of Python")]
     fn branch(
         &self,
         py: Python<'_>,
         field: String,
         range: (f64, f64),
+        step: f64,
+        count: usize,
+        switch: u32,
         period: Option<u32>,
         phase_deg: f64,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Answer> {
-        let question = Branch { field, range, period, phase_deg };
+        let question = Branch { field, range, period, phase_deg, step, count };
         let way = Way { threads: None, progress };
-        let found = work(py, &way, |progress| question.run(&self.inner, progress))?;
-        let (table, remarks) = (found.table(), found.remarks(range));
+        let found = work(py, &way, |progress| question.with_switches(switch, &self.inner, progress))?;
+        let table = if switch > 0 { branches_table(&found) } else { found[0].table() };
+        let remarks = branches_remarks(&found, range);
         let answer = Answer::new(py, table, self.caption()).told(remarks);
         Ok(answer.drawn(move |_, asked| Ok(branch_chart(&found, phase_deg, asked.ranges))))
+    }
+
+    #[pyo3(signature = (event, field, range, second, second_range, step, count, period=None, phase_deg=0.0, progress=None))]
+    #[expect(clippy::too_many_arguments, reason = "they are those of Python")]
+    fn locus(
+        &self,
+        py: Python<'_>,
+        event: &str,
+        field: String,
+        range: (f64, f64),
+        second: String,
+        second_range: (f64, f64),
+        step: f64,
+        count: usize,
+        period: Option<u32>,
+        phase_deg: f64,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Answer> {
+        let of = named(py, "event", event, &BranchEvent::ALL, BranchEvent::name)?;
+        let branch = Branch { field, range, period, phase_deg, step, count };
+        let question = Locus { branch, of, second: Second { field: second, range: second_range } };
+        let way = Way { threads: None, progress };
+        let found = work(py, &way, |progress| question.run(&self.inner, progress))?;
+        let remarks = (1..).zip(&found).filter_map(|(number, locus)| locus.remark(number)).collect();
+        let answer = Answer::new(py, loci_table(&found), self.caption()).told(remarks);
+        Ok(answer.drawn(move |_, asked| Ok(loci_chart(&found, phase_deg, asked.ranges))))
     }
 
     #[pyo3(signature = (of, taper, rate_hz=None, until_settled=None))]

@@ -1,10 +1,13 @@
 //! `orbit`: the periodic motion near the settled motion of a run, or a branch of them over a field.
 
 use clap::Args;
-use interwell::output::branch_chart;
-use interwell::questions::{can_have_orbits, no_orbit};
-use interwell::scene::{Axis, Document, is_whole};
-use interwell::study::{Family, Table, Task, branch, orbit, orbit_table};
+use clap::builder::{PossibleValue, PossibleValuesParser};
+use interwell::output::{branch_chart, loci_chart};
+use interwell::questions::{Branch, branches_remarks, can_have_orbits, check_fields, loci_of, no_orbit};
+use interwell::scene::{Axis, Document};
+use interwell::study::{
+    BranchEvent, Family, Second, Task, branch, branches_table, loci_table, orbit, orbit_table, switched,
+};
 
 use super::progress::bar_on_terminal;
 use super::support::{check, finite, mechanism, model, outputs, read, warn};
@@ -15,7 +18,9 @@ Examples:
   interwell --headless orbit paper
   interwell --headless orbit duffing-chaos --period 1
   interwell --headless orbit paper-unconstrained --set run.duration_s=200 \\
-      --branch excitation.amplitude_g=1.3:1.1 --out branch.csv --plot branch.png";
+      --branch excitation.amplitude_g=1.3:1.1 --out branch.csv --plot branch.png
+  interwell --headless orbit paper-unconstrained --set run.duration_s=200 \\
+      --branch excitation.amplitude_g=1.3:1.1 --locus fold --and excitation.frequency_hz=3:4 --plot folds.png";
 
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
@@ -38,12 +43,44 @@ pub struct Arguments {
     #[arg(long, value_name = "FIELD=A:B", allow_hyphen_values = true)]
     pub branch: Option<String>,
 
-    /// The picture, of a branch.
+    /// Longest step of a branch, as a share of the range and of the scales of the state, 0.0001 to 0.05 [default:
+    /// 0.01]
+    #[arg(long, value_name = "S", allow_hyphen_values = true, requires = "branch")]
+    pub step: Option<String>,
+
+    /// Largest number of motions of a branch [default: 5000]
+    #[arg(long, value_name = "N", allow_hyphen_values = true, requires = "branch",
+          value_parser = whole::<usize>(1..=1_000_000))]
+    pub count: Option<usize>,
+
+    /// Follow also the branches that begin at flips and breakings of the symmetry, those that begin on them, and so
+    /// on to this number of levels [default without a number: 1]
+    #[arg(long, value_name = "LEVELS", allow_hyphen_values = true, requires = "branch", conflicts_with = "locus",
+          num_args = 0..=1, default_missing_value = "1", value_parser = whole::<u32>(1..=10))]
+    pub switch: Option<u32>,
+
+    /// Follow each event of this kind on the branch over a second field too: grazing, fold, flip or symmetry (where
+    /// a symmetric motion loses its symmetry)
+    #[arg(long, value_name = "EVENT", requires_all = ["branch", "and"], value_parser = events())]
+    pub locus: Option<String>,
+
+    /// With --locus: the second field, from C, in place of the scene's own value, to D
+    #[arg(long, value_name = "FIELD=C:D", allow_hyphen_values = true, requires = "locus")]
+    pub and: Option<String>,
+
+    /// The picture, of a branch or of loci.
     #[command(flatten)]
     pub chart: ChartOptions,
 }
 
-/// Finds the motion, or follows its branch, and writes the table.
+/// The events of `--locus`.
+fn events() -> PossibleValuesParser {
+    let event = |event: BranchEvent| PossibleValue::new(event.name());
+    let symmetry = event(BranchEvent::Symmetry).alias("symmetry-breaking");
+    [event(BranchEvent::Grazing), event(BranchEvent::Fold), event(BranchEvent::Flip), symmetry].into()
+}
+
+/// Finds the motion, or follows its branch or the loci from it, and writes the table.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
     if picture.is_some() && options.branch.is_none() {
@@ -51,12 +88,15 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     }
     let phase_deg = finite("--phase-deg", &options.phase_deg, "give a phase in degrees, such as 90")?;
     let mut document = read(&options.scene, common)?;
-    let mut branch_range = None;
-    if let Some(text) = &options.branch {
-        let (field, from, to) = range(text, &document)?;
-        // the branch begins at this value; the value in the scene is never run
-        document.assign(&field, &from.to_string(), &format!("--branch {text}"))?;
-        branch_range = Some((field, from, to));
+    let over = options.branch.as_ref().map(|text| range("--branch", text, &document)).transpose()?;
+    let and = options.and.as_ref().map(|text| range("--and", text, &document)).transpose()?;
+    let fields = [("branch", &over), ("and", &and)].map(|(option, field)| Some((option, field.as_ref()?)));
+    check_fields(&document.scene, fields.into_iter().flatten())?;
+    // the branch begins at these values; those in the scene are never run
+    for (option, second) in [("--branch", &over), ("--and", &and)] {
+        if let Some(Second { field, range: (from, _) }) = second {
+            document.assign(field, &from.to_string(), &format!("{option} {field}"))?;
+        }
     }
     let warnings = check(&mut document, None)?;
     let mechanism = mechanism(&document)?;
@@ -65,52 +105,71 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     can_have_orbits(&document, &model)?;
     let cancel = interrupt::listen();
     let mut outputs = outputs(&options.scene, &document, common)?.with_picture(picture)?;
-    let phase = phase_deg / 360.0;
-    let failed = |error, at: &str| no_orbit(&document, error, at);
-    let table: Table = match branch_range {
-        None => {
-            let found = orbit(&model, phase, options.period, cancel);
-            orbit_table(&[found.map_err(|error| failed(error, ""))?])
-        }
-        Some((field, from, to)) => {
-            let family = Family::new(&document.scene, &document.files, &mechanism, &field);
-            // the number of motions is not known beforehand
-            let bar = bar_on_terminal(None, "{human_pos} motions", common.quiet);
-            let task = Task { tick: &|| bar.inc(1), cancel };
-            let found = branch(&family, &field, (from, to), phase, options.period, &task);
+    let Some(over) = over else {
+        let found = orbit(&model, phase_deg / 360.0, options.period, cancel);
+        let table = orbit_table(&[found.map_err(|error| no_orbit(&document, error, ""))?]);
+        outputs.table(Output::DATA, &table)?;
+        return outputs.finish_rows(&document, 1);
+    };
+    let step = options.step.as_ref().map(|text| finite("--step", text, "give a share, such as 0.01"));
+    let mut question = Branch::over(over.field, over.range.0, over.range.1);
+    question = Branch {
+        period: options.period,
+        phase_deg,
+        step: step.transpose()?.unwrap_or(question.step),
+        count: options.count.unwrap_or(question.count),
+        ..question
+    };
+    let settings = question.options()?;
+    let family = Family::new(&document.scene, &document.files, &mechanism, &question.field);
+    // the number of motions is not known beforehand
+    let bar = bar_on_terminal(None, "{human_pos} motions", common.quiet);
+    let task = Task { tick: &|| bar.inc(1), cancel };
+    let of = options.locus.as_deref().map(|name| name.strip_suffix("-breaking").unwrap_or(name));
+    let of = of.and_then(BranchEvent::named);
+    let (table, chart, remarks) = match (of, &and) {
+        (Some(of), Some(second)) => {
+            let found = loci_of(&document, &family, &question, (of, second), &settings, &task);
             bar.finish_and_clear();
-            let found = found.map_err(|error| failed(error, &format!("at {field} = {from}: ")))?;
-            if let Some(picture) = picture {
-                let chart = branch_chart(&found, phase_deg, picture.ranges);
-                picture.write(&mut outputs, &chart, &caption(&document))?;
-            }
-            found.remarks((from, to)).iter().for_each(|line| common.say(line));
-            found.table()
+            let found = found?;
+            let remarks: Vec<String> = (1..).zip(&found).filter_map(|(i, locus)| locus.remark(i)).collect();
+            (
+                loci_table(&found),
+                picture.map(|picture| loci_chart(&found, phase_deg, picture.ranges)),
+                remarks,
+            )
+        }
+        _ => {
+            let Branch { field, range, .. } = &question;
+            let levels = options.switch.unwrap_or(0);
+            let found = branch(&family, field, *range, &settings, &task)
+                .and_then(|first| switched(&family, first, *range, levels, &settings, &task));
+            bar.finish_and_clear();
+            let found =
+                found.map_err(|error| no_orbit(&document, error, &format!("at {field} = {}: ", range.0)))?;
+            let chart = picture.map(|picture| branch_chart(&found, phase_deg, picture.ranges));
+            let table = if options.switch.is_some() { branches_table(&found) } else { found[0].table() };
+            (table, chart, branches_remarks(&found, *range))
         }
     };
+    if let (Some(picture), Some(chart)) = (picture, chart) {
+        picture.write(&mut outputs, &chart, &caption(&document))?;
+    }
+    remarks.iter().for_each(|line| common.say(line));
     outputs.table(Output::DATA, &table)?;
     outputs.finish_rows(&document, 1)
 }
 
-/// The field of `--branch FIELD=A:B` and the ends of its range.
-fn range(text: &str, document: &Document) -> Result<(String, f64, f64), Failure> {
-    let wrong = |problem: String| Failure::argument(format!("--branch {text}: {problem}"));
-    let form = || wrong("write FIELD=A:B, such as excitation.amplitude_g=0.5:2".into());
+/// The field of an option `FIELD=A:B` and the ends of its range.
+fn range(option: &str, text: &str, document: &Document) -> Result<Second, Failure> {
+    let wrong = |problem: String| Failure::argument(format!("{option} {text}: {problem}"));
+    let form = || wrong("write FIELD=FROM:TO, such as excitation.amplitude_g=0.5:2".into());
     let (field, values) = text.split_once('=').ok_or_else(form)?;
     let (from, to) = values.split_once(':').filter(|(_, to)| !to.contains(':')).ok_or_else(form)?;
-    // both ends are values that the field may have
     let axis = Axis::parse(&format!("{}={},{}", field.trim(), from.trim(), to.trim()), &document.scene);
     let axis = axis.map_err(wrong)?;
-    if is_whole(&document.scene, &axis.field) {
-        refuse!(
-            "--branch {text}: {} holds whole numbers, and a branch takes all values between A and B; follow \
-             the motion with `sweep --carry` over it",
-            axis.field
-        );
-    }
     match axis.values[..] {
-        [from, to] if from != to => Ok((axis.field, from, to)),
-        [from, _] => refuse!("--branch {text}: A and B are both {from}; give a range, such as 0.5:2"),
+        [from, to] => Ok(Second { field: axis.field, range: (from, to) }),
         _ => Err(form()),
     }
 }

@@ -4,7 +4,9 @@ mod circuit;
 mod events;
 mod leaps;
 mod literature;
+mod loci;
 mod one_stop;
+mod switch;
 
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
@@ -14,7 +16,8 @@ use interwell::dynamics::{Model, Multiplier, STANDARD_GRAVITY};
 use interwell::mechanics::Mechanism;
 use interwell::scene::{Document, Files};
 use interwell::study::{
-    Branch, BranchEnd, BranchEvent, Family, NoOrbit, Orbit, Task, branch, orbit, orbit_near, orbit_table,
+    Branch, BranchEnd, BranchEvent, BranchOptions, Family, NoOrbit, Orbit, Task, branch, orbit, orbit_near,
+    orbit_table,
 };
 
 use crate::support::{changed, model, near, near_relative, preset};
@@ -30,7 +33,8 @@ fn over(field: &str, document: &Document, range: (f64, f64), phase: f64, period:
     let mechanism = Arc::new(Mechanism::build(&document.scene.mechanism, &document.files).unwrap());
     let family = Family::new(&document.scene, &document.files, &mechanism, field);
     let task = Task { tick: &|| (), cancel: &AtomicBool::new(false) };
-    branch(&family, field, range, phase, period, &task).unwrap_or_else(|error| panic!("{error}"))
+    let options = BranchOptions::new(phase, period);
+    branch(&family, field, range, &options, &task).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// The branch over the amplitude of a scene.

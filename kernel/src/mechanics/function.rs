@@ -314,7 +314,8 @@ impl<F: Fn(f64) -> f64> Sampled<F> {
     /// corners and ends of the range that are `known`. Narrower and narrower intervals around it locate it to
     /// rounding.
     fn corner(&self, interval: (f64, f64), known: &[f64]) -> Result<Option<f64>, FunctionError> {
-        let (low, high) = known.iter().fold((f64::MAX, f64::MIN), |(low, high), x| (low.min(*x), high.max(*x)));
+        let (low, high) =
+            known.iter().fold((f64::MAX, f64::MIN), |(low, high), x| (low.min(*x), high.max(*x)));
         let (mut from, mut to) = interval;
         loop {
             let width = to - from;

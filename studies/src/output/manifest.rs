@@ -7,7 +7,7 @@ use serde_json::{Map, Value, json};
 use super::json::pretty;
 use super::plan::plan_checksum;
 use super::plot::Argument;
-use crate::scene::{Document, Excitation, PROGRAM, Scene};
+use crate::scene::{Document, Excitation, PROGRAM, Scene, numeric_fields};
 use crate::study::{Answer, Basins, Grid, Shard, Tally};
 
 /// Provenance of a result, apart from its scene.
@@ -145,6 +145,13 @@ impl Manifest<'_> {
     /// A manifest with `more` entries of the command; `scene` is the scene that ran.
     fn written(&self, scene: Option<&Scene>, more: Value) -> String {
         let Self { document, command, origin, repeat, data, sha256, inputs } = self;
+        // a change of the scene may have taken a field away that its own sweep goes over
+        let scene = scene.map(|scene| {
+            let known = numeric_fields(scene);
+            let sweep = scene.sweep.iter().filter(|axis| known.contains(&axis.field)).cloned().collect();
+            Scene { sweep, ..scene.clone() }
+        });
+        let scene = scene.as_ref();
         let inputs = inputs.iter().map(|(path, sum)| (path.clone(), json!(sum)));
         let mut all = json!({
             "program": PROGRAM,

@@ -40,9 +40,9 @@ pub use plot::{
     SurfaceFrame, SweepPicture, TICK, Text, Theme, ThresholdPicture, UnknownFormat, View, accuracy_chart,
     basins_chart, best_chart, branch_chart, can_show, can_show_escapes, can_show_exponents, can_show_starts,
     can_show_thresholds, comparison_chart, contact_chart, curve_chart, escape_chart, exponents_chart,
-    force_panel, identified_chart, is_fine, measured_chart, measured_force_chart, picture_arguments,
-    portrait_panel, quantities, run_chart, section_chart, shapes_chart, spectrum_chart, suited_unit,
-    sweep_about, sweep_chart, threshold_chart, viridis, words_of,
+    force_panel, identified_chart, is_fine, loci_chart, measured_chart, measured_force_chart,
+    picture_arguments, portrait_panel, quantities, run_chart, section_chart, shapes_chart, spectrum_chart,
+    suited_unit, sweep_about, sweep_chart, threshold_chart, viridis, words_of,
 };
 pub use text::aligned;
 

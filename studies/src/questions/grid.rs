@@ -4,7 +4,8 @@
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 
-use super::motion::{may_have_circuit, phase};
+use super::motion::may_have_circuit;
+use super::orbits::phase;
 use super::{Error, Progress, Simulation, Sweep, check_until_settled, no_table, refuse_searched};
 use crate::dynamics::Model;
 use crate::mechanics::{ForceCurve, Mechanism};

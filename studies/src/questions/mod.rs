@@ -17,6 +17,7 @@
 //! | [`Exponents`] | Lyapunov exponents: whether the motion is chaotic | [`Table`] |
 //! | [`Orbit`] | the periodic orbit near the motion, with its multipliers | `study::Orbit` |
 //! | [`Branch`] | how an orbit goes on over a field, with folds, flips and grazings | `study::Branch` |
+//! | [`Locus`] | where a fold, flip or grazing goes over two fields | `study::Locus` of each |
 //! | [`Spectrum`] | which frequencies the motion holds | `study::Spectrum` |
 //! | [`Basins`] | which attractor each start goes to, and the share of each | [`BasinsAnswer`] |
 //! | [`Compare`] | how designs rate under one sine | a [`Rated`] per scene |
@@ -63,6 +64,7 @@ mod error;
 mod escape;
 mod grid;
 mod motion;
+mod orbits;
 mod progress;
 mod record;
 mod simulation;
@@ -72,9 +74,8 @@ pub use design::{Best, BestAnswer, Compare, in_environment, needs_a_sine};
 pub use error::{Error, FaultAt, check_until_settled};
 pub use escape::{Escape, ProbableThreshold, no_table, refuse_searched};
 pub use grid::{Exponents, NO_MELNIKOV, Section, Threshold, drive_alone};
-pub use motion::{
-    Basins, BasinsAnswer, Branch, Curve, Orbit, Spectrum, can_have_orbits, may_have_circuit, no_orbit,
-};
+pub use motion::{Basins, BasinsAnswer, Curve, Spectrum, may_have_circuit};
+pub use orbits::{Branch, Locus, Orbit, branches_remarks, can_have_orbits, check_fields, loci_of, no_orbit};
 pub use progress::Progress;
 pub use record::{Identify, IdentifyAnswer, WhatToIdentify, columns_read};
 pub use simulation::{Recorded, Simulation};

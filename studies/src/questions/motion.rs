@@ -1,13 +1,11 @@
-//! Questions about one scene: force curve, periodic motions, spectrum and basins of attraction.
+//! Questions about one scene: force curve, spectrum and basins of attraction.
 
 use super::{Error, Progress, Simulation};
-use crate::dynamics::Model;
 use crate::numeric::{Taper, number_text};
-use crate::scene::{Axis, Document, Transducer, is_whole};
+use crate::scene::{Axis, Document, Transducer};
 use crate::study::{
-    self, Answer, BranchEnd, CURVE_POINTS, EvenRange, Family, NoBasins, NoOrbit, NoSpectrum, Signal,
-    SpectrumOptions, Starts, StartsError, Table, Task, branch, curve, default_positions, orbit, orbit_table,
-    spectrum,
+    self, Answer, CURVE_POINTS, EvenRange, NoBasins, NoSpectrum, Signal, SpectrumOptions, Starts,
+    StartsError, Table, Task, curve, default_positions, spectrum,
 };
 
 /// Force, potential and stiffness of the mechanism over displacement.
@@ -43,186 +41,6 @@ impl Curve {
     }
 }
 
-/// The periodic orbit near the settled motion of a run, stable or not, with its Floquet multipliers.
-///
-/// The table of the answer has one row: `period` (forcing periods), `x_m`, `v_m_per_s` (at `phase_deg`),
-/// `multiplier_1_re`, `multiplier_1_im`, `multiplier_2_re`, `multiplier_2_im`, `stable`, `impacts`, `rests`,
-/// `gentlest_impact_m_per_s`, `nearest_miss_m`; beside a circuit also `current_a` or `voltage_v` and
-/// `multiplier_3_re`, `multiplier_3_im`.
-///
-/// Method: a motion that repeats after n forcing periods is a fixed point of the stroboscopic map, found by
-/// Newton's method. The derivative of the map is carried through impacts and releases by saltation matrices
-/// (Müller 1995; Kong et al. 2024); its eigenvalues are the multipliers, which are 0 where the mass rests on
-/// a stop, but for one of a circuit. It takes the run of the scene and some further periods.
-///
-/// Errors: [`Error::Argument`] for `period` or `phase_deg`; [`Error::Unfit`] if the drive does not repeat or
-/// is 0; [`Error::Failed`] if the run comes to no motion that
-/// repeats (name a period, start elsewhere, or lengthen the run), Newton's method does not converge, the
-/// motion touches a stop without speed or ends early, or there is only an orbit of a shorter period.
-///
-/// ```
-/// use interwell_studies::questions::{Orbit, Progress, Simulation};
-///
-/// // Without impacts the product of the multipliers is exp(-c T/m).
-/// let simulation = Simulation::preset("nominal-cubic")?.with("stops", "None")?;
-/// let weak = simulation.with("excitation.amplitude_g", 0.2)?;
-/// let orbit = Orbit::default().run(&weak, &Progress::none())?;
-/// let rate = 2.0 * 0.023 * (80.0_f64 / 15.2e-3).sqrt();
-/// assert!(orbit.is_stable() && orbit.period == 1);
-/// assert!((orbit.determinant() - (-rate / 3.0).exp()).abs() < 1e-9);
-/// # Ok::<(), interwell_studies::questions::Error>(())
-/// ```
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Orbit {
-    /// Its period in forcing periods, at least 1; by default that of the settled motion.
-    pub period: Option<u32>,
-    /// Phase of the drive in degrees at which the state is given.
-    pub phase_deg: f64,
-}
-
-impl Orbit {
-    /// Finds the orbit by Newton's method.
-    pub fn run(&self, simulation: &Simulation, progress: &Progress) -> Result<study::Orbit, Error> {
-        check_period(self.period)?;
-        can_have_orbits(simulation.document(), simulation.model())?;
-        let found = orbit(simulation.model(), phase(self.phase_deg)?, self.period, progress.stop());
-        found.map_err(|error| no_orbit(simulation.document(), error, ""))
-    }
-}
-
-impl study::Orbit {
-    /// One row: period, state, multipliers and what happens on the motion.
-    pub fn table(&self) -> Table {
-        orbit_table(std::slice::from_ref(self))
-    }
-}
-
-/// A branch of periodic orbits, continued in a field and followed around folds.
-///
-/// The table of the answer has one row per orbit, in order along the branch: the field in its unit, the
-/// columns of [`Orbit`], and `event`: empty, `fold`, `flip`, `symmetry` or `grazing`. Its method `remarks`
-/// says where the branch ended inside the range, and why.
-///
-/// Method: pseudo-arclength continuation (Keller 1977). Events are located to some 1e-9 of the range. At a
-/// grazing the stroboscopic map changes like the square root of the distance (Nordmark 1991), so the motion
-/// that grazes is solved for with the instant of the touch as an unknown. Two events of a kind within a
-/// hundredth of the range can be missed. A branch of the prototype takes about a second.
-///
-/// Errors: those of [`Orbit`] for the first orbit, and [`Error::Argument`] for a field or a range that is
-/// wrong; a field of whole numbers has no branch. A branch that ends early is not an error.
-///
-/// ```
-/// use interwell_studies::questions::{Branch, Progress, Simulation};
-///
-/// // The stable motion in one well ends in a fold near 0.70 g; the branch goes back as an unstable one.
-/// let simulation = Simulation::preset("nominal-cubic")?.with("stops", "None")?;
-/// let question = Branch::over("excitation.amplitude_g", 0.6, 0.75);
-/// let branch = question.run(&simulation, &Progress::none())?;
-/// let table = branch.table();
-/// let fold = table.words("event").iter().position(|event| *event == "fold").unwrap();
-/// assert!((0.70..0.71).contains(&branch.values[fold]));
-/// # Ok::<(), interwell_studies::questions::Error>(())
-/// ```
-#[derive(Debug, Clone, PartialEq)]
-pub struct Branch {
-    /// The field.
-    pub field: String,
-    /// Its value at the first orbit, and the value towards which the branch is continued.
-    pub range: (f64, f64),
-    /// Period of the first orbit in forcing periods, at least 1; by default that of the settled motion.
-    pub period: Option<u32>,
-    /// Phase of the drive in degrees at which states are given.
-    pub phase_deg: f64,
-}
-
-impl Branch {
-    /// A branch over a field, from one value towards another.
-    pub fn over(field: impl Into<String>, from: f64, to: f64) -> Self {
-        Self { field: field.into(), range: (from, to), period: None, phase_deg: 0.0 }
-    }
-
-    /// Follows the branch. The value of the field in the scene is replaced by the first value of the range.
-    pub fn run(&self, simulation: &Simulation, progress: &Progress) -> Result<study::Branch, Error> {
-        let (from, to) = self.range;
-        let shown = format!("{}={from}:{to}", self.field);
-        let wrong = |problem: String| Error::argument("branch", &shown, problem);
-        check_period(self.period)?;
-        Axis::listed(&self.field, vec![from, to], simulation.scene()).map_err(wrong)?;
-        if !(from.is_finite() && to.is_finite()) {
-            return Err(wrong("A and B must be finite".to_owned()));
-        }
-        if is_whole(simulation.scene(), &self.field) {
-            return Err(wrong(format!(
-                "{} holds whole numbers, and a branch takes all values between A and B; follow the motion by \
-                 a sweep with carry over it",
-                self.field
-            )));
-        }
-        if from == to {
-            return Err(wrong(format!("A and B are both {from}; give a range, such as 0.5:2")));
-        }
-        let first = simulation.with(&self.field, from)?;
-        let (document, mechanism) = (first.document(), first.mechanism());
-        can_have_orbits(document, first.model())?;
-        let phase = phase(self.phase_deg)?;
-        let family = Family::new(&document.scene, &document.files, mechanism, &self.field);
-        let found =
-            progress.task(None, |task| branch(&family, &self.field, (from, to), phase, self.period, task));
-        found.map_err(|error| no_orbit(document, error, &format!("at {} = {from}: ", self.field)))
-    }
-}
-
-impl study::Branch {
-    /// Remarks that have no column in the table: events that were not located and, unless the branch reached
-    /// the end of its range, where and why it ended.
-    pub fn remarks(&self, (from, to): (f64, f64)) -> Vec<String> {
-        let field = &self.field;
-        let unlocated = |(before, after): &(f64, f64)| {
-            format!(
-                "between {field} = {before} and {after} the motion changes how it touches the stops, or its \
-                 stability; no event was located there, and the table has none"
-            )
-        };
-        let mut lines: Vec<String> = self.unlocated.iter().map(unlocated).collect();
-        let at = self.values.last().copied().unwrap_or(f64::NAN);
-        let why = match self.end {
-            BranchEnd::Range if (at - to).abs() < (at - from).abs() => return lines,
-            BranchEnd::Range => "it came back to the value at which it began".to_owned(),
-            other => other.to_string(),
-        };
-        lines.push(format!("the branch ends at {field} = {at}: {why}"));
-        lines
-    }
-}
-
-/// Largest period of an orbit in forcing periods.
-const MAX_PERIOD: u32 = 1000;
-
-fn check_period(period: Option<u32>) -> Result<(), Error> {
-    match period.filter(|period| !(1..=MAX_PERIOD).contains(period)) {
-        Some(period) => Err(Error::argument("period", period, format!("give 1 to {MAX_PERIOD}"))),
-        None => Ok(()),
-    }
-}
-
-/// The phase in forcing periods.
-pub(super) fn phase(degrees: f64) -> Result<f64, Error> {
-    match degrees.is_finite() {
-        true => Ok(degrees / 360.0),
-        false => Err(Error::number("phase_deg", degrees, "give a phase in degrees, such as 90")),
-    }
-}
-
-/// Refuses a scene whose drive does not repeat.
-pub fn can_have_orbits(document: &Document, model: &Model) -> Result<(), Error> {
-    if !model.repeats() || !model.is_shaken() {
-        let problem = "excitation: a periodic motion needs a drive that repeats and is not 0; take a Sine, \
-                       or a Sum of sines whose frequencies have a common period";
-        return Err(Error::unfit(document, problem));
-    }
-    Ok(())
-}
-
 /// Whether the transducer has an electrical state, in the scene or in a cell over `axes`.
 pub fn may_have_circuit(document: &Document, axes: &[Axis]) -> bool {
     let swept = |name: &str| axes.iter().any(|axis| axis.field == format!("transducer.{name}"));
@@ -234,15 +52,6 @@ pub fn may_have_circuit(document: &Document, axes: &[Axis]) -> bool {
         Transducer::Piezoelectric { .. } => swept("load_kohm"),
     };
     cells_may_have || document.scene.transducer.has_state()
-}
-
-/// The error for an orbit that was not found; `at` is a prefix that names the place, such as `at FIELD =
-/// VALUE: `.
-pub fn no_orbit(document: &Document, error: NoOrbit, at: &str) -> Error {
-    match error {
-        NoOrbit::Cancelled => Error::Cancelled,
-        _ => Error::failed(document, format!("{at}{error}")),
-    }
 }
 
 /// Amplitude and power spectral density of a settled motion.

@@ -105,7 +105,10 @@ pub use measured::{
 };
 pub use melnikov::{melnikov_threshold, suits_melnikov, with_melnikov};
 pub use models::Held;
-pub use orbit::{Branch, BranchEnd, BranchEvent, NoOrbit, Orbit, branch, orbit, orbit_near, orbit_table};
+pub use orbit::{
+    Branch, BranchEnd, BranchEvent, BranchOptions, Locus, LocusEnd, LocusEvent, NoOrbit, Orbit, Second,
+    branch, branches_table, loci, loci_table, orbit, orbit_near, orbit_table, switched,
+};
 pub use section::{IMPACTS, MAX_SECTION, SectionAt, SectionOptions, Sections, section};
 pub use settled::{Standing, followed_until, lasts, settled, standing};
 pub use simulate::{

@@ -16,18 +16,27 @@ pub struct Family<'a> {
     files: &'a Files,
     mechanism: &'a Arc<Mechanism>,
     path: FieldPath,
+    /// A second field, with its value.
+    second: Option<(FieldPath, f64)>,
 }
 
 impl<'a> Family<'a> {
     /// The family of a scene with its mechanism, built from `files`, over the numeric field `field`.
     pub fn new(scene: &'a Scene, files: &'a Files, mechanism: &'a Arc<Mechanism>, field: &str) -> Self {
-        Self { scene, files, mechanism, path: FieldPath::new(field) }
+        Self { scene, files, mechanism, path: FieldPath::new(field), second: None }
+    }
+
+    /// The family over the same field with a second field at this value.
+    #[must_use]
+    pub fn with(&self, second: &FieldPath, value: f64) -> Self {
+        Self { path: self.path.clone(), second: Some((second.clone(), value)), ..*self }
     }
 
     /// The model for this value of the field, or why there is none.
     pub fn model(&self, value: f64) -> Result<Model, NoModel> {
         let mut scene = self.scene.clone();
-        if !self.path.set(&mut scene, value) {
+        let has_second = self.second.as_ref().is_none_or(|(path, value)| path.set(&mut scene, *value));
+        if !(has_second && self.path.set(&mut scene, value)) {
             return Err(NoModel::NoField);
         }
         let mechanism = match scene.mechanism == self.scene.mechanism {

@@ -13,7 +13,8 @@ use crate::measured::Noise;
 use crate::support::{model, near, near_relative};
 
 /// A linear oscillator of 1 kg beside a circuit.
-struct Oscillator {
+#[derive(Clone)]
+pub struct Oscillator {
     stiffness: f64,
     damping: f64,
     /// Force in N per A or V.
@@ -23,12 +24,12 @@ struct Oscillator {
     /// Rate in 1/s at which the circuit decays.
     decay: f64,
     is_coil: bool,
-    frequency: f64,
-    amplitude_g: f64,
+    pub frequency: f64,
+    pub amplitude_g: f64,
 }
 
 impl Oscillator {
-    fn random(random: &mut Noise) -> Self {
+    pub fn random(random: &mut Noise) -> Self {
         let mut between = |low: f64, high: f64| random.between(low, high);
         Self {
             stiffness: between(0.5, 2.0),
@@ -58,7 +59,7 @@ impl Oscillator {
         }
     }
 
-    fn text(&self, rest: &str) -> String {
+    pub fn text(&self, rest: &str) -> String {
         format!(
             "mass_g: 1000, mechanism: Polynomial(coefficients_si: [0, {:?}]), transducer: {}, \
              damping: Coefficient(c_n_s_per_m: {:?}), \
@@ -78,7 +79,7 @@ impl Oscillator {
     }
 
     /// Amplitude in m of the steady motion at 1 m/s^2.
-    fn response(&self) -> f64 {
+    pub fn response(&self) -> f64 {
         let i = Complex::new(0.0, TAU * self.frequency);
         let circuit = i * (self.coupling * self.coupling / self.storage) / (i + self.decay);
         1.0 / (i * i + i * self.damping + self.stiffness + circuit).norm()
@@ -159,6 +160,49 @@ fn the_product_of_three_multipliers_is_known_with_impacts_too() {
         near_relative(product, known, 1e-6);
     }
     assert!(seen >= 15, "{seen}");
+}
+
+/// A circuit that takes hardly any force leaves the events of a branch where they are without it: folds of
+/// symmetric motions, folds of motions in one well, and a breaking of the symmetry.
+#[test]
+fn events_beside_a_circuit_that_takes_no_force_are_those_without_it() {
+    let mut random = Noise::new(48);
+    for (coefficients, damping, frequency, amplitudes, event) in [
+        ("[0, 1, 0, 1]", 0.1, 0.22, (0.01, 0.06), "fold"),
+        ("[0, 1, 0.6, 1]", 0.1, 0.22, (0.01, 0.08), "fold"),
+        ("[0, 1, 0, 1]", 0.05, 0.159, (0.05, 0.5), "symmetry"),
+    ] {
+        let text = |transducer: &str| {
+            document(&format!(
+                "mass_g: 1000, mechanism: Polynomial(coefficients_si: {coefficients}), \
+                 damping: Coefficient(c_n_s_per_m: {damping}), transducer: {transducer}, \
+                 excitation: Sine(frequency_hz: {frequency}, amplitude_g: {}), start: At(x_mm: 0, v_m_per_s: 0), \
+                 run: (duration_s: 3000, settle_s: 2900)",
+                amplitudes.0
+            ))
+        };
+        let events = |transducer: &str| {
+            let found = over_amplitude(&text(transducer), amplitudes, Some(1));
+            let named = found
+                .events
+                .iter()
+                .zip(&found.values)
+                .filter_map(|(event, value)| event.map(|event| (event.name(), *value)));
+            (named.collect::<Vec<_>>(), found.unlocated)
+        };
+        let (known, _) = events("None");
+        assert!(known.iter().any(|(name, _)| *name == event), "{event}: {known:?}");
+        for is_coil in [true, false] {
+            let mut oscillator = Oscillator::random(&mut random);
+            (oscillator.coupling, oscillator.is_coil) = (1e-7, is_coil);
+            let (found, unlocated) = events(&oscillator.transducer());
+            assert_eq!((found.len(), &unlocated[..]), (known.len(), &[][..]), "{found:?} {known:?}");
+            for ((name, value), (known_name, known_value)) in found.iter().zip(&known) {
+                assert_eq!(name, known_name);
+                near_relative(*value, *known_value, 1e-8);
+            }
+        }
+    }
 }
 
 /// A branch over the amplitude touches the stop first where the steady motion reaches it. It begins at an

@@ -8,7 +8,9 @@ use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use interwell::dynamics::{MapState, Model, STANDARD_GRAVITY, Side};
 use interwell::mechanics::Mechanism;
 use interwell::scene::{Document, Excitation, Files, Scene, Stops};
-use interwell::study::{Branch, BranchEnd, BranchEvent, Family, Orbit, Task, branch, orbit, settled};
+use interwell::study::{
+    Branch, BranchEnd, BranchEvent, BranchOptions, Family, Orbit, Task, branch, orbit, settled,
+};
 use proptest::prelude::*;
 
 use super::one_stop::OneStop;
@@ -64,17 +66,17 @@ fn holds(found: &Branch, model: &Model, range: (f64, f64)) -> Verdict {
 /// A branch of a linear oscillator, from the swing without impacts upward or from what a run comes to
 /// downward.
 #[derive(Debug, Clone)]
-struct Drawn {
-    closed: OneStop,
+pub struct Drawn {
+    pub closed: OneStop,
     /// Distance of the stops from the middle in m, which the closed form has as 1: amplitudes and speeds go
     /// in proportion.
-    gap: f64,
+    pub gap: f64,
     /// Ends of the range over the amplitude of the grazing.
     ends: (f64, f64),
     upward: bool,
 }
 
-fn drawn() -> impl Strategy<Value = Drawn> {
+pub fn drawn() -> impl Strategy<Value = Drawn> {
     let ends = (0.02..0.9f64, prop_oneof![1.001..1.1f64, 1.1..2.0f64], any::<bool>());
     let oscillator = (0.3..2.5f64, 0.0..0.95f64, 0.02..1.0f64, any::<bool>());
     (oscillator, -3.0..2.0f64, ends).prop_map(|((w, e, damping, mirrored), gap, (low, high, upward))| {
@@ -89,13 +91,13 @@ impl Drawn {
         self.gap * self.closed.grazing()
     }
 
-    fn range(&self) -> (f64, f64) {
+    pub fn range(&self) -> (f64, f64) {
         let [low, high] = [self.ends.0, self.ends.1].map(|end| end * self.grazing());
         if self.upward { (low, high) } else { (high, low) }
     }
 
     /// The scene, which begins on the swing without impacts where that reaches no stop.
-    fn document(&self) -> Document {
+    pub fn document(&self) -> Document {
         let OneStop { w, e, damping, mirrored } = self.closed;
         let from = self.range().0;
         let (size, lag) = response(w, damping);
@@ -118,7 +120,7 @@ impl Drawn {
     }
 
     /// Speed of the impact of a motion of the closed form.
-    fn speed(&self, orbit: &Orbit) -> Option<f64> {
+    pub fn speed(&self, orbit: &Orbit) -> Option<f64> {
         let impacts: Vec<_> = orbit.contacts();
         match (&impacts[..], self.closed.mirrored) {
             ([one], false) => Some(one.v_in.abs()),
@@ -136,7 +138,7 @@ impl Drawn {
         let family = Family::new(&document.scene, &document.files, &mechanism, AMPLITUDE);
         let task = Task { tick: &|| (), cancel: &AtomicBool::new(false) };
         let range = self.range();
-        let Ok(found) = branch(&family, AMPLITUDE, range, 0.0, Some(1), &task) else {
+        let Ok(found) = branch(&family, AMPLITUDE, range, &BranchOptions::new(0.0, Some(1)), &task) else {
             prop_assert!(!self.upward, "the swing without impacts is not found");
             return Ok(false);
         };
@@ -320,7 +322,7 @@ impl Swing {
         let family = Family::new(&document.scene, &document.files, &mechanism, AMPLITUDE);
         let task = Task { tick: &|| (), cancel: &cancel };
         let range = (self.amplitude, 2.0 * self.amplitude);
-        let found = branch(&family, AMPLITUDE, range, 0.0, Some(1), &task);
+        let found = branch(&family, AMPLITUDE, range, &BranchOptions::new(0.0, Some(1)), &task);
         let found = found.map_err(|error| TestCaseError::fail(error.to_string()))?;
         holds(&found, &family.model(range.0).unwrap(), range)?;
         turns_at_the_stop(&document.scene, &found)?;
@@ -370,7 +372,9 @@ fn events_of_any_scene_hold_their_equations() {
             cancel.store(before >= MOST_ROWS, Ordering::Relaxed);
         };
         let task = Task { tick: &tick, cancel: &cancel };
-        let Ok(found) = branch(&family, AMPLITUDE, range, 0.0, None, &task) else { return Ok(false) };
+        let Ok(found) = branch(&family, AMPLITUDE, range, &BranchOptions::new(0.0, None), &task) else {
+            return Ok(false);
+        };
         holds(&found, &family.model(range.0).unwrap(), range)?;
         turns_at_the_stop(&scene, &found)?;
         events.set(events.get() + found.events.iter().flatten().count());
@@ -405,7 +409,8 @@ fn a_symmetric_motion_grazes_both_stops_once() {
     let family = Family::new(&scene.scene, &scene.files, &mechanism, "stops.travel_limit_mm");
     let task = Task { tick: &|| (), cancel: &AtomicBool::new(false) };
     for range in [(7.5, 8.0), (8.0, 7.0), (8.0, 7.8)] {
-        let found = branch(&family, "stops.travel_limit_mm", range, 0.25, None, &task).unwrap();
+        let found =
+            branch(&family, "stops.travel_limit_mm", range, &BranchOptions::new(0.25, None), &task).unwrap();
         holds(&found, &family.model(range.0).unwrap(), range).unwrap();
         let place = |i: &usize| found.events[*i] == Some(BranchEvent::Grazing);
         let grazing = (0..found.values.len()).filter(place);

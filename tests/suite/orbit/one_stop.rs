@@ -66,7 +66,7 @@ impl OneStop {
         self.damping * q - (1.0 - self.w * self.w) * p
     }
 
-    fn determinant(&self) -> f64 {
+    pub fn determinant(&self) -> f64 {
         self.e * self.e * (-self.damping * self.time()).exp()
     }
 

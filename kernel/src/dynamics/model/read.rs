@@ -117,6 +117,12 @@ impl Model {
         self.circuit().is_some()
     }
 
+    /// Whether the circuit has no resistance, so that an open layer keeps its charge or a coil its flux: each start
+    /// has motions of its own, which attract no others.
+    pub fn keeps_charge(&self) -> bool {
+        self.circuit().is_some_and(|circuit| circuit.decay == 0.0)
+    }
+
     /// Explains why a circuit that is far faster than the motion makes the steps short, and how to model the
     /// scene without it; `None` if there is no such circuit.
     pub fn fast_circuit(&self) -> Option<String> {

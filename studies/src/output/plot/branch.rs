@@ -1,5 +1,5 @@
-//! Picture of a branch of periodic motions: displacement at the strobe over the field, unstable motions
-//! dashed, events marked.
+//! Pictures of periodic motions: of a branch, displacement at the strobe over the field, unstable motions
+//! dashed, events marked; of loci, lines over two fields.
 
 use super::axis::{PlotAxis, Ranges};
 use super::chart::{Chart, Marks, Panel};
@@ -8,27 +8,38 @@ use super::figure::Point;
 use super::role::Role;
 use super::swept::swept_axis;
 use crate::numeric::short;
-use crate::study::{Branch, BranchEvent};
+use crate::study::{Branch, BranchEvent, Locus, LocusEvent, branches_table, loci_table};
 
 /// The kinds of events in the order of their markers.
 const EVENTS: [BranchEvent; 4] =
     [BranchEvent::Fold, BranchEvent::Flip, BranchEvent::Symmetry, BranchEvent::Grazing];
 
-/// The picture of a branch; `phase_deg` is the phase of its strobe in degrees.
-pub fn branch_chart(branch: &Branch, phase_deg: f64, ranges: Ranges) -> Chart {
-    let table = branch.table();
-    let field = table.columns()[0].name.as_str();
-    let millimetres: Vec<f64> = branch.orbits.iter().map(|orbit| orbit.state.x * 1e3).collect();
-    let points: Vec<Point> = branch.values.iter().copied().zip(millimetres.iter().copied()).collect();
-    let stable: Vec<bool> = branch.orbits.iter().map(|orbit| orbit.is_stable()).collect();
-    let up = PlotAxis::around(millimetres, 0.08, "displacement at the strobe (mm)").or_given(ranges.y);
-    let mut panel = Panel::new(swept_axis(&table, field, ranges.x), up);
+/// The picture of a branch, and of those that begin on it; `phase_deg` is the phase of their strobe in degrees.
+pub fn branch_chart(branches: &[Branch], phase_deg: f64, ranges: Ranges) -> Chart {
+    let table = branches_table(branches);
+    let field = table.columns()[1].name.as_str();
+    let rows =
+        || branches.iter().flat_map(|branch| branch.orbits.iter().zip(&branch.values).zip(&branch.events));
+    let points: Vec<Point> = rows().map(|((orbit, value), _)| (*value, orbit.state.x * 1e3)).collect();
+    let stable: Vec<bool> = rows().map(|((orbit, _), _)| orbit.is_stable()).collect();
+    let firsts: Vec<usize> = branches
+        .iter()
+        .scan(0, |before, branch| {
+            *before += branch.orbits.len();
+            Some(*before)
+        })
+        .collect();
+    let up = PlotAxis::around(points.iter().map(|point| point.1), 0.08, "displacement at the strobe (mm)");
+    let mut panel = Panel::new(swept_axis(&table, field, ranges.x), up.or_given(ranges.y));
     // a stable or unstable stretch ends at the point where the next one begins
     for (is_stable, role, name) in [(true, Role::Curve, "stable"), (false, Role::UnstableMotion, "unstable")]
     {
         let mut line = Vec::new();
         for (i, point) in points.iter().enumerate() {
-            if stable[i] == is_stable || (i > 0 && stable[i - 1] == is_stable) {
+            if firsts.contains(&i) {
+                line.push((f64::NAN, f64::NAN));
+            }
+            if stable[i] == is_stable || (i > 0 && stable[i - 1] == is_stable && !firsts.contains(&i)) {
                 line.push(*point);
             }
             if stable[i] != is_stable {
@@ -40,24 +51,71 @@ pub fn branch_chart(branch: &Branch, phase_deg: f64, ranges: Ranges) -> Chart {
         }
     }
     for (place, event) in EVENTS.into_iter().enumerate() {
-        let marked = branch.events.iter().zip(&points).filter(|row| *row.0 == Some(event));
+        let marked = rows().zip(&points).filter(|row| *row.0.1 == Some(event));
         let marked: Vec<Point> = marked.map(|row| *row.1).collect();
         if !marked.is_empty() {
             panel.layer(Role::Event(place), event.name(), Marks::Points(marked));
         }
     }
     let mut drawn = Drawn::new([field, "x_m"], &["stable", "event"]);
-    for (i, value) in branch.values.iter().enumerate().filter(|row| panel.x.contains(*row.1)) {
-        let words =
-            [if stable[i] { "true" } else { "false" }, branch.events[i].map_or("", |event| event.name())];
-        drawn.put("branch", &[*value, branch.orbits[i].state.x], &words);
+    for (((orbit, value), event), stable) in rows().zip(&stable).filter(|row| panel.x.contains(*row.0.0.1)) {
+        let words = [if *stable { "true" } else { "false" }, event.map_or("", |event| event.name())];
+        drawn.put("branch", &[*value, orbit.state.x], &words);
     }
-    let period = branch.orbits.first().map_or(1, |orbit| orbit.period);
+    let mut periods: Vec<u32> =
+        branches.iter().flat_map(|branch| Some(branch.orbits.first()?.period)).collect();
+    periods.sort_unstable();
+    periods.dedup();
+    let periods: Vec<String> = periods.iter().map(u32::to_string).collect();
+    let end = match branches {
+        [branch] => format!("; the branch ends {}", branch.end),
+        _ => format!("; {} branches", branches.len()),
+    };
     let about = format!(
-        "{} periodic motions of period {period}, at the drive's phase {}\u{b0}; the branch ends {}",
-        branch.orbits.len(),
+        "{} periodic motions of period {}, at the drive's phase {}\u{b0}{end}",
+        points.len(),
+        periods.join(", "),
         short(phase_deg),
-        branch.end
+    );
+    Chart::stack(vec![panel], about, drawn.table())
+}
+
+/// The picture of loci over two fields.
+///
+/// `phase_deg` is the phase of its strobe in degrees.
+pub fn loci_chart(loci: &[Locus], phase_deg: f64, ranges: Ranges) -> Chart {
+    let table = loci_table(loci);
+    let [across, up] = [1, 2].map(|place| table.columns()[place].name.clone());
+    let mut panel = Panel::new(swept_axis(&table, &across, ranges.x), swept_axis(&table, &up, ranges.y));
+    let of = loci.first().map_or("", |locus| locus.of.name());
+    let mut line: Vec<Point> = Vec::new();
+    for locus in loci {
+        line.extend(locus.values.iter().map(|[x, y]| (*x, *y)));
+        line.push((f64::NAN, f64::NAN));
+    }
+    panel.layer(Role::Curve, of, Marks::Path(line));
+    let mut place = 0;
+    for event in LocusEvent::ALL {
+        let rows = loci.iter().flat_map(|locus| locus.events.iter().zip(&locus.values));
+        let marked: Vec<Point> =
+            rows.filter(|row| *row.0 == Some(event)).map(|row| (row.1[0], row.1[1])).collect();
+        if !marked.is_empty() {
+            panel.layer(Role::Event(place), event.name(), Marks::Points(marked));
+            place += 1;
+        }
+    }
+    let mut drawn = Drawn::new([across.as_str(), up.as_str()], &["event"]);
+    for locus in loci {
+        for ([x, y], event) in locus.values.iter().zip(&locus.events).filter(|row| panel.x.contains(row.0[0]))
+        {
+            drawn.put(of, &[*x, *y], &[event.map_or("", LocusEvent::name)]);
+        }
+    }
+    let motions: usize = loci.iter().map(|locus| locus.values.len()).sum();
+    let on = if loci.len() == 1 { "a locus" } else { "loci" };
+    let about = format!(
+        "{on} of {of} in two fields, {motions} periodic motions at the drive's phase {}\u{b0}",
+        short(phase_deg)
     );
     Chart::stack(vec![panel], about, drawn.table())
 }

@@ -55,7 +55,7 @@ pub use arguments::{Argument, picture_arguments};
 pub use axis::{PlotAxis, Ranges};
 pub use basins::{basins_chart, can_show_starts};
 pub use best::{BestPicture, best_chart};
-pub use branch::branch_chart;
+pub use branch::{branch_chart, loci_chart};
 pub use cells::{Cell, Cells, Colours};
 pub use chart::{Chart, Column, Layer, Marks, Note, Panel, Side};
 pub use comparison::{ComparisonPicture, comparison_chart};

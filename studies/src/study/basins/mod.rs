@@ -52,6 +52,12 @@ pub enum NoBasins {
          set damping, such as damping=Ratio(0.02)"
     )]
     NoLoss,
+    /// Its circuit keeps its charge.
+    #[error(
+        "transducer: a circuit without resistance keeps its charge or flux, so that each start has motions of its \
+         own; give it a finite load, or the layer as a spring (Sum with Linear)"
+    )]
+    KeepsCharge,
     /// No start lies between the limits of displacement.
     #[error("all starts lie beyond {what} at {at_mm} mm; start between {from_mm} and {to_mm} mm")]
     Beyond {
@@ -120,6 +126,9 @@ impl Basins {
         let model = at(far, v, excitation)?;
         if !model.repeats() {
             return Err(NoBasins::NoPeriod);
+        }
+        if model.keeps_charge() {
+            return Err(NoBasins::KeepsCharge);
         }
         let stops = model.stop_positions();
         let room =

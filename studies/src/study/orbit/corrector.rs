@@ -1,7 +1,7 @@
 //! Points of a branch of periodic orbits, by Newton's method in planes across the branch (pseudo-arclength
 //! continuation; Keller 1977).
 
-use nalgebra::{Matrix4, Vector3, Vector4};
+use nalgebra::{Const, DimMin, SMatrix, SVector, Vector3, Vector4};
 
 use super::{Orbit, allowed, map_of};
 use crate::dynamics::{Event, EventKind, Jacobian, MapState, Model, Outcome, Passage, Side, StroboscopicMap};
@@ -106,35 +106,37 @@ impl Point {
     }
 }
 
-/// Three equations in four unknowns, evaluated at a guess.
-pub(super) struct Equations<T> {
+/// M equations in N = M + 1 unknowns, evaluated at a guess.
+pub(super) struct Equations<const N: usize, const M: usize, T> {
     /// Where they are evaluated: at the guess, or at the nearest admissible point.
-    pub at: Vector4<f64>,
+    pub at: SVector<f64, N>,
     /// Residuals, which must become 0.
-    pub off: [f64; 3],
+    pub off: [f64; M],
     /// Derivatives of the residuals by the unknowns.
-    pub slopes: [Vector4<f64>; 3],
+    pub slopes: [SVector<f64, N>; M],
     pub of: T,
 }
 
-/// The solution of three equations in four unknowns in the plane through a guess and normal to `across`, by
+/// The solution of M equations in N = M + 1 unknowns in the plane through a guess and normal to `across`, by
 /// Newton's method, with the length of the last step; `None` if it does not converge.
-pub(super) fn newton<T>(
-    guess: Vector4<f64>,
-    across: &Vector4<f64>,
+pub(super) fn newton<const N: usize, const M: usize, T>(
+    guess: SVector<f64, N>,
+    across: &SVector<f64, N>,
     accuracy: Accuracy,
-    evaluate: impl Fn(&Vector4<f64>) -> Option<Equations<T>>,
-) -> Option<(T, Vector4<f64>, f64)> {
+    evaluate: impl Fn(&SVector<f64, N>) -> Option<Equations<N, M, T>>,
+) -> Option<(T, SVector<f64, N>, f64)>
+where
+    Const<N>: DimMin<Const<N>, Output = Const<N>>,
+{
     let mut at = guess;
     let mut best = f64::INFINITY;
     for _ in 0..MAX_STEPS {
         let equations = evaluate(&at)?;
         at = equations.at;
         let off = equations.off;
-        let [first, second, third] = equations.slopes.map(|row| row.transpose());
-        let matrix = Matrix4::from_rows(&[first, second, third, across.transpose()]);
-        let right = Vector4::new(-off[0], -off[1], -off[2], -across.dot(&(at - guess)));
-        let step = matrix.lu().solve(&right)?;
+        let last = -across.dot(&(at - guess));
+        let right = SVector::from_fn(|i, _| off.get(i).map_or(last, |off| -off));
+        let step = bordered(&equations.slopes, across).lu().solve(&right)?;
         let length = step.amax();
         let close = off.iter().all(|part| part.abs() <= CLOSE);
         let exact = off.iter().all(|part| part.abs() <= accuracy.change);
@@ -150,11 +152,31 @@ pub(super) fn newton<T>(
     None
 }
 
+/// The matrix of these rows, the last of which is `last`.
+fn bordered<const N: usize>(rows: &[SVector<f64, N>], last: &SVector<f64, N>) -> SMatrix<f64, N, N> {
+    SMatrix::from_fn(|i, j| rows.get(i).unwrap_or(last)[j])
+}
+
+/// The direction in which the solutions of equations with these derivatives go on, with a positive component
+/// along `along`.
+pub(super) fn tangent<const N: usize>(
+    slopes: &[SVector<f64, N>],
+    along: &SVector<f64, N>,
+) -> Option<SVector<f64, N>>
+where
+    Const<N>: DimMin<Const<N>, Output = Const<N>>,
+{
+    let last = SVector::from_fn(|i, _| if i + 1 == N { 1.0 } else { 0.0 });
+    let tangent = bordered(slopes, along).lu().solve(&last)?.try_normalize(0.0)?;
+    tangent.iter().all(|part| part.is_finite()).then_some(tangent)
+}
+
 /// Data that all points of a branch share.
 ///
 /// A point is a fixed point of the corrector's map: for motions that equal their mirror images it is the
 /// mirrored map over half a period. Its multipliers are roots of those over the period; -1 breaks the
 /// symmetry.
+#[derive(Clone, Copy)]
 pub(super) struct Corrector<'a> {
     pub family: &'a Family<'a>,
     pub phase: f64,
@@ -197,6 +219,17 @@ impl Corrector<'_> {
             (orbit.state.electrical + half.electrical) / units.electrical,
         );
         (half.outcome == Outcome::Done).then_some(off)
+    }
+
+    /// Difference in the units between the states of an orbit half its period apart; `None` if that is not a whole
+    /// number of forcing periods, or the motion ends early.
+    pub fn halfway(&self, map: &StroboscopicMap, orbit: &Orbit) -> Option<Vector3<f64>> {
+        if !orbit.period.is_multiple_of(2) {
+            return None;
+        }
+        let half = map.pass_between(orbit.state, (0.0, f64::from(orbit.period / 2)));
+        let off = self.units.apart(orbit.state, (&half).into());
+        (half.outcome == Outcome::Done).then(|| Vector3::from(off))
     }
 
     /// The orbit at another phase of the drive; `None` if it ends early.
@@ -293,7 +326,7 @@ impl Corrector<'_> {
     }
 
     /// Derivatives of the residual, the change of a state by the map, by the coordinates.
-    fn slopes(&self, by_state: &Jacobian, by_field: [f64; 3]) -> [Vector4<f64>; 3] {
+    pub fn slopes(&self, by_state: &Jacobian, by_field: [f64; 3]) -> [Vector4<f64>; 3] {
         let by_state = by_state.in_units(self.units.of_state());
         std::array::from_fn(|i| {
             let mut row = by_state.rows()[i];
@@ -318,12 +351,17 @@ impl Corrector<'_> {
 
     /// The tangent of the branch at a point, with a positive component along `along`.
     pub fn tangent(&self, point: &Point, along: &Vector4<f64>) -> Option<Vector4<f64>> {
-        let slopes = self.slopes(&point.by_state, point.by_field);
-        let [first, second, third] = slopes.map(|row| row.transpose());
-        let matrix = Matrix4::from_rows(&[first, second, third, along.transpose()]);
-        let tangent = matrix.lu().solve(&Vector4::w())?;
-        let tangent = tangent.try_normalize(0.0)?;
-        tangent.iter().all(|part| part.is_finite()).then_some(tangent)
+        tangent(&self.slopes(&point.by_state, point.by_field), along)
+    }
+
+    /// The determinant of the derivatives `by_state` of the corrector's map, from that of the flight where it is
+    /// known. The mirror image turns the sign of each coordinate.
+    pub fn determinant(&self, of_flight: Option<f64>, by_state: &Jacobian) -> f64 {
+        match of_flight {
+            Some(determinant) if self.mirrored && by_state.size() == 3 => -determinant,
+            Some(determinant) => determinant,
+            None => by_state.determinant(),
+        }
     }
 
     /// The motion through a state, which need not be periodic; `None` if it ends early or has no derivatives.
@@ -337,7 +375,7 @@ impl Corrector<'_> {
         }
         let by_state = if self.mirrored { jacobian.mirrored() } else { jacobian };
         let by_field = self.by_field(state, &passage, &by_state, value)?;
-        let determinant = passage.determinant.unwrap_or_else(|| by_state.determinant());
+        let determinant = self.determinant(passage.determinant, &by_state);
         let (passage, jacobian) = match self.mirrored {
             true => (passage.with_mirror_image(self.flight() * map.period()), by_state.after(&by_state)),
             false => (passage, jacobian),

@@ -50,7 +50,7 @@ pub(super) fn differ(a: &Point, b: &Point) -> bool {
 }
 
 /// The characteristic polynomial of the corrector's map at 1 or -1: 0 where that is a multiplier.
-fn characteristic(point: &Point, at: f64) -> f64 {
+pub(super) fn characteristic(point: &Point, at: f64) -> f64 {
     point.by_state.characteristic(at, point.determinant)
 }
 
@@ -67,8 +67,8 @@ pub(super) fn between(
     let mut found = Vec::new();
     // a multiplier of the map passes through 1 only where the branch turns back
     let turns = along.w * onward.w < 0.0;
-    if let Some((share, point)) = symmetry_breaking(corrector, from, to) {
-        found.push((share, BranchEvent::Symmetry, point));
+    if let Some(joint) = joint(corrector, from, to) {
+        found.push(joint);
     } else if turns != passes(1.0) {
         return None;
     }
@@ -87,25 +87,30 @@ pub(super) fn between(
     Some(found.into_iter().map(|(_, event, point)| (event, point)).collect())
 }
 
-/// The symmetric orbit at which a branch of asymmetric orbits turns back as that of their mirror images, if
-/// it does. The map over the period is singular there, so the orbit is computed with the mirrored map over
-/// half a period.
-fn symmetry_breaking(corrector: &Corrector, from: &Point, to: &Point) -> Option<(f64, Point)> {
-    let asymmetry = |point: &Point| {
-        let map = corrector.map(point.value)?;
-        Corrector::asymmetry(&map, &point.orbit).filter(|off| off.amax() > SAME)
-    };
+/// The orbit at which a branch turns back as that of the same orbits in another guise, if it does: a symmetric orbit,
+/// from orbits to their mirror images, or one of half the period, from orbits to themselves half their period later.
+/// The map over the period is singular there, so the orbit is computed with the map over the half.
+fn joint(corrector: &Corrector, from: &Point, to: &Point) -> Option<(f64, BranchEvent, Point)> {
     if corrector.mirrored {
         return None;
     }
-    let (before, after) = (asymmetry(from)?, asymmetry(to)?);
-    let (near, far) = (before.norm(), after.norm());
-    if before.dot(&after) > -OPPOSITE * near * far {
-        return None;
-    }
-    let share = near / (near + far);
+    let difference = |is_mirrored: bool, point: &Point| {
+        let map = corrector.map(point.value)?;
+        let off = match is_mirrored {
+            true => Corrector::asymmetry(&map, &point.orbit),
+            false => corrector.halfway(&map, &point.orbit),
+        };
+        off.filter(|off| off.amax() > SAME)
+    };
+    let turned = |is_mirrored: bool| {
+        let (before, after) = (difference(is_mirrored, from)?, difference(is_mirrored, to)?);
+        let (near, far) = (before.norm(), after.norm());
+        (before.dot(&after) <= -OPPOSITE * near * far).then_some((is_mirrored, near / (near + far)))
+    };
+    let (is_mirrored, share) = turned(true).or_else(|| turned(false))?;
     let middle = from.at + (to.at - from.at) * share;
-    let half = Corrector { mirrored: true, ..*corrector };
+    let periods = if is_mirrored { corrector.periods } else { corrector.periods / 2 };
+    let half = Corrector { mirrored: is_mirrored, periods, ..*corrector };
     let at = |field: f64| half.correct(Vector4::new(middle.x, middle.y, middle.z, field), &Vector4::w());
     let breaks = |point: &Point| characteristic(point, -1.0);
     let length = (to.at - from.at).norm();
@@ -114,18 +119,19 @@ fn symmetry_breaking(corrector: &Corrector, from: &Point, to: &Point) -> Option<
         let (low, high) = (at(middle.w - width)?, at(middle.w + width)?);
         (breaks(&low) * breaks(&high) < 0.0).then_some(())?;
         let (_, point) = root(&half, (&low, &high), breaks)?;
-        (is_at(&point, -1.0) && (point.at - middle).norm() <= length).then_some((share, point))
+        let event = if is_mirrored { BranchEvent::Symmetry } else { BranchEvent::Flip };
+        (is_at(&point, -1.0) && (point.at - middle).norm() <= length).then_some((share, event, point))
     })
 }
 
 /// Whether a multiplier of the corrector's map is 1 or -1.
-fn is_at(point: &Point, unit: f64) -> bool {
+pub(super) fn is_at(point: &Point, unit: f64) -> bool {
     let multipliers = point.by_state.multipliers(point.determinant);
     multipliers.iter().any(|multiplier| (multiplier.re - unit).hypot(multiplier.im) <= AT_UNIT)
 }
 
-/// The zero of a quantity with different signs at two points of the branch, as a share of their distance, by
-/// the Illinois method; `None` if the signs just beside it are equal.
+/// The zero of a quantity with different signs at two points of the branch, as a share of their distance; `None`
+/// if it is not found.
 fn root(
     corrector: &Corrector,
     (from, to): (&Point, &Point),
@@ -134,17 +140,28 @@ fn root(
     let chord = to.at - from.at;
     let length = chord.norm();
     let at = |share: f64| corrector.correct(from.at + chord * share, &(chord / length));
-    let ((mut low, mut below), (mut high, mut above)) = ((0.0, of(from)), (1.0, of(to)));
-    let ends = (below, above);
+    root_between(length, (of(from), of(to)), at, of)
+}
+
+/// The zero of a quantity on a curve between two points, where it has the values `ends` of different signs, by
+/// the Illinois method; `None` if the signs just beside it are equal. `at` is the point of the curve beside a
+/// share of the chord of this length.
+pub(super) fn root_between<P>(
+    length: f64,
+    ends: (f64, f64),
+    at: impl Fn(f64) -> Option<P>,
+    of: impl Fn(&P) -> f64,
+) -> Option<(f64, P)> {
+    let ((mut low, mut below), (mut high, mut above)) = ((0.0, ends.0), (1.0, ends.1));
     let mut kept = 0_i8;
-    let mut last: Option<(f64, Point)> = None;
+    let mut last: Option<(f64, P)> = None;
     for _ in 0..MAX_EVALUATIONS {
         let middle = low + (high - low) * (below / (below - above)).clamp(1e-9, 1.0 - 1e-9);
         // if the corrector does not converge right there, it may converge beside it
         let beside = [middle, 0.5 * (low + high), low + 0.3 * (high - low), low + 0.7 * (high - low)];
         let (middle, point) = beside.into_iter().find_map(|share| at(share).map(|point| (share, point)))?;
         let value = of(&point);
-        let moved = last.map_or(f64::INFINITY, |(before, _)| (middle - before).abs());
+        let moved = last.as_ref().map_or(f64::INFINITY, |(before, _)| (middle - before).abs());
         last = Some((middle, point));
         if value == 0.0 || moved * length <= LOCATED || (high - low) * length <= LOCATED {
             break;

@@ -12,6 +12,8 @@
 mod corrector;
 mod events;
 mod grazing;
+mod locus;
+mod switch;
 mod walk;
 
 use std::fmt;
@@ -19,7 +21,7 @@ use std::sync::atomic::AtomicBool;
 
 use nalgebra::{Matrix3, Vector3, Vector4};
 
-use super::{Family, Table, Task, settled};
+use super::{Family, Table, Task, Values, settled};
 use crate::dynamics::{
     CircuitState, Event, EventKind, Jacobian, MapState, Model, Multiplier, Outcome, Passage, Regime,
     StroboscopicMap,
@@ -28,6 +30,8 @@ use crate::scene::column_names;
 use corrector::Corrector;
 pub(super) use corrector::Units;
 pub use events::BranchEvent;
+pub use locus::{Locus, LocusEnd, LocusEvent, Second, loci, loci_table};
+pub use switch::switched;
 use walk::Walk;
 
 /// Largest number of steps of Newton's method.
@@ -150,6 +154,12 @@ impl Orbit {
     pub fn is_stable(&self) -> bool {
         self.multipliers()[0].magnitude() < 1.0
     }
+}
+
+/// Whether an orbit is stable; `None` where rounding decides, as with a multiplier of 1 or -1.
+fn stability(orbit: &Orbit) -> Option<bool> {
+    let largest = orbit.multipliers()[0].magnitude();
+    ((largest - 1.0).abs() > 1e-9).then_some(largest < 1.0)
 }
 
 /// The nearest state between rigid stops and on the force curve.
@@ -304,7 +314,7 @@ fn with_orbits(table: Table, orbits: &[Orbit]) -> Table {
         false => table,
     };
     table
-        .each("stable", orbits, |orbit| Some(orbit.is_stable()))
+        .each("stable", orbits, stability)
         .each("impacts", orbits, |orbit| Some(orbit.passage.impacts))
         .each("rests", orbits, |orbit| Some(orbit.passage.rests()))
         .each("gentlest_impact_m_per_s", orbits, |orbit| orbit.gentlest_impact())
@@ -329,6 +339,8 @@ pub enum BranchEnd {
     Lost,
     /// The largest number of points was reached.
     Points,
+    /// The orbits become those of half their period.
+    Joined,
 }
 
 impl fmt::Display for BranchEnd {
@@ -342,7 +354,8 @@ impl fmt::Display for BranchEnd {
                 "where no motion near the last one was found: it may leap to another, change too \
                  fast, or end early"
             }
-            Self::Points => "after 5000 motions",
+            Self::Points => "after the largest number of motions",
+            Self::Joined => "where its motions become those of half the period",
         })
     }
 }
@@ -366,6 +379,18 @@ pub struct Branch {
 }
 
 impl Branch {
+    /// A branch before its first orbit.
+    fn empty(field: &str) -> Self {
+        Self {
+            field: field.to_owned(),
+            values: Vec::new(),
+            orbits: Vec::new(),
+            events: Vec::new(),
+            end: BranchEnd::Points,
+            unlocated: Vec::new(),
+        }
+    }
+
     /// One row per orbit: the field, the columns of [`orbit_table`](super::orbit_table), and `event`.
     pub fn table(&self) -> Table {
         let column = column_names(&[&self.field]).concat();
@@ -375,19 +400,57 @@ impl Branch {
     }
 }
 
+/// The tables of branches, one below the other, with their numbers from 1 in the column `branch`.
+pub fn branches_table(branches: &[Branch]) -> Table {
+    let mut all = Table::new();
+    for (number, branch) in (1..).zip(branches) {
+        let numbers = vec![Some(number); branch.orbits.len()];
+        let mut table = Table::new().with("branch", Values::Counts(numbers));
+        for column in branch.table().into_columns() {
+            table = table.with(column.name, column.values);
+        }
+        all.append(&table);
+    }
+    all
+}
+
+/// How a branch or a locus is followed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BranchOptions {
+    /// Phase of the drive in forcing periods at which states are given.
+    pub phase: f64,
+    /// Period of the first orbit in forcing periods; `None` for that of the settled motion.
+    pub period: Option<u32>,
+    /// Longest step, as a share of the range of a field and of the scales of the state.
+    pub step: f64,
+    /// Largest number of orbits.
+    pub count: usize,
+}
+
+impl BranchOptions {
+    /// Longest step by default.
+    pub const STEP: f64 = 1e-2;
+    /// Largest number of orbits by default.
+    pub const COUNT: usize = 5000;
+
+    /// The default steps from an orbit of this period, with states at a phase in forcing periods.
+    pub fn new(phase: f64, period: Option<u32>) -> Self {
+        Self { phase, period, step: Self::STEP, count: Self::COUNT }
+    }
+}
+
 /// The branch of periodic orbits of a family over `field`, from one value towards another. It begins at the
-/// settled motion of a run at the first value; `phase` is in forcing periods, and `period` is that of the
-/// first orbit, if given.
+/// settled motion of a run at the first value.
 ///
 /// Ticks once per orbit. Errors concern the first orbit only.
 pub fn branch(
     family: &Family,
     field: &str,
     (from, to): (f64, f64),
-    phase: f64,
-    period: Option<u32>,
+    options: &BranchOptions,
     task: &Task,
 ) -> Result<Branch, NoOrbit> {
+    let BranchOptions { phase, period, .. } = *options;
     let model = family.model(from).map_err(|_| NoOrbit::NotConverged)?;
     let first = orbit(&model, phase, period, task.cancel)?;
     let units = Units::of(&model, (to - from).abs());
@@ -397,15 +460,8 @@ pub fn branch(
     let upwards = Vector4::w() * (to - from).signum();
     let point = corrector.correct(corrector.at(first.state, from), &upwards).ok_or(NoOrbit::NotConverged)?;
     let along = corrector.tangent(&point, &upwards).ok_or(NoOrbit::Grazing)?;
-    let branch = Branch {
-        field: field.to_owned(),
-        values: Vec::new(),
-        orbits: Vec::new(),
-        events: Vec::new(),
-        end: BranchEnd::Points,
-        unlocated: Vec::new(),
-    };
-    let mut walk = Walk::new(corrector, branch, (from, to), &model, (point, along));
+    let branch = Branch::empty(field);
+    let mut walk = Walk::new(corrector, branch, (from, to), &model, (point, along), *options);
     walk.branch.end = walk.run_out(task)?;
     Ok(walk.branch)
 }

@@ -5,14 +5,12 @@ use nalgebra::Vector4;
 use super::corrector::{Corrector, Point};
 use super::events::{BranchEvent, between, differ};
 use super::grazing::{Beside, Grazing, grazings};
-use super::{Branch, BranchEnd, NoOrbit, Orbit, SAME};
+use super::{Branch, BranchEnd, BranchOptions, NoOrbit, Orbit, SAME};
 use crate::dynamics::{MapState, Model};
 use crate::study::Task;
 
 /// First step, in the units of the branch.
 const FIRST: f64 = 2e-3;
-/// Longest step.
-const LONGEST: f64 = 1e-2;
 /// Step below which the branch ends.
 const SHORTEST: f64 = 1e-9;
 
@@ -27,9 +25,6 @@ const STRAIGHT: f64 = 0.9;
 /// stops.
 const CHANGE: f64 = 0.1;
 
-/// Largest number of orbits of a branch.
-const MAX_POINTS: usize = 5000;
-
 /// Distances from a grazing at which the branch is continued, in the order of trial.
 const PAST_A_GRAZING: [f64; 6] = [1e-4, 3e-4, 1e-3, 3e-3, 3e-5, 1e-5];
 /// Smallest distance from a grazing of an orbit that misses the stop; nearer to it derivatives are lost in
@@ -39,7 +34,7 @@ const MIN_MISSING: f64 = 1e-6;
 const MIN_TOUCHING: f64 = 1e-5;
 
 /// Distance from an end of the range at which a value is at that end, as a share of the range.
-const AT_AN_END: f64 = 1e-12;
+pub(super) const AT_AN_END: f64 = 1e-12;
 
 /// A point with the tangent of the branch there.
 pub(super) type Directed = (Point, Vector4<f64>);
@@ -68,8 +63,7 @@ pub(super) struct Walk<'a> {
     room: f64,
     /// Whether the stops are compliant; then the map is smooth at a grazing.
     compliant: bool,
-    /// The phase of the rows, in forcing periods.
-    phase: f64,
+    options: BranchOptions,
     /// The coordinates of the rows, each with its arc length from the first.
     rows: Vec<(Vector4<f64>, f64)>,
     /// Whether the branch has returned to an earlier orbit.
@@ -85,6 +79,7 @@ impl<'a> Walk<'a> {
         (from, to): (f64, f64),
         model: &Model,
         first: Directed,
+        options: BranchOptions,
     ) -> Self {
         let range = [from.min(to), from.max(to)];
         let length = corrector.units.length;
@@ -98,7 +93,7 @@ impl<'a> Walk<'a> {
             ends: range.map(|end| end / corrector.units.range),
             room,
             compliant: model.compliant().is_some(),
-            phase: corrector.phase,
+            options,
             rows: Vec::new(),
             meets: false,
             at: first.clone(),
@@ -109,8 +104,8 @@ impl<'a> Walk<'a> {
     }
 
     pub fn run_out(&mut self, task: &Task) -> Result<BranchEnd, NoOrbit> {
-        let mut step = FIRST;
-        while self.branch.values.len() < MAX_POINTS {
+        let mut step = FIRST.min(self.options.step);
+        while self.branch.values.len() < self.options.count {
             task.check_cancelled().map_err(|_| NoOrbit::Cancelled)?;
             (task.tick)();
             self.keep_clear(&[]);
@@ -128,12 +123,22 @@ impl<'a> Walk<'a> {
                 }
                 Some(Stretch { events: Vec::new(), next: Some(next), is_last: beyond.is_some() })
             });
-            if let Some(stretch) = stretch {
+            if let Some(mut stretch) = stretch {
+                let is_half = |event: &(BranchEvent, Point, _)| event.1.orbit.period < self.corrector.periods;
+                let joins = stretch.events.iter().position(is_half);
+                if let Some(place) = joins {
+                    // beyond it the motions are the same ones half their period later
+                    stretch.events.truncate(place + 1);
+                    stretch.next = None;
+                }
                 let grazes = stretch.events.iter().any(|event| event.0 == BranchEvent::Grazing);
                 let is_last = stretch.is_last;
                 let goes_on = self.go_along(stretch);
                 if self.meets {
                     return Ok(BranchEnd::Closed);
+                }
+                if joins.is_some() {
+                    return Ok(BranchEnd::Joined);
                 }
                 if is_last {
                     return Ok(BranchEnd::Range);
@@ -144,7 +149,11 @@ impl<'a> Walk<'a> {
                 if self.is_closed(step) {
                     return Ok(BranchEnd::Closed);
                 }
-                step = if grazes && !self.compliant { PAST_A_GRAZING[0] } else { (step * 1.3).min(LONGEST) };
+                step = if grazes && !self.compliant {
+                    PAST_A_GRAZING[0].min(self.options.step)
+                } else {
+                    (step * 1.3).min(self.options.step)
+                };
                 continue;
             }
             step *= 0.5;
@@ -195,7 +204,7 @@ impl<'a> Walk<'a> {
         let next = self.corrector.correct(point.at + along * share, &across)?;
         let onward = self.corrector.tangent(&next, along)?;
         // at an end already, the branch first goes round the fold just before it
-        (SHORTEST..=2.0 * LONGEST).contains(&(next.at - point.at).norm()).then_some((next, onward))
+        (SHORTEST..=2.0 * self.options.step).contains(&(next.at - point.at).norm()).then_some((next, onward))
     }
 
     /// Whether a point continues the branch: it lies in its direction, and so does its own direction.
@@ -254,12 +263,12 @@ impl<'a> Walk<'a> {
         let distance = |grazing: &Grazing| (grazing.point.at - point.at).norm();
         ahead.retain(|(grazing, _)| {
             let within = self.end_before(grazing.point.at.w).is_none();
-            within && distance(grazing) <= LONGEST && self.is_ahead(&grazing.point)
+            within && distance(grazing) <= self.options.step && self.is_ahead(&grazing.point)
         });
         let nearest = ahead.into_iter().min_by(|a, b| distance(&a.0).total_cmp(&distance(&b.0)));
         let (grazing, beside) = nearest?;
         let times = grazing.times();
-        let row = grazing.at_phase(self.phase);
+        let row = grazing.at_phase(self.options.phase);
         let event = (BranchEvent::Grazing, grazing.point.clone(), row);
         if self.compliant {
             let mut stretch = self.smooth(next?, beyond.is_some())?;
@@ -344,14 +353,14 @@ impl<'a> Walk<'a> {
         let orbit = match state {
             Some(state) => Orbit { state, ..point.orbit.clone() },
             None => {
-                let orbit = self.corrector.at_phase(&point.orbit, point.value, self.phase);
+                let orbit = self.corrector.at_phase(&point.orbit, point.value, self.options.phase);
                 orbit.unwrap_or_else(|| point.orbit.clone())
             }
         };
         let at = self.corrector.at(orbit.state, point.value);
         let far = self.rows.last().map_or(0.0, |(last, far)| far + (at - last).norm());
         // only where something happens does it come to the same motion again, and not beside it
-        let left = self.rows.iter().take_while(|(_, along)| far - along > LONGEST);
+        let left = self.rows.iter().take_while(|(_, along)| far - along > self.options.step);
         self.meets |= left.into_iter().any(|(row, _)| (at - row).amax() <= SAME);
         let event = event.filter(|_| !self.meets);
         self.rows.push((at, far));

@@ -1,0 +1,373 @@
+//! Questions about periodic motions: orbits, their branches over a field, and loci over two.
+
+use super::{Error, Progress, Simulation};
+use crate::dynamics::Model;
+use crate::scene::{Axis, Document, Scene, is_whole};
+use crate::study::{
+    self, BranchEnd, BranchEvent, BranchOptions, Family, NoBasins, NoOrbit, Second, Table, Task, branch,
+    loci, orbit, orbit_table, switched,
+};
+
+/// The periodic orbit near the settled motion of a run, stable or not, with its Floquet multipliers.
+///
+/// The table of the answer has one row: `period` (forcing periods), `x_m`, `v_m_per_s` (at `phase_deg`),
+/// `multiplier_1_re`, `multiplier_1_im`, `multiplier_2_re`, `multiplier_2_im`, `stable`, `impacts`, `rests`,
+/// `gentlest_impact_m_per_s`, `nearest_miss_m`; beside a circuit also `current_a` or `voltage_v` and
+/// `multiplier_3_re`, `multiplier_3_im`.
+///
+/// Method: a motion that repeats after n forcing periods is a fixed point of the stroboscopic map, found by
+/// Newton's method. The derivative of the map is carried through impacts and releases by saltation matrices
+/// (Müller 1995; Kong et al. 2024); its eigenvalues are the multipliers, which are 0 where the mass rests on
+/// a stop, but for one of a circuit. It takes the run of the scene and some further periods.
+///
+/// Errors: [`Error::Argument`] for `period` or `phase_deg`; [`Error::Unfit`] if the drive does not repeat or
+/// is 0; [`Error::Failed`] if the run comes to no motion that
+/// repeats (name a period, start elsewhere, or lengthen the run), Newton's method does not converge, the
+/// motion touches a stop without speed or ends early, or there is only an orbit of a shorter period.
+///
+/// ```
+/// use interwell_studies::questions::{Orbit, Progress, Simulation};
+///
+/// // Without impacts the product of the multipliers is exp(-c T/m).
+/// let simulation = Simulation::preset("nominal-cubic")?.with("stops", "None")?;
+/// let weak = simulation.with("excitation.amplitude_g", 0.2)?;
+/// let orbit = Orbit::default().run(&weak, &Progress::none())?;
+/// let rate = 2.0 * 0.023 * (80.0_f64 / 15.2e-3).sqrt();
+/// assert!(orbit.is_stable() && orbit.period == 1);
+/// assert!((orbit.determinant() - (-rate / 3.0).exp()).abs() < 1e-9);
+/// # Ok::<(), interwell_studies::questions::Error>(())
+/// ```
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Orbit {
+    /// Its period in forcing periods, at least 1; by default that of the settled motion.
+    pub period: Option<u32>,
+    /// Phase of the drive in degrees at which the state is given.
+    pub phase_deg: f64,
+}
+
+impl Orbit {
+    /// Finds the orbit by Newton's method.
+    pub fn run(&self, simulation: &Simulation, progress: &Progress) -> Result<study::Orbit, Error> {
+        check_period(self.period)?;
+        can_have_orbits(simulation.document(), simulation.model())?;
+        let found = orbit(simulation.model(), phase(self.phase_deg)?, self.period, progress.stop());
+        found.map_err(|error| no_orbit(simulation.document(), error, ""))
+    }
+}
+
+impl study::Orbit {
+    /// One row: period, state, multipliers and what happens on the motion.
+    pub fn table(&self) -> Table {
+        orbit_table(std::slice::from_ref(self))
+    }
+}
+
+/// A branch of periodic orbits, continued in a field and followed around folds.
+///
+/// The table of the answer has one row per orbit, in order along the branch: the field in its unit, the
+/// columns of [`Orbit`], and `event`: empty, `fold`, `flip`, `symmetry` or `grazing`. Its method `remarks`
+/// says where the branch ended inside the range, and why.
+///
+/// Method: pseudo-arclength continuation (Keller 1977). Events are located to some 1e-9 of the range. At a
+/// grazing the stroboscopic map changes like the square root of the distance (Nordmark 1991), so the motion
+/// that grazes is solved for with the instant of the touch as an unknown. Two events of a kind within a
+/// hundredth of the range can be missed. A branch of the prototype takes about a second.
+///
+/// Errors: those of [`Orbit`] for the first orbit, and [`Error::Argument`] for a field or a range that is
+/// wrong; a field of whole numbers has no branch. A branch that ends early is not an error.
+///
+/// ```
+/// use interwell_studies::questions::{Branch, Progress, Simulation};
+///
+/// // The stable motion in one well ends in a fold near 0.70 g; the branch goes back as an unstable one.
+/// let simulation = Simulation::preset("nominal-cubic")?.with("stops", "None")?;
+/// let question = Branch::over("excitation.amplitude_g", 0.6, 0.75);
+/// let branch = question.run(&simulation, &Progress::none())?;
+/// let table = branch.table();
+/// let fold = table.words("event").iter().position(|event| *event == "fold").unwrap();
+/// assert!((0.70..0.71).contains(&branch.values[fold]));
+/// # Ok::<(), interwell_studies::questions::Error>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Branch {
+    /// The field.
+    pub field: String,
+    /// Its value at the first orbit, and the value towards which the branch is continued.
+    pub range: (f64, f64),
+    /// Period of the first orbit in forcing periods, at least 1; by default that of the settled motion.
+    pub period: Option<u32>,
+    /// Phase of the drive in degrees at which states are given.
+    pub phase_deg: f64,
+    /// Longest step, as a share of the range and of the scales of the state, 1e-4 to 0.05. A shorter one takes
+    /// longer and misses fewer events.
+    pub step: f64,
+    /// Largest number of orbits, 1 to 1000000.
+    pub count: usize,
+}
+
+impl Branch {
+    /// A branch over a field, from one value towards another.
+    pub fn over(field: impl Into<String>, from: f64, to: f64) -> Self {
+        let (step, count) = (BranchOptions::STEP, BranchOptions::COUNT);
+        Self { field: field.into(), range: (from, to), period: None, phase_deg: 0.0, step, count }
+    }
+
+    /// Follows the branch. The value of the field in the scene is replaced by the first value of the range.
+    pub fn run(&self, simulation: &Simulation, progress: &Progress) -> Result<study::Branch, Error> {
+        self.with_switches(0, simulation, progress).map(|mut branches| branches.swap_remove(0))
+    }
+
+    /// Follows the branch, and to this number of levels, at most 10, the branches that begin at its flips and
+    /// breakings of the symmetry ([`switched`](crate::study::switched)).
+    pub fn with_switches(
+        &self,
+        levels: u32,
+        simulation: &Simulation,
+        progress: &Progress,
+    ) -> Result<Vec<study::Branch>, Error> {
+        if levels > MOST_LEVELS {
+            return Err(Error::argument("switch", levels, format!("give 0 to {MOST_LEVELS}")));
+        }
+        check_fields(simulation.scene(), [("branch", &self.first())])?;
+        let options = self.options()?;
+        let from = self.range.0;
+        let first = simulation.with(&self.field, from)?;
+        can_have_orbits(first.document(), first.model())?;
+        let document = first.document();
+        let family = Family::new(&document.scene, &document.files, first.mechanism(), &self.field);
+        let found = progress.task(None, |task| {
+            let first = branch(&family, &self.field, self.range, &options, task)?;
+            switched(&family, first, self.range, levels, &options, task)
+        });
+        found.map_err(|error| no_orbit(document, error, &format!("at {} = {from}: ", self.field)))
+    }
+
+    fn first(&self) -> Second {
+        Second { field: self.field.clone(), range: self.range }
+    }
+
+    /// The options of the study; an error if an argument is wrong.
+    pub fn options(&self) -> Result<BranchOptions, Error> {
+        check_period(self.period)?;
+        if !STEPS.contains(&self.step) {
+            let problem = format!("give a share of the range from {} to {}", STEPS.start(), STEPS.end());
+            return Err(Error::number("step", self.step, problem));
+        }
+        if !COUNTS.contains(&self.count) {
+            return Err(Error::argument("count", self.count, format!("give 1 to {}", COUNTS.end())));
+        }
+        let phase = phase(self.phase_deg)?;
+        Ok(BranchOptions { phase, period: self.period, step: self.step, count: self.count })
+    }
+}
+
+/// Longest steps of a branch.
+const STEPS: std::ops::RangeInclusive<f64> = 1e-4..=0.05;
+/// Largest number of levels of branch switching; the last of ten has a period of 1024.
+const MOST_LEVELS: u32 = 10;
+/// Numbers of orbits of a branch.
+const COUNTS: std::ops::RangeInclusive<usize> = 1..=1_000_000;
+
+/// Checks fields that take all values of a range, each with the argument that gives it.
+pub fn check_fields<'a>(
+    scene: &Scene,
+    fields: impl IntoIterator<Item = (&'a str, &'a Second)>,
+) -> Result<(), Error> {
+    let mut known: Vec<&str> = Vec::new();
+    for (argument, Second { field, range: (from, to) }) in fields {
+        let wrong = |problem: String| Error::argument(argument, format!("{field}={from}:{to}"), problem);
+        Axis::listed(field, vec![*from, *to], scene).map_err(wrong)?;
+        let problem = if !(from.is_finite() && to.is_finite()) {
+            "both ends of the range must be finite"
+        } else if is_whole(scene, field) {
+            "this field holds whole numbers, and a branch takes all values between two ends; follow the motion by \
+             `sweep --carry` over it"
+        } else if from == to {
+            "both ends are equal; give a range, such as 0.5:2"
+        } else if ["run.", "start."].iter().any(|group| field.starts_with(group)) {
+            "a periodic motion does not depend on this field; take another one"
+        } else if known.contains(&field.as_str()) {
+            "the branch is over this field already; name another one"
+        } else {
+            known.push(field);
+            continue;
+        };
+        return Err(wrong(problem.to_owned()));
+    }
+    Ok(())
+}
+
+/// The remarks of each branch, with its number if there are several.
+pub fn branches_remarks(branches: &[study::Branch], range: (f64, f64)) -> Vec<String> {
+    let named = |(number, branch): (usize, &study::Branch)| {
+        let remarks = branch.remarks(range).into_iter();
+        let several = branches.len() > 1;
+        remarks
+            .map(move |remark| if several { format!("branch {number}: {remark}") } else { remark })
+            .collect()
+    };
+    (1..).zip(branches).flat_map(|row| -> Vec<String> { named(row) }).collect()
+}
+
+impl study::Branch {
+    /// Remarks that have no column in the table: events that were not located and, unless the branch reached
+    /// the end of its range, where and why it ended.
+    pub fn remarks(&self, (from, to): (f64, f64)) -> Vec<String> {
+        let field = &self.field;
+        let unlocated = |(before, after): &(f64, f64)| {
+            format!(
+                "between {field} = {before} and {after} the motion changes how it touches the stops, or its \
+                 stability; no event was located there, and the table has none"
+            )
+        };
+        let mut lines: Vec<String> = self.unlocated.iter().map(unlocated).collect();
+        let at = self.values.last().copied().unwrap_or(f64::NAN);
+        let why = match self.end {
+            BranchEnd::Range if (at - to).abs() < (at - from).abs() => return lines,
+            BranchEnd::Range => "it came back to the value at which it began".to_owned(),
+            other => other.to_string(),
+        };
+        lines.push(format!("the branch ends at {field} = {at}: {why}"));
+        lines
+    }
+}
+
+/// Loci in two fields: where the orbits of a branch fold, double their period, break their symmetry or graze a
+/// stop.
+///
+/// The table of the answer ([`loci_table`](crate::study::loci_table)) has one row per orbit, in order along each
+/// locus: `locus` (its number from 1), both fields in their units, the columns of [`Orbit`], and `event`: empty,
+/// `cusp`, `fold-flip`, `grazing-fold`, `grazing-flip` or `grazing-symmetry`.
+///
+/// Method: the branch is followed at the first value of the second field. From each of its events of this kind a
+/// locus goes on towards the other value, by pseudo-arclength in the state and both fields, with the
+/// characteristic polynomial of the map at 1 or -1 as one more equation (Kuznetsov 2004, section 10.3), or with
+/// the touch of the stop for a grazing. Each point is checked: a multiplier within 1e-6 of 1 or -1, a touch to
+/// 1e-9 of the scales.
+///
+/// Errors: those of [`Branch`], for both fields; [`Error::Failed`] if the branch has no such event.
+///
+/// ```
+/// use interwell_studies::questions::{Branch, Locus, Progress, Simulation};
+/// use interwell_studies::study::{BranchEvent, Second};
+///
+/// // The swing without impacts of a linear oscillator grazes the stop at an amplitude in closed form.
+/// let simulation = Simulation::preset("impact-oscillator")?;
+/// let second = Second { field: "excitation.frequency_hz".into(), range: (0.1, 0.116) };
+/// let branch = Branch { period: Some(1), ..Branch::over("excitation.amplitude_g", 0.05, 0.07) };
+/// let loci = Locus { branch, of: BranchEvent::Grazing, second }.run(&simulation, &Progress::none())?;
+/// for [amplitude_g, frequency_hz] in &loci[0].values {
+///     let w = std::f64::consts::TAU * frequency_hz;
+///     let reached = amplitude_g * 9.806_65 / (1.0 - w * w).hypot(0.2 * w);
+///     assert!((reached - 1.0).abs() < 1e-8);
+/// }
+/// # Ok::<(), interwell_studies::questions::Error>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Locus {
+    /// The branch on which the loci begin.
+    pub branch: Branch,
+    /// What happens on the loci.
+    pub of: BranchEvent,
+    /// The second field.
+    pub second: Second,
+}
+
+impl Locus {
+    /// Follows the branch, and the loci from it.
+    pub fn run(&self, simulation: &Simulation, progress: &Progress) -> Result<Vec<study::Locus>, Error> {
+        let Self { branch: over, of, second } = self;
+        check_fields(simulation.scene(), [("branch", &over.first()), ("second", second)])?;
+        let first = simulation.with(&second.field, second.range.0)?.with(&over.field, over.range.0)?;
+        can_have_orbits(first.document(), first.model())?;
+        let document = first.document();
+        let family = Family::new(&document.scene, &document.files, first.mechanism(), &over.field);
+        let options = over.options()?;
+        progress.task(None, |task| loci_of(document, &family, over, (*of, second), &options, task))
+    }
+}
+
+/// The loci of a scene whose fields have their first values.
+pub fn loci_of(
+    document: &Document,
+    family: &Family,
+    over: &Branch,
+    (of, second): (BranchEvent, &Second),
+    options: &BranchOptions,
+    task: &Task,
+) -> Result<Vec<study::Locus>, Error> {
+    let (field, from, to) = (&over.field, over.range.0, over.range.1);
+    let failed = |error| no_orbit(document, error, &format!("at {field} = {from}: "));
+    let found = branch(family, field, over.range, options, task).map_err(failed)?;
+    if !found.events.contains(&Some(of)) {
+        let at = found.values.last().copied().unwrap_or(from);
+        let mut others: Vec<&str> = found.events.iter().flatten().map(|event| event.name()).collect();
+        others.sort_unstable();
+        others.dedup();
+        let has = match others.is_empty() {
+            true => "and no other event".to_owned(),
+            false => format!("but {}", others.join(" and ")),
+        };
+        return Err(Error::failed(
+            document,
+            format!(
+                "at {} = {}, the branch over {field} from {from} to {to} has no {} {has}; it ends at {at}, {}: take \
+                 another range, start, period or number of motions",
+                second.field,
+                second.range.0,
+                of.name(),
+                found.end
+            ),
+        ));
+    }
+    loci(family, &found, over.range, (of, second), options, task).map_err(failed)
+}
+
+impl study::Locus {
+    /// Where and why the locus with this number ended.
+    pub fn remark(&self, number: usize) -> Option<String> {
+        let [first, second] = &self.fields;
+        let [at, and] = self.values.last()?;
+        Some(format!("locus {number} ends at {first} = {at}, {second} = {and}: {}", self.end))
+    }
+}
+
+/// Largest period of an orbit in forcing periods.
+const MAX_PERIOD: u32 = 1000;
+
+fn check_period(period: Option<u32>) -> Result<(), Error> {
+    match period.filter(|period| !(1..=MAX_PERIOD).contains(period)) {
+        Some(period) => Err(Error::argument("period", period, format!("give 1 to {MAX_PERIOD}"))),
+        None => Ok(()),
+    }
+}
+
+/// The phase in forcing periods.
+pub(super) fn phase(degrees: f64) -> Result<f64, Error> {
+    match degrees.is_finite() {
+        true => Ok(degrees / 360.0),
+        false => Err(Error::number("phase_deg", degrees, "give a phase in degrees, such as 90")),
+    }
+}
+
+/// Refuses a scene whose drive does not repeat.
+pub fn can_have_orbits(document: &Document, model: &Model) -> Result<(), Error> {
+    if !model.repeats() || !model.is_shaken() {
+        let problem = "excitation: a periodic motion needs a drive that repeats and is not 0; take a Sine, \
+                       or a Sum of sines whose frequencies have a common period";
+        return Err(Error::unfit(document, problem));
+    }
+    if model.keeps_charge() {
+        return Err(Error::unfit(document, NoBasins::KeepsCharge));
+    }
+    Ok(())
+}
+
+/// The error for an orbit that was not found; `at` is a prefix that names the place, such as `at FIELD =
+/// VALUE: `.
+pub fn no_orbit(document: &Document, error: NoOrbit, at: &str) -> Error {
+    match error {
+        NoOrbit::Cancelled => Error::Cancelled,
+        _ => Error::failed(document, format!("{at}{error}")),
+    }
+}

@@ -1,0 +1,255 @@
+//! A walk along a locus by pseudo-arclength, with the points of codimension two on it.
+
+use nalgebra::Vector5;
+
+use super::super::corrector::tangent;
+use super::super::events::{characteristic, differ, is_at, root_between};
+use super::super::walk::AT_AN_END;
+use super::curve::{Curve, Spot};
+use super::{BranchEvent, BranchOptions, Locus, LocusEnd, LocusEvent, NoOrbit, Orbit, Second};
+use crate::study::Task;
+
+/// First step in the units.
+const FIRST: f64 = 2e-3;
+
+/// Step below which a locus ends.
+const SHORTEST: f64 = 1e-9;
+
+/// Cosine of the largest angle between the tangents at both ends of a step.
+const STRAIGHT: f64 = 0.9;
+
+/// Largest component of the tangent by a field at a cusp.
+const AT_A_CUSP: f64 = 1e-3;
+
+/// Length of the part of the tangent by both fields below which the phase of the drive is kept.
+const UPRIGHT: f64 = 1e-2;
+
+/// A walk along a locus.
+pub(super) struct Walk<'a> {
+    curve: Curve<'a>,
+    locus: Locus,
+    at: Spot,
+    /// The phase of the rows, in forcing periods.
+    phase: f64,
+    second: &'a Second,
+}
+
+impl<'a> Walk<'a> {
+    /// A walk from a point; `phase` is that of the rows in forcing periods.
+    pub fn new(curve: Curve<'a>, locus: Locus, at: Spot, second: &'a Second, phase: f64) -> Self {
+        Self { curve, locus, at, phase, second }
+    }
+
+    /// The locus to its end. `range` is that of the first field.
+    pub fn run_out(
+        mut self,
+        range: (f64, f64),
+        options: &BranchOptions,
+        task: &Task,
+    ) -> Result<Locus, NoOrbit> {
+        self.locus.end = self.go_on(range, options, task)?;
+        Ok(self.locus)
+    }
+
+    fn go_on(
+        &mut self,
+        range: (f64, f64),
+        options: &BranchOptions,
+        task: &Task,
+    ) -> Result<LocusEnd, NoOrbit> {
+        let units = [self.curve.corrector.units.range, self.curve.range];
+        let ends = [(range, units[0]), (self.second.range, units[1])]
+            .map(|((from, to), unit)| [from.min(to) / unit, from.max(to) / unit]);
+        let (mut step, mut farthest) = (FIRST.min(options.step), 0.0_f64);
+        self.add(None, &self.at.clone());
+        while self.locus.orbits.len() < options.count {
+            task.check_cancelled().map_err(|_| NoOrbit::Cancelled)?;
+            (task.tick)();
+            let Some((next, is_last)) = self.predicted(step, &ends) else {
+                step *= 0.5;
+                if step < SHORTEST {
+                    return Ok(self.ended(&ends));
+                }
+                continue;
+            };
+            let Some(events) = self.events_to(&next) else {
+                step *= 0.5;
+                if step < SHORTEST {
+                    return Ok(LocusEnd::Lost);
+                }
+                continue;
+            };
+            for (event, spot) in events {
+                self.add(Some(event), &spot);
+            }
+            self.add(None, &next);
+            self.at = next;
+            if is_last {
+                return Ok(LocusEnd::Range);
+            }
+            let far = self.far();
+            farthest = farthest.max(far);
+            if far < step && farthest > 10.0 * step {
+                return Ok(LocusEnd::Closed);
+            }
+            self.keep_clear();
+            step = (step * 1.3).min(options.step);
+        }
+        Ok(LocusEnd::Points)
+    }
+
+    /// Distance of the last row from the first in the units.
+    fn far(&self) -> f64 {
+        let Locus { orbits, values, .. } = &self.locus;
+        let units = &self.curve.corrector.units;
+        let (Some(first), Some(last)) = (orbits.first(), orbits.last()) else { return 0.0 };
+        let by_fields = [units.range, self.curve.range];
+        let fields = (0..2).map(|i| (values[values.len() - 1][i] - values[0][i]) / by_fields[i]);
+        let state = units.apart(first.state, last.state);
+        fields.chain(state).map(|part| part * part).sum::<f64>().sqrt()
+    }
+
+    /// The point after a step, or at the end of a range where that lies before it, and which of both it is.
+    fn predicted(&self, step: f64, ends: &[[f64; 2]; 2]) -> Option<(Spot, bool)> {
+        let Spot { at, along, .. } = &self.at;
+        let beyond = |to: &Vector5<f64>| {
+            (0..2).find_map(|place| {
+                let [low, high] = ends[place];
+                let (from, to) = (at[3 + place], to[3 + place]);
+                let end = if to < low {
+                    low
+                } else if to > high {
+                    high
+                } else {
+                    return None;
+                };
+                // the first point may lie at an end, and the locus go on inside
+                (to != from).then(|| (3 + place, end, (end - from) / (to - from)))
+            })
+        };
+        let guess = at + along * step;
+        let over = beyond(&guess);
+        let next = match over {
+            None => self.curve.correct(guess, along)?,
+            Some(_) => Spot { at: guess, ..self.at.clone() },
+        };
+        let next = match over.or_else(|| beyond(&next.at)) {
+            None => Some((next, false)),
+            Some((axis, end, share)) => {
+                let mut there = at + (next.at - at) * share;
+                there[axis] = end;
+                let last = self.curve.correct(there, &Vector5::ith(axis, 1.0))?;
+                let within = (last.at - at).norm() <= 2.0 * step;
+                within.then_some((last, true))
+            }
+        };
+        let (next, is_last) = next?;
+        let onward = tangent(&next.slopes, along)?;
+        let ahead = next.at - at;
+        let follows = onward.dot(along) > STRAIGHT && ahead.dot(along) > STRAIGHT * ahead.norm();
+        (follows && !differ(&next.point, &self.at.point)).then_some((Spot { along: onward, ..next }, is_last))
+    }
+
+    /// The events between the last point and the next in order; `None` if one is not found.
+    fn events_to(&self, next: &Spot) -> Option<Vec<(LocusEvent, Spot)>> {
+        let mut found = Vec::new();
+        let chord = next.at - self.at.at;
+        let length = chord.norm();
+        let at = |share: f64| {
+            let spot = self.curve.correct(self.at.at + chord * share, &(chord / length))?;
+            let along = tangent(&spot.slopes, &self.at.along)?;
+            Some(Spot { along, ..spot })
+        };
+        let mut search = |event: LocusEvent, of: &dyn Fn(&Spot) -> f64| -> Option<()> {
+            let ends = (of(&self.at), of(next));
+            if ends.0 * ends.1 < 0.0 {
+                let (share, spot) = root_between(length, ends, at, of)?;
+                found.push((share, event, spot));
+            }
+            Some(())
+        };
+        let at_unit = |unit: f64| move |spot: &Spot| characteristic(&spot.point, unit);
+        match self.curve.of {
+            BranchEvent::Grazing if self.curve.corrector.mirrored => {
+                search(LocusEvent::GrazingFold, &at_unit(1.0))?;
+                search(LocusEvent::GrazingSymmetry, &at_unit(-1.0))?;
+            }
+            BranchEvent::Grazing => {
+                search(LocusEvent::GrazingFold, &at_unit(1.0))?;
+                search(LocusEvent::GrazingFlip, &at_unit(-1.0))?;
+            }
+            BranchEvent::Fold => {
+                // where a locus turns back over one field alone it has no cusp
+                for axis in [3, 4] {
+                    search(LocusEvent::Cusp, &|spot| spot.along[axis])?;
+                }
+                search(LocusEvent::FoldFlip, &at_unit(-1.0))?;
+            }
+            BranchEvent::Flip => search(LocusEvent::FoldFlip, &at_unit(1.0))?,
+            BranchEvent::Symmetry => {}
+        }
+        let is_one = |(_, event, spot): &(f64, LocusEvent, Spot)| match event {
+            LocusEvent::Cusp => spot.along[3].hypot(spot.along[4]) <= AT_A_CUSP,
+            LocusEvent::GrazingFold => is_at(&spot.point, 1.0),
+            LocusEvent::FoldFlip => is_at(&spot.point, 1.0) && is_at(&spot.point, -1.0),
+            LocusEvent::GrazingFlip | LocusEvent::GrazingSymmetry => is_at(&spot.point, -1.0),
+            LocusEvent::GrazingTwice => false,
+        };
+        found.retain(|one| one.1 != LocusEvent::Cusp || is_one(one));
+        if !found.iter().all(is_one) {
+            return None;
+        }
+        found.sort_by(|a, b| a.0.total_cmp(&b.0));
+        found.dedup_by(|later, first| later.1 == first.1);
+        Some(found.into_iter().map(|(_, event, spot)| (event, spot)).collect())
+    }
+
+    /// Why there is no further point.
+    fn ended(&mut self, ends: &[[f64; 2]; 2]) -> LocusEnd {
+        let at = self.at.at;
+        let is_at_an_end = ends
+            .iter()
+            .zip([at[3], at[4]])
+            .any(|(ends, value)| ends.iter().any(|end| (value - end).abs() <= 10.0 * SHORTEST));
+        if is_at_an_end && self.locus.orbits.len() > 1 {
+            return LocusEnd::Range;
+        }
+        if !self.curve.is_beside_a_grazing(&self.at) {
+            return LocusEnd::Lost;
+        }
+        if let Some(event) = self.locus.events.last_mut() {
+            *event = Some(match self.curve.of {
+                BranchEvent::Flip => LocusEvent::GrazingFlip,
+                BranchEvent::Symmetry => LocusEvent::GrazingSymmetry,
+                BranchEvent::Fold => LocusEvent::GrazingFold,
+                BranchEvent::Grazing => LocusEvent::GrazingTwice,
+            });
+        }
+        LocusEnd::Grazing
+    }
+
+    /// Adds a row, with the state at the phase of the rows.
+    fn add(&mut self, event: Option<LocusEvent>, spot: &Spot) {
+        let state = self.curve.state_at(spot, self.phase).unwrap_or(spot.point.orbit.state);
+        let values = [spot.point.value, spot.at[4] * self.curve.range];
+        // a motion at an end is so but for the rounding of its unit
+        let (from, to) = self.second.range;
+        let is_at = |end: &f64| (values[1] - end).abs() <= AT_AN_END * ((to - from).abs() + end.abs() * 1e-3);
+        let second = [from, to].into_iter().find(is_at).unwrap_or(values[1]);
+        self.locus.values.push([values[0], second]);
+        self.locus.orbits.push(Orbit { state, ..spot.point.orbit.clone() });
+        self.locus.events.push(event);
+    }
+
+    /// Takes states at another phase of the drive where an event at a stop comes near to the present one.
+    fn keep_clear(&mut self) {
+        let along = self.at.along;
+        if along[3].hypot(along[4]) > UPRIGHT
+            && let Some((curve, spot)) = self.curve.cleared(&self.at)
+        {
+            (self.curve, self.at) = (curve, spot);
+        } else {
+            self.curve.reopen(&self.at);
+        }
+    }
+}
