@@ -1041,8 +1041,8 @@ class Scene(Mapping[str, Any]):
         count : int
             The largest number of motions, 1 to 1 000 000.
         switch : int
-            The levels of branches, 0 to 10, that are followed too: with 1 those that begin at flips and breakings
-            of the symmetry, with 2 also those that begin on them.
+            The levels of branches, 0 to 10, that are followed too: with 1 those that begin at flips and
+            breakings of the symmetry, with 2 also those that begin on them.
         progress
             See :meth:`sweep`; the number of all motions is not known.
 
@@ -1050,8 +1050,8 @@ class Scene(Mapping[str, Any]):
         -------
         Table
             The field, the columns of :meth:`orbit`, and ``event``: empty, ``fold``, ``flip``, ``symmetry`` or
-            ``grazing``; with ``switch`` first ``branch``, a number from 1. ``table.words`` says where and why a
-            branch ended inside the range.
+            ``grazing``; with ``switch`` first ``branch``, a number from 1. ``table.words`` says where and why
+            a branch ended inside the range.
 
         Raises
         ------
@@ -1099,7 +1099,7 @@ class Scene(Mapping[str, Any]):
         event : str
             ``"grazing"``, ``"fold"``, ``"flip"`` or ``"symmetry"``.
         field, range
-            The field of the branch, and its value at the first motion with that towards which the branch goes.
+            The field of the branch, its value at the first motion, and that towards which the branch goes.
             See :meth:`branch`.
         second, second_range
             The other field, its value on the branch and that towards which the loci go.
@@ -1122,8 +1122,8 @@ class Scene(Mapping[str, Any]):
 
         Notes
         -----
-        Pseudo-arclength in the state and both fields, with the characteristic polynomial of the map at 1 or -1
-        as one more equation (Kuznetsov 2004, section 10.3), or with the touch of the stop.
+        Pseudo-arclength in the state and both fields, with the characteristic polynomial of the map at 1 or
+        -1 as one more equation (Kuznetsov 2004, section 10.3), or with the touch of the stop.
 
         Examples
         --------
@@ -1137,8 +1137,9 @@ class Scene(Mapping[str, Any]):
         True
         """
         with _Told(progress, "motions") as told:
+            periods = _count("period", period)
             answer = self._simulation.locus(
-                event, field, range, second, second_range, step, count, _count("period", period), phase_deg, told
+                event, field, range, second, second_range, step, count, periods, phase_deg, told
             )
         return Table(answer)
 

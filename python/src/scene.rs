@@ -516,7 +516,9 @@ impl Simulation {
         Ok(answer.drawn(move |_, asked| Ok(branch_chart(&found, phase_deg, asked.ranges))))
     }
 
-    #[pyo3(signature = (event, field, range, second, second_range, step, count, period=None, phase_deg=0.0, progress=None))]
+    #[pyo3(signature = (
+        event, field, range, second, second_range, step, count, period=None, phase_deg=0.0, progress=None
+    ))]
     #[expect(clippy::too_many_arguments, reason = "they are those of Python")]
     fn locus(
         &self,

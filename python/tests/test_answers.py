@@ -118,6 +118,25 @@ def test_basins(command: Command, tmp_path: pathlib.Path) -> None:
     assert drawn.csv() == command("basins", "paper", *ranges)
 
 
+def test_loci_and_switched_branches(command: Command) -> None:
+    oscillator = iw.Scene.preset("impact-oscillator")
+    field, second = "excitation.amplitude_g", "excitation.frequency_hz"
+    locus = oscillator.locus("grazing", field, (0.05, 0.07), second, (0.1, 0.116), step=0.02, count=50)
+    assert locus.csv() == command(
+        "orbit", "impact-oscillator", "--branch", f"{field}=0.05:0.07", "--locus", "grazing",
+        "--and", f"{second}=0.1:0.116", "--step", "0.02", "--count", "50",
+    )
+    assert set(locus["locus"]) == {1} and len(locus) == 50
+    assert "after the largest number of motions" in " ".join(locus.words)
+    assert "<svg" in locus.plot()._repr_svg_()
+    branches = oscillator.branch(field, 0.056, 0.0545, switch=2)
+    assert branches.csv() == command(
+        "orbit", "impact-oscillator", "--branch", f"{field}=0.056:0.0545", "--switch", "2"
+    )
+    assert sorted(set(branches["branch"])) == [1, 2, 3]
+    assert sorted(set(branches["period"])) == [1, 2, 4]
+
+
 def test_orbit_and_branch(command: Command) -> None:
     scene = iw.Scene.preset("paper")
     assert scene.orbit().csv() == command("orbit", "paper")

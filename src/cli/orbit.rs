@@ -19,8 +19,9 @@ Examples:
   interwell --headless orbit duffing-chaos --period 1
   interwell --headless orbit paper-unconstrained --set run.duration_s=200 \\
       --branch excitation.amplitude_g=1.3:1.1 --out branch.csv --plot branch.png
-  interwell --headless orbit paper-unconstrained --set run.duration_s=200 \\
-      --branch excitation.amplitude_g=1.3:1.1 --locus fold --and excitation.frequency_hz=3:4 --plot folds.png";
+  interwell --headless orbit impact-oscillator --branch excitation.amplitude_g=0.056:0.0545 --switch 3
+  interwell --headless orbit impact-oscillator --branch excitation.amplitude_g=0.05:0.07 \\
+      --locus grazing --and excitation.frequency_hz=0.1:0.116 --plot grazings.png";
 
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
@@ -43,8 +44,8 @@ pub struct Arguments {
     #[arg(long, value_name = "FIELD=A:B", allow_hyphen_values = true)]
     pub branch: Option<String>,
 
-    /// Longest step of a branch, as a share of the range and of the scales of the state, 0.0001 to 0.05 [default:
-    /// 0.01]
+    /// Longest step of a branch, as a share of the range and of the scales of the state, 0.0001 to 0.05
+    /// [default: 0.01]
     #[arg(long, value_name = "S", allow_hyphen_values = true, requires = "branch")]
     pub step: Option<String>,
 
@@ -53,14 +54,15 @@ pub struct Arguments {
           value_parser = whole::<usize>(1..=1_000_000))]
     pub count: Option<usize>,
 
-    /// Follow also the branches that begin at flips and breakings of the symmetry, those that begin on them, and so
-    /// on to this number of levels [default without a number: 1]
-    #[arg(long, value_name = "LEVELS", allow_hyphen_values = true, requires = "branch", conflicts_with = "locus",
-          num_args = 0..=1, default_missing_value = "1", value_parser = whole::<u32>(1..=10))]
+    /// Follow also the branches that begin at flips and breakings of the symmetry, those that begin on them,
+    /// and so on to this number of levels [default without a number: 1]
+    #[arg(long, value_name = "LEVELS", allow_hyphen_values = true, num_args = 0..=1,
+          default_missing_value = "1", requires = "branch", conflicts_with = "locus",
+          value_parser = whole::<u32>(1..=10))]
     pub switch: Option<u32>,
 
-    /// Follow each event of this kind on the branch over a second field too: grazing, fold, flip or symmetry (where
-    /// a symmetric motion loses its symmetry)
+    /// Follow each event of this kind on the branch over a second field too: grazing, fold, flip or symmetry
+    /// (where a symmetric motion loses its symmetry)
     #[arg(long, value_name = "EVENT", requires_all = ["branch", "and"], value_parser = events())]
     pub locus: Option<String>,
 

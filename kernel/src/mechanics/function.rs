@@ -36,8 +36,8 @@ const BESIDE: usize = 4;
 /// Largest error of the extrapolation, relative to the change of the force that the corner makes.
 const CORNER_ERROR: f64 = 1e-3;
 
-/// Width, relative to the range, down to which the interval around a corner is narrowed where rounding does not
-/// end it earlier.
+/// Width, relative to the range, down to which the interval around a corner is narrowed where rounding does
+/// not end it earlier.
 const CORNER_WIDTH: f64 = 1e-10;
 
 /// Why a function or samples have no force curve.
@@ -310,9 +310,9 @@ impl<F: Fn(f64) -> f64> Sampled<F> {
         Ok(Compared { report, refined })
     }
 
-    /// The corner in an interval, if the function has one there and is smooth beside it, up to the next of the
-    /// corners and ends of the range that are `known`. Narrower and narrower intervals around it locate it to
-    /// rounding.
+    /// The corner in an interval, if the function has one there and is smooth beside it, up to the next of
+    /// the corners and ends of the range that are `known`. Narrower and narrower intervals around it locate
+    /// it to rounding.
     fn corner(&self, interval: (f64, f64), known: &[f64]) -> Result<Option<f64>, FunctionError> {
         let (low, high) =
             known.iter().fold((f64::MAX, f64::MIN), |(low, high), x| (low.min(*x), high.max(*x)));

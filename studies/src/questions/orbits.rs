@@ -98,8 +98,8 @@ pub struct Branch {
     pub period: Option<u32>,
     /// Phase of the drive in degrees at which states are given.
     pub phase_deg: f64,
-    /// Longest step, as a share of the range and of the scales of the state, 1e-4 to 0.05. A shorter one takes
-    /// longer and misses fewer events.
+    /// Longest step, as a share of the range and of the scales of the state, 1e-4 to 0.05. A shorter one
+    /// takes longer and misses fewer events.
     pub step: f64,
     /// Largest number of orbits, 1 to 1000000.
     pub count: usize,
@@ -180,8 +180,8 @@ pub fn check_fields<'a>(
         let problem = if !(from.is_finite() && to.is_finite()) {
             "both ends of the range must be finite"
         } else if is_whole(scene, field) {
-            "this field holds whole numbers, and a branch takes all values between two ends; follow the motion by \
-             `sweep --carry` over it"
+            "this field holds whole numbers, and a branch takes all values between two ends; follow the \
+             motion by `sweep --carry` over it"
         } else if from == to {
             "both ends are equal; give a range, such as 0.5:2"
         } else if ["run.", "start."].iter().any(|group| field.starts_with(group)) {
@@ -232,18 +232,19 @@ impl study::Branch {
     }
 }
 
-/// Loci in two fields: where the orbits of a branch fold, double their period, break their symmetry or graze a
-/// stop.
+/// Loci in two fields: where the orbits of a branch fold, double their period, break their symmetry or graze
+/// a stop.
 ///
-/// The table of the answer ([`loci_table`](crate::study::loci_table)) has one row per orbit, in order along each
-/// locus: `locus` (its number from 1), both fields in their units, the columns of [`Orbit`], and `event`: empty,
+/// The table of the answer ([`loci_table`](crate::study::loci_table)) has one row per orbit, in order along
+/// each locus: `locus` (its number from 1), both fields in their units, the columns of [`Orbit`], and
+/// `event`: empty,
 /// `cusp`, `fold-flip`, `grazing-fold`, `grazing-flip` or `grazing-symmetry`.
 ///
-/// Method: the branch is followed at the first value of the second field. From each of its events of this kind a
-/// locus goes on towards the other value, by pseudo-arclength in the state and both fields, with the
-/// characteristic polynomial of the map at 1 or -1 as one more equation (Kuznetsov 2004, section 10.3), or with
-/// the touch of the stop for a grazing. Each point is checked: a multiplier within 1e-6 of 1 or -1, a touch to
-/// 1e-9 of the scales.
+/// Method: the branch is followed at the first value of the second field. From each of its events of this
+/// kind a locus goes on towards the other value, by pseudo-arclength in the state and both fields, with the
+/// characteristic polynomial of the map at 1 or -1 as one more equation (Kuznetsov 2004, section 10.3), or
+/// with the touch of the stop for a grazing. Each point is checked: a multiplier within 1e-6 of 1 or -1, a
+/// touch to 1e-9 of the scales.
 ///
 /// Errors: those of [`Branch`], for both fields; [`Error::Failed`] if the branch has no such event.
 ///
@@ -311,8 +312,8 @@ pub fn loci_of(
         return Err(Error::failed(
             document,
             format!(
-                "at {} = {}, the branch over {field} from {from} to {to} has no {} {has}; it ends at {at}, {}: take \
-                 another range, start, period or number of motions",
+                "at {} = {}, the branch over {field} from {from} to {to} has no {} {has}; it ends at {at}, \
+                 {}: take another range, start, period or number of motions",
                 second.field,
                 second.range.0,
                 of.name(),

@@ -29,6 +29,8 @@ fn calls(command: &str) -> Vec<&'static str> {
             "SCENE --dt 0.5 --set mass_g=900 --tolerance 1e-7 --events e.csv --summary s.json",
             "SCENE --at 1,0.25 --measured r.csv --column x --unit mm --shift-s 1 --comparison c.csv",
             "SCENE --until-settled 80 --plot p.svg --panels velocity --jobs 1",
+            // the scene's own sweep goes over a field that is gone
+            "paper --set stops=None --set run.duration_s=2 --set excitation.amplitude_g=1.3",
         ],
         "sweep" => vec![
             "SCENE --over mass_g=900:1000:50 --columns rms_velocity,period --plot p.svg --quantity max_abs_x",
@@ -54,9 +56,13 @@ fn calls(command: &str) -> Vec<&'static str> {
             "SCENE --x-mm -1000:1000:2 --v 0.1:0.2:2 --attractors a.csv",
             "SCENE --x-mm 900:1000 --v 0:0.1 --random 3 --seed 5",
         ],
-        "orbit" => {
-            vec!["SCENE --phase-deg 30", "SCENE --branch excitation.amplitude_g=0.005:0.0052 --plot p.svg"]
-        }
+        "orbit" => vec![
+            "SCENE --phase-deg 30",
+            "SCENE --branch excitation.amplitude_g=0.005:0.0052 --switch 2 --step 0.02 --count 40 \
+             --plot p.svg",
+            "impact-oscillator --branch excitation.amplitude_g=0.05:0.07 --locus grazing \
+             --and excitation.frequency_hz=0.1:0.116 --step 0.03 --plot p.svg",
+        ],
         "exponents" => vec!["SCENE --periods 20", "SCENE --over mass_g=900,1000 --until-settled 60"],
         "escape" => vec![
             "SCENE --set excitation=Noise(rms_g:0.5,low_hz:0.1,high_hz:2,seed:3,lines:8) --runs 3 --within 5 \

@@ -176,7 +176,8 @@ fn events_beside_a_circuit_that_takes_no_force_are_those_without_it() {
             document(&format!(
                 "mass_g: 1000, mechanism: Polynomial(coefficients_si: {coefficients}), \
                  damping: Coefficient(c_n_s_per_m: {damping}), transducer: {transducer}, \
-                 excitation: Sine(frequency_hz: {frequency}, amplitude_g: {}), start: At(x_mm: 0, v_m_per_s: 0), \
+                 excitation: Sine(frequency_hz: {frequency}, amplitude_g: {}), \
+                 start: At(x_mm: 0, v_m_per_s: 0), \
                  run: (duration_s: 3000, settle_s: 2900)",
                 amplitudes.0
             ))

@@ -1,4 +1,5 @@
-//! Loci of events in two fields, against closed forms and against branches at other values of the second field.
+//! Loci of events in two fields, against closed forms and against branches at other values of the second
+//! field.
 
 use std::cell::Cell;
 use std::collections::BTreeMap;
@@ -18,6 +19,7 @@ use super::circuit::Oscillator;
 use super::events::{Drawn, drawn};
 use super::one_stop::OneStop;
 use super::{AMPLITUDE, Ball, document, two};
+use crate::cli::{headless, refused};
 use crate::measured::Noise;
 use crate::properties::harness::{Verdict, hold_for};
 use crate::support::{changed, near, near_relative};
@@ -182,8 +184,9 @@ fn loci_of_bouncing_balls_lie_where_formulas_say() {
     hold_for("loci_of_bouncing_balls", 8, 1.0, balls, |ball| format!("{ball:?}"), check);
 }
 
-/// The flip of the motion with one impact a period ends at a grazing where half of the oscillator's own period
-/// times a whole number is the period of the drive (Nordmark 1991): the stop is left and met in the same phase.
+/// The flip of the motion with one impact a period ends at a grazing where half of the oscillator's own
+/// period times a whole number is the period of the drive (Nordmark 1991): the stop is left and met in the
+/// same phase.
 #[test]
 fn a_flip_ends_at_a_grazing_in_resonance() {
     let flips = Second { field: "excitation.frequency_hz".into(), range: (0.1114, 0.09) };
@@ -199,8 +202,8 @@ fn a_flip_ends_at_a_grazing_in_resonance() {
     near_relative(all[0].values[end][0], closed.grazing(), 1e-3);
 }
 
-/// The swing that grazes the right stop grazes the left one too where that stands as far away; there the locus
-/// ends, at any phase of the rows and any step.
+/// The swing that grazes the right stop grazes the left one too where that stands as far away; there the
+/// locus ends, at any phase of the rows and any step.
 #[test]
 fn a_locus_of_grazing_does_not_pass_through_the_other_stop() {
     let mut random = Noise::new(46);
@@ -229,8 +232,8 @@ fn a_locus_of_grazing_does_not_pass_through_the_other_stop() {
     }
 }
 
-/// A locus of grazing begins at any stop and phase, though rounding decides whether the motion from the state of
-/// one that touches misses the stop or strikes it.
+/// A locus of grazing begins at any stop and phase, though rounding decides whether the motion from the state
+/// of one that touches misses the stop or strikes it.
 #[test]
 fn a_locus_of_grazing_begins_at_any_phase() {
     let mut random = Noise::new(45);
@@ -257,8 +260,8 @@ fn a_locus_of_grazing_begins_at_any_phase() {
     }
 }
 
-/// Two folds of motions between equal stops meet where the symmetry breaks: a cusp over the place of one stop,
-/// whose tangent lies along the amplitude.
+/// Two folds of motions between equal stops meet where the symmetry breaks: a cusp over the place of one
+/// stop, whose tangent lies along the amplitude.
 #[test]
 fn folds_meet_in_a_cusp_where_a_symmetry_breaks() {
     let stops = "stops=Uneven(left_mm:1500,right_mm:1000,restitution_right:0.8,restitution_left:0.8)";
@@ -375,5 +378,34 @@ fn a_locus_does_not_depend_on_the_phase_of_its_rows() {
                 .v,
             1e-9,
         );
+    }
+}
+
+#[test]
+fn wrong_loci_are_refused() {
+    let line = |rest: &str| {
+        headless(&format!("orbit impact-oscillator --branch excitation.amplitude_g=0.05:0.07 {rest}"))
+    };
+    for (rest, words) in [
+        ("--locus fold", &["--and"][..]),
+        ("--locus bang --and damping.c_n_s_per_m=0.2:0.3", &["bang", "grazing, fold, flip, symmetry"]),
+        ("--locus fold --and excitation.amplitude_g=0.1:0.2", &["--and", "already"]),
+        ("--locus fold --and damping.c_n_s_per_m=0.2:0.2", &["--and", "both ends are equal"]),
+        ("--locus fold --and damping.c_n_s_per_m=0.2", &["--and", "FIELD=FROM:TO"]),
+        ("--locus fold --and stops.right_mm=1000:inf", &["--and", "stops.right_mm"]),
+        ("--locus fold --and run.tolerance=1e-9:1e-8", &["--and", "does not depend"]),
+        ("--locus fold --and damping.c=0.2:0.3", &["--and", "did you mean `damping.c_n_s_per_m`"]),
+        ("--step 0.2", &["step", "0.05"]),
+        ("--count 0", &["--count"]),
+        ("--switch 11", &["--switch", "1 to 10"]),
+    ] {
+        refused(line(rest), words);
+    }
+    // a branch without such an event says what it has, and where and why it ends
+    let none = line("--locus fold --and damping.c_n_s_per_m=0.2:0.3 --period 1");
+    let assert = { none }.assert().code(1).stdout("");
+    let text = String::from_utf8_lossy(&assert.get_output().stderr).into_owned();
+    for words in ["has no fold but flip and grazing", "it ends at 0.07, at an end of the range"] {
+        assert!(text.contains(words), "{text}");
     }
 }

@@ -1,4 +1,5 @@
-//! Branch switching: at flips and breakings of the symmetry, against branches that begin at runs and closed forms.
+//! Branch switching: at flips and breakings of the symmetry, against branches that begin at runs and closed
+//! forms.
 
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -23,8 +24,8 @@ fn followed(document: &Document, range: (f64, f64), levels: u32) -> Vec<Branch> 
     switched(&family, first, range, levels, &options, &task).unwrap()
 }
 
-/// From the flip of the motion with one impact in a period of a linear oscillator begins that of two impacts in two
-/// periods, which a run settles to; it doubles its period where the branch from such a run does.
+/// From the flip of the motion with one impact in a period of a linear oscillator begins that of two impacts
+/// in two periods, which a run settles to; it doubles its period where the branch from such a run does.
 #[test]
 fn a_flip_leads_to_the_motions_of_twice_the_period() {
     let mut random = Noise::new(44);
@@ -70,8 +71,8 @@ fn a_flip_leads_to_the_motions_of_twice_the_period() {
     }
 }
 
-/// Levels follow a cascade: each branch has twice the period of that it began on, and the flips come nearer by
-/// Feigenbaum's ratio for a bouncing ball.
+/// Levels follow a cascade: each branch has twice the period of that it began on, and the flips come nearer
+/// by Feigenbaum's ratio for a bouncing ball.
 #[test]
 fn levels_follow_a_cascade_of_doublings() {
     let ball = Ball { e: 0.5, frequency: 5.0 };
@@ -95,8 +96,8 @@ fn levels_follow_a_cascade_of_doublings() {
     assert_eq!(table.rows(), all.iter().map(|branch| branch.values.len()).sum::<usize>());
 }
 
-/// A Duffing oscillator breaks its symmetry: the motions that are not their own mirror images begin there, agree with
-/// a run, and lead back to the symmetric ones from the other side.
+/// A Duffing oscillator breaks its symmetry: the motions that are not their own mirror images begin there,
+/// agree with a run, and lead back to the symmetric ones from the other side.
 #[test]
 fn a_breaking_of_the_symmetry_leads_to_motions_without_it() {
     let scene = |amplitude: f64, x_mm: f64| {

@@ -117,8 +117,8 @@ impl Model {
         self.circuit().is_some()
     }
 
-    /// Whether the circuit has no resistance, so that an open layer keeps its charge or a coil its flux: each start
-    /// has motions of its own, which attract no others.
+    /// Whether the circuit has no resistance, so that an open layer keeps its charge or a coil its flux: each
+    /// start has motions of its own, which attract no others.
     pub fn keeps_charge(&self) -> bool {
         self.circuit().is_some_and(|circuit| circuit.decay == 0.0)
     }

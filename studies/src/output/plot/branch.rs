@@ -14,7 +14,8 @@ use crate::study::{Branch, BranchEvent, Locus, LocusEvent, branches_table, loci_
 const EVENTS: [BranchEvent; 4] =
     [BranchEvent::Fold, BranchEvent::Flip, BranchEvent::Symmetry, BranchEvent::Grazing];
 
-/// The picture of a branch, and of those that begin on it; `phase_deg` is the phase of their strobe in degrees.
+/// The picture of a branch, and of those that begin on it; `phase_deg` is the phase of their strobe in
+/// degrees.
 pub fn branch_chart(branches: &[Branch], phase_deg: f64, ranges: Ranges) -> Chart {
     let table = branches_table(branches);
     let field = table.columns()[1].name.as_str();
@@ -112,9 +113,14 @@ pub fn loci_chart(loci: &[Locus], phase_deg: f64, ranges: Ranges) -> Chart {
         }
     }
     let motions: usize = loci.iter().map(|locus| locus.values.len()).sum();
-    let on = if loci.len() == 1 { "a locus" } else { "loci" };
+    let events = match loci.first().map(|locus| locus.of) {
+        Some(BranchEvent::Fold) => "folds",
+        Some(BranchEvent::Flip) => "flips",
+        Some(BranchEvent::Symmetry) => "breakings of the symmetry",
+        Some(BranchEvent::Grazing) | None => "grazings",
+    };
     let about = format!(
-        "{on} of {of} in two fields, {motions} periodic motions at the drive's phase {}\u{b0}",
+        "{events} over two fields, {motions} periodic motions at the drive's phase {}\u{b0}",
         short(phase_deg)
     );
     Chart::stack(vec![panel], about, drawn.table())

@@ -54,8 +54,8 @@ pub enum NoBasins {
     NoLoss,
     /// Its circuit keeps its charge.
     #[error(
-        "transducer: a circuit without resistance keeps its charge or flux, so that each start has motions of its \
-         own; give it a finite load, or the layer as a spring (Sum with Linear)"
+        "transducer: a circuit without resistance keeps its charge or flux, so that each start has motions \
+         of its own; give it a finite load, or the layer as a spring (Sum with Linear)"
     )]
     KeepsCharge,
     /// No start lies between the limits of displacement.

@@ -221,8 +221,8 @@ impl Corrector<'_> {
         (half.outcome == Outcome::Done).then_some(off)
     }
 
-    /// Difference in the units between the states of an orbit half its period apart; `None` if that is not a whole
-    /// number of forcing periods, or the motion ends early.
+    /// Difference in the units between the states of an orbit half its period apart; `None` if that is not a
+    /// whole number of forcing periods, or the motion ends early.
     pub fn halfway(&self, map: &StroboscopicMap, orbit: &Orbit) -> Option<Vector3<f64>> {
         if !orbit.period.is_multiple_of(2) {
             return None;
@@ -354,8 +354,8 @@ impl Corrector<'_> {
         tangent(&self.slopes(&point.by_state, point.by_field), along)
     }
 
-    /// The determinant of the derivatives `by_state` of the corrector's map, from that of the flight where it is
-    /// known. The mirror image turns the sign of each coordinate.
+    /// The determinant of the derivatives `by_state` of the corrector's map, from that of the flight where it
+    /// is known. The mirror image turns the sign of each coordinate.
     pub fn determinant(&self, of_flight: Option<f64>, by_state: &Jacobian) -> f64 {
         match of_flight {
             Some(determinant) if self.mirrored && by_state.size() == 3 => -determinant,

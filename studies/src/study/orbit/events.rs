@@ -87,9 +87,10 @@ pub(super) fn between(
     Some(found.into_iter().map(|(_, event, point)| (event, point)).collect())
 }
 
-/// The orbit at which a branch turns back as that of the same orbits in another guise, if it does: a symmetric orbit,
-/// from orbits to their mirror images, or one of half the period, from orbits to themselves half their period later.
-/// The map over the period is singular there, so the orbit is computed with the map over the half.
+/// The orbit at which a branch turns back as that of the same orbits in another guise, if it does: a
+/// symmetric orbit, from orbits to their mirror images, or one of half the period, from orbits to themselves
+/// half their period later. The map over the period is singular there, so the orbit is computed with the map
+/// over the half.
 fn joint(corrector: &Corrector, from: &Point, to: &Point) -> Option<(f64, BranchEvent, Point)> {
     if corrector.mirrored {
         return None;
@@ -130,8 +131,8 @@ pub(super) fn is_at(point: &Point, unit: f64) -> bool {
     multipliers.iter().any(|multiplier| (multiplier.re - unit).hypot(multiplier.im) <= AT_UNIT)
 }
 
-/// The zero of a quantity with different signs at two points of the branch, as a share of their distance; `None`
-/// if it is not found.
+/// The zero of a quantity with different signs at two points of the branch, as a share of their distance;
+/// `None` if it is not found.
 fn root(
     corrector: &Corrector,
     (from, to): (&Point, &Point),
@@ -143,9 +144,9 @@ fn root(
     root_between(length, (of(from), of(to)), at, of)
 }
 
-/// The zero of a quantity on a curve between two points, where it has the values `ends` of different signs, by
-/// the Illinois method; `None` if the signs just beside it are equal. `at` is the point of the curve beside a
-/// share of the chord of this length.
+/// The zero of a quantity on a curve between two points, where it has the values `ends` of different signs,
+/// by the Illinois method; `None` if the signs just beside it are equal. `at` is the point of the curve
+/// beside a share of the chord of this length.
 pub(super) fn root_between<P>(
     length: f64,
     ends: (f64, f64),

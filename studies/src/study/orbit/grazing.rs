@@ -329,8 +329,8 @@ impl Touch {
     }
 }
 
-/// The near misses of the motion from a state, with the touches; `None` if it strikes a stop harder than by rounding
-/// at a touch.
+/// The near misses of the motion from a state, with the touches; `None` if it strikes a stop harder than by
+/// rounding at a touch.
 fn missed(maps: &Maps, from: MapState, span: (f64, f64)) -> Option<Vec<Miss>> {
     let Passage { events, mut misses, .. } = maps.with.pass_between(from, span);
     let touches = events.iter().filter(|event| event.kind == EventKind::Impact);

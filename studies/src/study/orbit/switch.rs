@@ -1,5 +1,5 @@
-//! Branch switching: from a flip to the motions of twice the period, from a breaking of the symmetry to the motions
-//! that are not their own mirror images, and from these to those that are.
+//! Branch switching: from a flip to the motions of twice the period, from a breaking of the symmetry to the
+//! motions that are not their own mirror images, and from these to those that are.
 
 use nalgebra::{Matrix3, Vector4};
 
@@ -21,12 +21,14 @@ const AT_ONCE: f64 = 1e-6;
 /// The start of a branch: its first motion, with the direction in which it goes on.
 type Start<'a> = (Corrector<'a>, Directed);
 
-/// A branch, the branches that begin at its flips and breakings of the symmetry, those that begin on them, and so on
-/// to this number of levels. Each is followed to an end of the range, or to where it joins another branch.
+/// A branch, the branches that begin at its flips and breakings of the symmetry, those that begin on them,
+/// and so on to this number of levels. Each is followed to an end of the range, or to where it joins another
+/// branch.
 ///
-/// A branch leaves in the direction of the eigenvector of the multiplier -1, of the map over a period or from a
-/// motion to its mirror image (Kuznetsov 2004, section 10.2.2). Its first motion is found by Newton's method in the
-/// plane across that direction, and differs from those of the branch left. Ticks once per orbit.
+/// A branch leaves in the direction of the eigenvector of the multiplier -1, of the map over a period or from
+/// a motion to its mirror image (Kuznetsov 2004, section 10.2.2). Its first motion is found by Newton's
+/// method in the plane across that direction, and differs from those of the branch left. Ticks once per
+/// orbit.
 pub fn switched(
     family: &Family,
     branch: Branch,

@@ -11,16 +11,17 @@ use crate::dynamics::MapState;
 use crate::scene::FieldPath;
 use crate::study::Family;
 
-/// Half the largest step of the central differences of the characteristic polynomial; tenths and hundredths of it
-/// are tried where the contacts with the stops change within it.
+/// Half the largest step of the central differences of the characteristic polynomial; tenths and hundredths
+/// of it are tried where the contacts with the stops change within it.
 const DIFFERENCE: f64 = 1e-6;
-/// The same relative to the square of the speed of the gentlest impact: the depth at which the stop cuts the motion
-/// off, by which the polynomial changes.
+/// The same relative to the square of the speed of the gentlest impact: the depth at which the stop cuts the
+/// motion off, by which the polynomial changes.
 const SHARE_OF_DEPTH: f64 = 1e-2;
 /// Half the step of the central difference of the map by the second field.
 const FIELD_DIFFERENCE: f64 = 1e-7;
 
-/// Largest distance over the first field, in its range, of an orbit at which a locus ends from one that grazes.
+/// Largest distance over the first field, in its range, of an orbit at which a locus ends from one that
+/// grazes.
 const BESIDE_A_GRAZING: f64 = 2e-3;
 
 /// Largest gap in the units of an orbit that grazes at two instants.
@@ -48,8 +49,8 @@ pub(super) struct Curve<'a> {
 /// A point of a locus.
 #[derive(Clone)]
 pub(super) struct Spot {
-    /// Displacement, velocity, state of the circuit and both fields in the units; of a grazing the time of the
-    /// touch in forcing periods and 0 in place of displacement and velocity.
+    /// Displacement, velocity, state of the circuit and both fields in the units; of a grazing the time of
+    /// the touch in forcing periods and 0 in place of displacement and velocity.
     pub at: Vector5<f64>,
     pub point: Point,
     /// Derivatives of the equations.
@@ -102,7 +103,8 @@ impl<'a> Curve<'a> {
         Some(begun)
     }
 
-    /// These equations with the phase of the drive away from events at the stops, and their point near an orbit;
+    /// These equations with the phase of the drive away from events at the stops, and their point near an
+    /// orbit;
     /// `along` has the direction of its tangent.
     fn begun(mut self, mut at: Vector5<f64>, point: Point, along: &Vector5<f64>) -> Option<(Self, Spot)> {
         let touches: Vec<f64> = match self.of {
@@ -174,8 +176,8 @@ impl<'a> Curve<'a> {
         }
     }
 
-    /// Whether an orbit at the same value of the second field grazes a stop right beside this point; of an orbit
-    /// that grazes, whether it grazes once more.
+    /// Whether an orbit at the same value of the second field grazes a stop right beside this point; of an
+    /// orbit that grazes, whether it grazes once more.
     pub fn is_beside_a_grazing(&self, spot: &Spot) -> bool {
         if self.touch.is_some() {
             let Orbit { passage, .. } = &spot.point.orbit;

@@ -1,9 +1,10 @@
 //! Loci: where an orbit folds, doubles its period, breaks its symmetry or grazes, over two fields.
 //!
-//! The unknowns of a locus are the state at the strobe and both fields, the equations those of a periodic orbit
-//! and the characteristic polynomial of its map at 1 or -1 (Kuznetsov 2004, section 10.3.2, in the form with the
-//! determinant). Of a grazing they are the time of the touch, the state of the circuit then and both fields, and
-//! the equations those of the flight from the touch to itself. Both are followed by pseudo-arclength.
+//! The unknowns of a locus are the state at the strobe and both fields, the equations those of a periodic
+//! orbit and the characteristic polynomial of its map at 1 or -1 (Kuznetsov 2004, section 10.3.2, in the form
+//! with the determinant). Of a grazing they are the time of the touch, the state of the circuit then and both
+//! fields, and the equations those of the flight from the touch to itself. Both are followed by
+//! pseudo-arclength.
 
 mod curve;
 mod walk;
@@ -103,8 +104,9 @@ pub struct Second {
     pub range: (f64, f64),
 }
 
-/// The loci that begin at the events `of` of a branch, which was followed over `range` at the first value of the
-/// second field. An event on a locus before begins none. A locus that cannot be followed has the event alone.
+/// The loci that begin at the events `of` of a branch, which was followed over `range` at the first value of
+/// the second field. An event on a locus before begins none. A locus that cannot be followed has the event
+/// alone.
 ///
 /// Ticks once per orbit.
 pub fn loci(

@@ -1,6 +1,6 @@
 //! A walk along a locus by pseudo-arclength, with the points of codimension two on it.
 
-use nalgebra::Vector5;
+use nalgebra::{Vector2, Vector5};
 
 use super::super::corrector::tangent;
 use super::super::events::{characteristic, differ, is_at, root_between};
@@ -17,6 +17,10 @@ const SHORTEST: f64 = 1e-9;
 
 /// Cosine of the largest angle between the tangents at both ends of a step.
 const STRAIGHT: f64 = 0.9;
+
+/// The fields turn back at a cusp: smallest cosine, with its sign turned, of the angle between their changes
+/// before and after it.
+const OPPOSITE: f64 = 0.5;
 
 /// Largest component of the tangent by a field at a cusp.
 const AT_A_CUSP: f64 = 1e-3;
@@ -179,9 +183,13 @@ impl<'a> Walk<'a> {
                 search(LocusEvent::GrazingFlip, &at_unit(-1.0))?;
             }
             BranchEvent::Fold => {
-                // where a locus turns back over one field alone it has no cusp
-                for axis in [3, 4] {
-                    search(LocusEvent::Cusp, &|spot| spot.along[axis])?;
+                // a locus that turns back over one field alone has no cusp
+                let fields = |spot: &Spot| Vector2::new(spot.along[3], spot.along[4]);
+                let (before, after) = (fields(&self.at), fields(next));
+                if before.dot(&after) < -OPPOSITE * before.norm() * after.norm() {
+                    for axis in [3, 4] {
+                        search(LocusEvent::Cusp, &|spot| spot.along[axis])?;
+                    }
                 }
                 search(LocusEvent::FoldFlip, &at_unit(-1.0))?;
             }
