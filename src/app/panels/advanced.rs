@@ -72,7 +72,8 @@ fn kind_ui(ui: &mut Ui, session: &mut Session) {
     let present = &session.scene().excitation;
     let mut wanted = None;
     let name = ui.label("kind of shaking");
-    let combo = ComboBox::from_id_salt("kind of shaking").selected_text(kind_name(present));
+    // all kinds are seen at once
+    let combo = ComboBox::from_id_salt("kind of shaking").selected_text(kind_name(present)).height(320.0);
     let combo = combo.show_ui(ui, |ui| {
         for choice in choices(present, &session.suiting_sine(), session.scene().mass_g / 1e3) {
             let is_present = discriminant(&choice) == discriminant(present);
