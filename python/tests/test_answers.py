@@ -126,7 +126,7 @@ def test_loci_and_switched_branches(command: Command) -> None:
         "orbit", "impact-oscillator", "--branch", f"{field}=0.05:0.07", "--locus", "grazing",
         "--and", f"{second}=0.1:0.116", "--step", "0.02", "--count", "50",
     )
-    assert set(locus["locus"]) == {1} and len(locus) == 50
+    assert set(locus["locus"]) == {1} and len(locus["locus"]) == 50
     assert "after the largest number of motions" in " ".join(locus.words)
     assert "<svg" in locus.plot()._repr_svg_()
     branches = oscillator.branch(field, 0.056, 0.0545, switch=2)
