@@ -1234,8 +1234,8 @@ class Scene(Mapping[str, Any]):
             ``runs``, ``escaped`` and ``ended_early`` (counts), ``observed_s``; ``escape_rate_per_s``,
             ``escape_rate_low_per_s`` and ``escape_rate_high_per_s`` (a 95 % interval);
             ``mean_first_passage_s`` with ``mean_first_passage_low_s`` and ``mean_first_passage_high_s``;
-            ``median_first_passage_s``; ``kramers_rate_per_s``, NaN where it does not hold; each float64. A
-            :class:`Grid` with ``over``.
+            ``median_first_passage_s``; ``kramers_rate_per_s``, NaN where it does not hold; each float64.
+            ``kramers_fails`` is the condition that fails there, or empty. A :class:`Grid` with ``over``.
 
         Raises
         ------

@@ -99,9 +99,13 @@ fn about(table: &Table) -> String {
              up a budget), so that the rate is that of the time up to there"
         );
     }
-    let kramers = table.numbers("kramers_rate_per_s").unwrap_or_default();
-    if kramers.iter().any(|rate| rate.is_nan()) {
-        text += "; kramers_rate_per_s is missing where it does not hold (see docs/output.md)";
+    let mut fails: Vec<&str> =
+        table.words("kramers_fails").iter().copied().filter(|word| !word.is_empty()).collect();
+    fails.sort_unstable();
+    fails.dedup();
+    if !fails.is_empty() {
+        let fails = fails.join(", ");
+        text += &format!("; Kramers' rate does not hold: {fails} (see kramers_fails in docs/output.md)");
     }
     text
 }

@@ -82,7 +82,8 @@ pub use curve::{
     stress_warning,
 };
 pub use escape::{
-    Chance, EscapeOptions, Until, depopulation, escape_table, kramers_rate, probable_threshold_table,
+    Chance, EscapeOptions, NoKramers, Until, depopulation, escape_table, kramers_rate,
+    probable_threshold_table,
 };
 pub use exponents::{
     Estimate, ExponentCells, ExponentOptions, Exponents, NoExponents, average_exponents, drive_fault,

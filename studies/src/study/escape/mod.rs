@@ -24,7 +24,7 @@ use crate::mechanics::Mechanism;
 use crate::numeric::{Rate, Waiting, median};
 use crate::scene::{Excitation, Fault, Files, Scene, Start};
 use crate::system::threads::Pool;
-pub use kramers::{depopulation, kramers_rate};
+pub use kramers::{NoKramers, depopulation, kramers_rate};
 pub use probability::{Chance, probable_threshold_table};
 
 /// Largest seed of a noise, after which the seeds of further runs go on from 0.
@@ -62,11 +62,12 @@ struct Waited {
 }
 
 /// The waiting times of a cell, and its rate by Kramers; `None` if the mechanism was not solved.
-type Escapes = Option<(Vec<Waited>, Option<f64>)>;
+type Escapes = Option<(Vec<Waited>, Result<f64, NoKramers>)>;
 
 /// Escapes in every cell of `grid`: the swept fields, then the columns
 /// `runs,escaped,ended_early,observed_s`, the rate, the mean and the median of the waiting times, each with
-/// its interval, and `kramers_rate_per_s`. Ticks for each run. All cells are checked before the first run.
+/// its interval, `kramers_rate_per_s` and `kramers_fails`. Ticks for each run. All cells are checked before
+/// the first run.
 pub fn escape_table(
     scene: &Scene,
     files: &Files,
@@ -104,15 +105,17 @@ pub fn escape_table(
         Ok(waited)
     };
     let kramers = |scene: &mut Scene, cell: usize| {
-        let model = model(scene, cell, 0)?;
-        Ok(model.filter(|_| options.until == Until::Well).and_then(|model| kramers_rate(&model)))
+        Ok(model(scene, cell, 0)?.map(|model| match options.until {
+            Until::Well => kramers_rate(&model),
+            Until::Crossing => Err(NoKramers::Until),
+        }))
     };
     let cancelled = |Cancelled| NoThresholds::Cancelled;
     let waited = pool.map(count * runs, begin, wait).map_err(cancelled)?;
     let rates = pool.map(count, begin, kramers).map_err(cancelled)?;
     let of_cell = |cell: &[Option<Waited>]| cell.iter().copied().collect::<Option<Vec<Waited>>>();
     let found: Vec<Escapes> =
-        waited.chunks(runs).map(of_cell).zip(rates).map(|(waited, rate)| Some((waited?, rate))).collect();
+        waited.chunks(runs).map(of_cell).zip(rates).map(|(waited, rate)| waited.zip(rate)).collect();
     Ok(with_columns(grid.table(|| 0..grid.cells()), options, &found))
 }
 
@@ -153,7 +156,11 @@ fn with_columns(table: Table, options: &EscapeOptions, found: &[Escapes]) -> Tab
         .each("mean_first_passage_low_s", found, mean(|rate| rate.high))
         .each("mean_first_passage_high_s", found, mean(|rate| rate.low))
         .each("median_first_passage_s", found, half)
-        .each("kramers_rate_per_s", found, |cell| cell.as_ref()?.1)
+        .each("kramers_rate_per_s", found, |cell| cell.as_ref()?.1.ok())
+        .each("kramers_fails", found, |cell| {
+            let fails = cell.as_ref().and_then(|cell| cell.1.err());
+            fails.map_or("", NoKramers::name)
+        })
 }
 
 /// The scene of run number `run`, which ends at the time `within` in s.
