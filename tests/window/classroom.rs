@@ -94,6 +94,20 @@ fn page_down_stops_at_a_covered_prediction_and_at_the_last_step() {
     assert_eq!(harness.state().lesson().unwrap().key(), LESSONS[1].name);
 }
 
+/// A choice takes Reveal away; what then stands in its place must not be pressed by Enter.
+#[test]
+fn a_choice_by_its_key_leaves_no_button_with_the_keyboard() {
+    let mut harness = opened(LESSONS[0].name, WIDE);
+    assert!(go_to(&mut harness, |step| matches!(step, Step::Predict { .. })));
+    let at = number(&harness);
+    press(&mut harness, Key::PageDown);
+    assert!(harness.state().lesson().unwrap().is_covering());
+    press(&mut harness, Key::B);
+    assert!(harness.state().lesson().unwrap().answer().choice.is_some());
+    press(&mut harness, Key::Enter);
+    assert_eq!(number(&harness), at);
+}
+
 #[test]
 fn the_end_says_what_was_learnt_and_leads_to_the_next_lesson() {
     let mut harness = opened(LESSONS[0].name, WIDE);

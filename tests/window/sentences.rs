@@ -111,6 +111,8 @@ fn a_forecast_that_the_path_does_not_reach_says_about() {
     let text = says(&live).1;
     assert!(text.contains(" will cross in about ") || text.contains("will cross in every period"), "{text}");
     live = session("paper-ramp", &[]);
+    // five minutes take half a minute
+    assert_eq!(live.player.speed, 10.0);
     live.player.speed = 1.0;
     live.player.set_playing(true);
     assert!(says(&live).1.contains("will cross at "), "{:?}", says(&live));

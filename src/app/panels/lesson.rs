@@ -340,7 +340,9 @@ fn buttons_ui(ui: &mut Ui, lesson: &OpenLesson, urged: bool) -> Option<LessonAct
         action = Some(chosen);
     }
     if lesson.is_covering() {
-        let reveal = ui.button("Reveal").on_hover_text("Shows what it does, without a choice");
+        // with an id of its own: Back, which stands there afterwards, would have its keyboard focus
+        let reveal = ui.push_id("reveal", |ui| ui.button("Reveal")).inner;
+        let reveal = reveal.on_hover_text("Shows what it does, without a choice");
         urge(&reveal, urged);
         if reveal.clicked() {
             action = Some(LessonAction::Reveal);

@@ -6,7 +6,7 @@
 use std::time::Duration;
 
 use crate::dynamics::{Event, EventKind, Model, Outcome, Sample};
-use crate::scene::Scene;
+use crate::scene::{Excitation, Scene};
 use crate::study::Watch;
 use crate::system::clock::WallClock;
 
@@ -31,10 +31,19 @@ pub fn fitting_speed(characteristic_time: f64) -> f64 {
     speeds.min_by(|a, b| off(*a).total_cmp(&off(*b))).unwrap_or(1.0)
 }
 
-/// The speed at which a scene is opened: that of its hints, or one that suits its motion.
+/// Least duration on the screen, in s, of a drive that changes slowly.
+const CHANGE_ON_SCREEN: f64 = 30.0;
+
+/// The speed at which a scene is opened: that of its hints, or one that suits its motion and, where the drive
+/// changes slowly, its change.
 pub(super) fn opening_speed(scene: &Scene, model: &Model) -> f64 {
     let hinted = scene.app.as_ref().and_then(|hints| hints.speed);
-    hinted.unwrap_or_else(|| fitting_speed(model.characteristic_time()))
+    let over_s = match scene.excitation {
+        Excitation::AmplitudeRamp { over_s, .. } | Excitation::Chirp { over_s, .. } => over_s,
+        _ => 0.0,
+    };
+    let changes = SPEEDS.iter().map(|(speed, _)| *speed).filter(|speed| speed * CHANGE_ON_SCREEN <= over_s);
+    hinted.unwrap_or_else(|| changes.fold(fitting_speed(model.characteristic_time()), f64::max))
 }
 
 /// Longest real time in s that one frame plays, so that the motion does not jump after a pause of the window.
