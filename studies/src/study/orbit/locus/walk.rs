@@ -117,7 +117,7 @@ impl<'a> Walk<'a> {
     fn predicted(&self, step: f64, ends: &[[f64; 2]; 2]) -> Option<(Spot, bool)> {
         let Spot { at, along, .. } = &self.at;
         let beyond = |to: &Vector5<f64>| {
-            (0..2).find_map(|place| {
+            let crossings = (0..2).filter_map(|place| {
                 let [low, high] = ends[place];
                 let (from, to) = (at[3 + place], to[3 + place]);
                 let end = if to < low {
@@ -129,7 +129,8 @@ impl<'a> Walk<'a> {
                 };
                 // the first point may lie at an end, and the locus go on inside
                 (to != from).then(|| (3 + place, end, (end - from) / (to - from)))
-            })
+            });
+            crossings.min_by(|a, b| a.2.total_cmp(&b.2))
         };
         let guess = at + along * step;
         let over = beyond(&guess);
@@ -143,8 +144,12 @@ impl<'a> Walk<'a> {
                 let mut there = at + (next.at - at) * share;
                 there[axis] = end;
                 let last = self.curve.correct(there, &Vector5::ith(axis, 1.0))?;
-                let within = (last.at - at).norm() <= 2.0 * step;
-                within.then_some((last, true))
+                let inside = |place: usize| {
+                    let [low, high] = ends[place];
+                    (low - SHORTEST..=high + SHORTEST).contains(&last.at[3 + place])
+                };
+                let is_near = (last.at - at).norm() <= 2.0 * step;
+                (is_near && inside(0) && inside(1)).then_some((last, true))
             }
         };
         let (next, is_last) = next?;
