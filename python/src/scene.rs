@@ -19,8 +19,9 @@ use interwell_studies::questions::{
     needs_a_sine,
 };
 use interwell_studies::study::{
-    BranchEvent, Carry, ExponentOptions, Identity, Keep, Onset, Sampling, Second, SectionAt, SectionOptions,
-    Signal, Table, Until, branches_table, loci_table, sample_times, simulate_with_trace, stop_positions,
+    BranchEvent, Carry, ExponentOptions, FieldRange, Identity, Keep, Onset, Sampling, SectionAt,
+    SectionOptions, Signal, Table, Until, branches_table, loci_table, sample_times, simulate_with_trace,
+    stop_positions,
 };
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -536,7 +537,7 @@ impl Simulation {
     ) -> PyResult<Answer> {
         let of = named(py, "event", event, &BranchEvent::ALL, BranchEvent::name)?;
         let branch = Branch { field, range, period, phase_deg, step, count };
-        let question = Locus { branch, of, second: Second { field: second, range: second_range } };
+        let question = Locus { branch, of, second: FieldRange { field: second, range: second_range } };
         let way = Way { threads: None, progress };
         let found = work(py, &way, |progress| question.run(&self.inner, progress))?;
         let remarks = (1..).zip(&found).filter_map(|(number, locus)| locus.remark(number)).collect();

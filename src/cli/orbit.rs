@@ -3,14 +3,12 @@
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use interwell::output::{branch_chart, loci_chart};
-use interwell::questions::{Branch, branches_remarks, can_have_orbits, check_fields, loci_of, no_orbit};
+use interwell::questions::{Branch, Locus, Orbit, Progress, branches_remarks, check_fields};
 use interwell::scene::{Axis, Document};
-use interwell::study::{
-    BranchEvent, Family, Second, Task, branch, branches_table, loci_table, orbit, orbit_table, switched,
-};
+use interwell::study::{BranchEvent, BranchOptions, FieldRange, branches_table, loci_table};
 
 use super::progress::bar_on_terminal;
-use super::support::{check, finite, mechanism, model, outputs, read, warn};
+use super::support::{finite, outputs, read, simulation};
 use super::{ChartOptions, Common, Failure, Output, Picture, caption, interrupt, refuse, whole};
 
 const EXAMPLES: &str = "\
@@ -39,8 +37,8 @@ pub struct Arguments {
     #[arg(long, value_name = "P", default_value = "0", allow_hyphen_values = true)]
     pub phase_deg: String,
 
-    /// Follow the motion over a field from A, in place of the scene's own value, to B, through folds; a row a
-    /// motion
+    /// Follow the motion over a field from A, in place of its value in the scene, to B, through folds; a row
+    /// a motion
     #[arg(long, value_name = "FIELD=A:B", allow_hyphen_values = true)]
     pub branch: Option<String>,
 
@@ -66,7 +64,7 @@ pub struct Arguments {
     #[arg(long, value_name = "EVENT", requires_all = ["branch", "and"], value_parser = events())]
     pub locus: Option<String>,
 
-    /// With --locus: the second field, from C, in place of the scene's own value, to D
+    /// With --locus: the second field, from C, in place of its value in the scene, to D
     #[arg(long, value_name = "FIELD=C:D", allow_hyphen_values = true, requires = "locus")]
     pub and: Option<String>,
 
@@ -95,75 +93,63 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let fields = [("branch", &over), ("and", &and)].map(|(option, field)| Some((option, field.as_ref()?)));
     check_fields(&document.scene, fields.into_iter().flatten())?;
     // the branch begins at these values; those in the scene are never run
-    for (option, second) in [("--branch", &over), ("--and", &and)] {
-        if let Some(Second { field, range: (from, _) }) = second {
+    for (option, range) in [("--branch", &over), ("--and", &and)] {
+        if let Some(FieldRange { field, range: (from, _) }) = range {
             document.assign(field, &from.to_string(), &format!("{option} {field}"))?;
         }
     }
-    let warnings = check(&mut document, None)?;
-    let mechanism = mechanism(&document)?;
-    warn(&document, common, &warnings, Some(&mechanism));
-    let model = model(&document, &mechanism)?;
-    can_have_orbits(&document, &model)?;
-    let cancel = interrupt::listen();
-    let mut outputs = outputs(&options.scene, &document, common)?.with_picture(picture)?;
-    let Some(over) = over else {
-        let found = orbit(&model, phase_deg / 360.0, options.period, cancel);
-        let table = orbit_table(&[found.map_err(|error| no_orbit(&document, error, ""))?]);
-        outputs.table(Output::DATA, &table)?;
-        return outputs.finish_rows(&document, 1);
-    };
-    let step = options.step.as_ref().map(|text| finite("--step", text, "give a share, such as 0.01"));
-    let mut question = Branch::over(over.field, over.range.0, over.range.1);
-    question = Branch {
-        period: options.period,
-        phase_deg,
-        step: step.transpose()?.unwrap_or(question.step),
-        count: options.count.unwrap_or(question.count),
-        ..question
-    };
-    let settings = question.options()?;
-    let family = Family::new(&document.scene, &document.files, &mechanism, &question.field);
+    let simulation = simulation(&document, common)?;
+    let document = simulation.document();
+    let mut outputs = outputs(&options.scene, document, common)?.with_picture(picture)?;
     // the number of motions is not known beforehand
     let bar = bar_on_terminal(None, "{human_pos} motions", common.quiet);
-    let task = Task { tick: &|| bar.inc(1), cancel };
+    let count = |done: u64, _: Option<u64>| bar.set_position(done);
+    let progress = Progress::none().reporting_to(&count).stopped_by(interrupt::listen());
+    let period = options.period;
+    let Some(FieldRange { field, range }) = over else {
+        let found = Orbit { period, phase_deg }.run(&simulation, &progress)?;
+        outputs.table(Output::DATA, &found.table())?;
+        return outputs.finish_rows(document, 1);
+    };
+    let step = options.step.as_ref().map(|text| finite("--step", text, "give a share, such as 0.01"));
+    let step = step.transpose()?.unwrap_or(BranchOptions::STEP);
+    let branch = Branch {
+        field,
+        range,
+        period,
+        phase_deg,
+        step,
+        count: options.count.unwrap_or(BranchOptions::COUNT),
+    };
     let of = options.locus.as_deref().map(|name| name.strip_suffix("-breaking").unwrap_or(name));
-    let of = of.and_then(BranchEvent::named);
-    let (table, chart, remarks) = match (of, &and) {
-        (Some(of), Some(second)) => {
-            let found = loci_of(&document, &family, &question, (of, second), &settings, &task);
+    let (table, chart, remarks) = match of.and_then(BranchEvent::named).zip(and) {
+        Some((of, second)) => {
+            let found = Locus { branch, of, second }.run(&simulation, &progress);
             bar.finish_and_clear();
             let found = found?;
-            let remarks: Vec<String> = (1..).zip(&found).filter_map(|(i, locus)| locus.remark(i)).collect();
-            (
-                loci_table(&found),
-                picture.map(|picture| loci_chart(&found, phase_deg, picture.ranges)),
-                remarks,
-            )
+            let chart = picture.map(|picture| loci_chart(&found, phase_deg, picture.ranges));
+            let remarks = (1..).zip(&found).filter_map(|(number, locus)| locus.remark(number)).collect();
+            (loci_table(&found), chart, remarks)
         }
-        _ => {
-            let Branch { field, range, .. } = &question;
-            let levels = options.switch.unwrap_or(0);
-            let found = branch(&family, field, *range, &settings, &task)
-                .and_then(|first| switched(&family, first, *range, levels, &settings, &task));
+        None => {
+            let found = branch.with_switches(options.switch.unwrap_or(0), &simulation, &progress);
             bar.finish_and_clear();
-            let found =
-                found.map_err(|error| no_orbit(&document, error, &format!("at {field} = {}: ", range.0)))?;
+            let found = found?;
             let chart = picture.map(|picture| branch_chart(&found, phase_deg, picture.ranges));
             let table = if options.switch.is_some() { branches_table(&found) } else { found[0].table() };
-            (table, chart, branches_remarks(&found, *range))
+            (table, chart, branches_remarks(&found, range))
         }
     };
     if let (Some(picture), Some(chart)) = (picture, chart) {
-        picture.write(&mut outputs, &chart, &caption(&document))?;
+        picture.write(&mut outputs, &chart, &caption(document))?;
     }
     remarks.iter().for_each(|line| common.say(line));
     outputs.table(Output::DATA, &table)?;
-    outputs.finish_rows(&document, 1)
+    outputs.finish_rows(document, 1)
 }
 
 /// The field of an option `FIELD=A:B` and the ends of its range.
-fn range(option: &str, text: &str, document: &Document) -> Result<Second, Failure> {
+fn range(option: &str, text: &str, document: &Document) -> Result<FieldRange, Failure> {
     let wrong = |problem: String| Failure::argument(format!("{option} {text}: {problem}"));
     let form = || wrong("write FIELD=FROM:TO, such as excitation.amplitude_g=0.5:2".into());
     let (field, values) = text.split_once('=').ok_or_else(form)?;
@@ -171,7 +157,7 @@ fn range(option: &str, text: &str, document: &Document) -> Result<Second, Failur
     let axis = Axis::parse(&format!("{}={},{}", field.trim(), from.trim(), to.trim()), &document.scene);
     let axis = axis.map_err(wrong)?;
     match axis.values[..] {
-        [from, to] => Ok(Second { field: axis.field, range: (from, to) }),
+        [from, to] => Ok(FieldRange { field: axis.field, range: (from, to) }),
         _ => Err(form()),
     }
 }

@@ -130,7 +130,12 @@ pub fn load_model(spec: &str, common: &Common) -> Result<(Document, Model), Fail
 
 /// Loads the scene and builds its model; prints the warnings of both.
 pub fn load_simulation(spec: &str, common: &Common) -> Result<Simulation, Failure> {
-    let simulation = Simulation::new(&read(spec, common)?)?;
+    simulation(&read(spec, common)?, common)
+}
+
+/// Checks a scene and builds its model; prints the warnings of both.
+pub fn simulation(document: &Document, common: &Common) -> Result<Simulation, Failure> {
+    let simulation = Simulation::new(document)?;
     simulation.warnings().for_each(|warning| common.say(&format!("warning: {warning}")));
     Ok(simulation)
 }

@@ -75,7 +75,7 @@ pub use error::{Error, FaultAt, check_until_settled};
 pub use escape::{Escape, ProbableThreshold, no_table, refuse_searched};
 pub use grid::{Exponents, NO_MELNIKOV, Section, Threshold, drive_alone};
 pub use motion::{Basins, BasinsAnswer, Curve, Spectrum, may_have_circuit};
-pub use orbits::{Branch, Locus, Orbit, branches_remarks, can_have_orbits, check_fields, loci_of, no_orbit};
+pub use orbits::{Branch, Locus, Orbit, branches_remarks, check_fields};
 pub use progress::Progress;
 pub use record::{Identify, IdentifyAnswer, WhatToIdentify, columns_read};
 pub use simulation::{Recorded, Simulation};

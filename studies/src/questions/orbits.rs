@@ -4,8 +4,8 @@ use super::{Error, Progress, Simulation};
 use crate::dynamics::Model;
 use crate::scene::{Axis, Document, Scene, is_whole};
 use crate::study::{
-    self, BranchEnd, BranchEvent, BranchOptions, Family, NoBasins, NoOrbit, Second, Table, Task, branch,
-    loci, orbit, orbit_table, switched,
+    self, BranchEnd, BranchEvent, BranchOptions, Family, FieldRange, NoBasins, NoOrbit, Table, branch, loci,
+    orbit, orbit_table, switched,
 };
 
 /// The periodic orbit near the settled motion of a run, stable or not, with its Floquet multipliers.
@@ -128,7 +128,7 @@ impl Branch {
         if levels > MOST_LEVELS {
             return Err(Error::argument("switch", levels, format!("give 0 to {MOST_LEVELS}")));
         }
-        check_fields(simulation.scene(), [("branch", &self.first())])?;
+        check_fields(simulation.scene(), [("branch", &self.field_range())])?;
         let options = self.options()?;
         let from = self.range.0;
         let first = simulation.with(&self.field, from)?;
@@ -142,12 +142,12 @@ impl Branch {
         found.map_err(|error| no_orbit(document, error, &format!("at {} = {from}: ", self.field)))
     }
 
-    fn first(&self) -> Second {
-        Second { field: self.field.clone(), range: self.range }
+    fn field_range(&self) -> FieldRange {
+        FieldRange { field: self.field.clone(), range: self.range }
     }
 
     /// The options of the study; an error if an argument is wrong.
-    pub fn options(&self) -> Result<BranchOptions, Error> {
+    fn options(&self) -> Result<BranchOptions, Error> {
         check_period(self.period)?;
         if !STEPS.contains(&self.step) {
             let problem = format!("give a share of the range from {} to {}", STEPS.start(), STEPS.end());
@@ -171,10 +171,10 @@ const COUNTS: std::ops::RangeInclusive<usize> = 1..=1_000_000;
 /// Checks fields that take all values of a range, each with the argument that gives it.
 pub fn check_fields<'a>(
     scene: &Scene,
-    fields: impl IntoIterator<Item = (&'a str, &'a Second)>,
+    fields: impl IntoIterator<Item = (&'a str, &'a FieldRange)>,
 ) -> Result<(), Error> {
     let mut known: Vec<&str> = Vec::new();
-    for (argument, Second { field, range: (from, to) }) in fields {
+    for (argument, FieldRange { field, range: (from, to) }) in fields {
         let wrong = |problem: String| Error::argument(argument, format!("{field}={from}:{to}"), problem);
         Axis::listed(field, vec![*from, *to], scene).map_err(wrong)?;
         let problem = if !(from.is_finite() && to.is_finite()) {
@@ -199,14 +199,13 @@ pub fn check_fields<'a>(
 
 /// The remarks of each branch, with its number if there are several.
 pub fn branches_remarks(branches: &[study::Branch], range: (f64, f64)) -> Vec<String> {
-    let named = |(number, branch): (usize, &study::Branch)| {
+    let mut all = Vec::new();
+    for (number, branch) in (1..).zip(branches) {
         let remarks = branch.remarks(range).into_iter();
         let several = branches.len() > 1;
-        remarks
-            .map(move |remark| if several { format!("branch {number}: {remark}") } else { remark })
-            .collect()
-    };
-    (1..).zip(branches).flat_map(|row| -> Vec<String> { named(row) }).collect()
+        all.extend(remarks.map(|line| if several { format!("branch {number}: {line}") } else { line }));
+    }
+    all
 }
 
 impl study::Branch {
@@ -237,8 +236,8 @@ impl study::Branch {
 ///
 /// The table of the answer ([`loci_table`](crate::study::loci_table)) has one row per orbit, in order along
 /// each locus: `locus` (its number from 1), both fields in their units, the columns of [`Orbit`], and
-/// `event`: empty,
-/// `cusp`, `fold-flip`, `grazing-fold`, `grazing-flip` or `grazing-symmetry`.
+/// `event`: empty, `cusp`, `fold-flip`, `grazing-fold`, `grazing-flip`, `grazing-symmetry` or
+/// `grazing-grazing`.
 ///
 /// Method: the branch is followed at the first value of the second field. From each of its events of this
 /// kind a locus goes on towards the other value, by pseudo-arclength in the state and both fields, with the
@@ -250,11 +249,11 @@ impl study::Branch {
 ///
 /// ```
 /// use interwell_studies::questions::{Branch, Locus, Progress, Simulation};
-/// use interwell_studies::study::{BranchEvent, Second};
+/// use interwell_studies::study::{BranchEvent, FieldRange};
 ///
 /// // The swing without impacts of a linear oscillator grazes the stop at an amplitude in closed form.
 /// let simulation = Simulation::preset("impact-oscillator")?;
-/// let second = Second { field: "excitation.frequency_hz".into(), range: (0.1, 0.116) };
+/// let second = FieldRange { field: "excitation.frequency_hz".into(), range: (0.1, 0.116) };
 /// let branch = Branch { period: Some(1), ..Branch::over("excitation.amplitude_g", 0.05, 0.07) };
 /// let loci = Locus { branch, of: BranchEvent::Grazing, second }.run(&simulation, &Progress::none())?;
 /// for [amplitude_g, frequency_hz] in &loci[0].values {
@@ -271,37 +270,31 @@ pub struct Locus {
     /// What happens on the loci.
     pub of: BranchEvent,
     /// The second field.
-    pub second: Second,
+    pub second: FieldRange,
 }
 
 impl Locus {
     /// Follows the branch, and the loci from it.
     pub fn run(&self, simulation: &Simulation, progress: &Progress) -> Result<Vec<study::Locus>, Error> {
         let Self { branch: over, of, second } = self;
-        check_fields(simulation.scene(), [("branch", &over.first()), ("second", second)])?;
+        check_fields(simulation.scene(), [("branch", &over.field_range()), ("second", second)])?;
         let first = simulation.with(&second.field, second.range.0)?.with(&over.field, over.range.0)?;
         can_have_orbits(first.document(), first.model())?;
-        let document = first.document();
+        let (document, options) = (first.document(), over.options()?);
         let family = Family::new(&document.scene, &document.files, first.mechanism(), &over.field);
-        let options = over.options()?;
-        progress.task(None, |task| loci_of(document, &family, over, (*of, second), &options, task))
+        let failed = |error| no_orbit(document, error, &format!("at {} = {}: ", over.field, over.range.0));
+        progress.task(None, |task| {
+            let found = branch(&family, &over.field, over.range, &options, task).map_err(failed)?;
+            if !found.events.contains(&Some(*of)) {
+                return Err(Error::failed(document, self.lacking(&found)));
+            }
+            loci(&family, &found, over.range, (*of, second), &options, task).map_err(failed)
+        })
     }
-}
 
-/// The loci of a scene whose fields have their first values.
-pub fn loci_of(
-    document: &Document,
-    family: &Family,
-    over: &Branch,
-    (of, second): (BranchEvent, &Second),
-    options: &BranchOptions,
-    task: &Task,
-) -> Result<Vec<study::Locus>, Error> {
-    let (field, from, to) = (&over.field, over.range.0, over.range.1);
-    let failed = |error| no_orbit(document, error, &format!("at {field} = {from}: "));
-    let found = branch(family, field, over.range, options, task).map_err(failed)?;
-    if !found.events.contains(&Some(of)) {
-        let at = found.values.last().copied().unwrap_or(from);
+    /// That a branch has no event of this kind, which it has, and where and why it ends.
+    fn lacking(&self, found: &study::Branch) -> String {
+        let Self { branch: Branch { field, range: (from, to), .. }, of, second } = self;
         let mut others: Vec<&str> = found.events.iter().flatten().map(|event| event.name()).collect();
         others.sort_unstable();
         others.dedup();
@@ -309,19 +302,16 @@ pub fn loci_of(
             true => "and no other event".to_owned(),
             false => format!("but {}", others.join(" and ")),
         };
-        return Err(Error::failed(
-            document,
-            format!(
-                "at {} = {}, the branch over {field} from {from} to {to} has no {} {has}; it ends at {at}, \
-                 {}: take another range, start, period or number of motions",
-                second.field,
-                second.range.0,
-                of.name(),
-                found.end
-            ),
-        ));
+        format!(
+            "at {} = {}, the branch over {field} from {from} to {to} has no {} {has}; it ends at {}, {}: take \
+             another range, start, period or number of motions",
+            second.field,
+            second.range.0,
+            of.name(),
+            found.values.last().unwrap_or(from),
+            found.end
+        )
     }
-    loci(family, &found, over.range, (of, second), options, task).map_err(failed)
 }
 
 impl study::Locus {
@@ -352,10 +342,10 @@ pub(super) fn phase(degrees: f64) -> Result<f64, Error> {
 }
 
 /// Refuses a scene whose drive does not repeat.
-pub fn can_have_orbits(document: &Document, model: &Model) -> Result<(), Error> {
+fn can_have_orbits(document: &Document, model: &Model) -> Result<(), Error> {
     if !model.repeats() || !model.is_shaken() {
         let problem = "excitation: a periodic motion needs a drive that repeats and is not 0; take a Sine, \
-                       or a Sum of sines whose frequencies have a common period";
+                       Cosine or Force, or a Sum of them whose frequencies have a common period";
         return Err(Error::unfit(document, problem));
     }
     if model.keeps_charge() {
@@ -366,7 +356,7 @@ pub fn can_have_orbits(document: &Document, model: &Model) -> Result<(), Error> 
 
 /// The error for an orbit that was not found; `at` is a prefix that names the place, such as `at FIELD =
 /// VALUE: `.
-pub fn no_orbit(document: &Document, error: NoOrbit, at: &str) -> Error {
+fn no_orbit(document: &Document, error: NoOrbit, at: &str) -> Error {
     match error {
         NoOrbit::Cancelled => Error::Cancelled,
         _ => Error::failed(document, format!("{at}{error}")),

@@ -107,7 +107,7 @@ pub use measured::{
 pub use melnikov::{melnikov_threshold, suits_melnikov, with_melnikov};
 pub use models::Held;
 pub use orbit::{
-    Branch, BranchEnd, BranchEvent, BranchOptions, Locus, LocusEnd, LocusEvent, NoOrbit, Orbit, Second,
+    Branch, BranchEnd, BranchEvent, BranchOptions, FieldRange, Locus, LocusEnd, LocusEvent, NoOrbit, Orbit,
     branch, branches_table, loci, loci_table, orbit, orbit_near, orbit_table, switched,
 };
 pub use section::{IMPACTS, MAX_SECTION, SectionAt, SectionOptions, Sections, section};

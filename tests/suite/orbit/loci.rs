@@ -11,7 +11,8 @@ use interwell::dynamics::STANDARD_GRAVITY;
 use interwell::mechanics::Mechanism;
 use interwell::scene::Document;
 use interwell::study::{
-    BranchEvent, BranchOptions, Family, Locus, LocusEnd, LocusEvent, Second, Task, branch, loci, loci_table,
+    BranchEvent, BranchOptions, Family, FieldRange, Locus, LocusEnd, LocusEvent, Task, branch, loci,
+    loci_table,
 };
 use proptest::prelude::*;
 
@@ -29,7 +30,7 @@ fn found(
     document: &Document,
     (field, range): (&str, (f64, f64)),
     of: BranchEvent,
-    second: Second,
+    second: FieldRange,
 ) -> Vec<Locus> {
     let mechanism = Arc::new(Mechanism::build(&document.scene.mechanism, &document.files).unwrap());
     let family = Family::new(&document.scene, &document.files, &mechanism, field);
@@ -56,8 +57,7 @@ fn holds(locus: &Locus, range: (f64, f64), second: (f64, f64)) -> Verdict {
             BranchEvent::Flip => to(-1.0),
             _ => to(1.0),
         };
-        // the multiplier of the map from a motion to its mirror image, which is held to 1e-6, counts twice
-        prop_assert!(off <= 2.1e-6, "{:?} at {value}, {other}: {off:e}", locus.of);
+        prop_assert!(off <= 1e-6, "{:?} at {value}, {other}: {off:e}", locus.of);
     }
     prop_assert_eq!(loci_table(std::slice::from_ref(locus)).rows(), locus.orbits.len());
     Ok(())
@@ -87,7 +87,7 @@ fn cases() -> impl Strategy<Value = Case> {
 }
 
 impl Case {
-    fn second(&self) -> Second {
+    fn second(&self) -> FieldRange {
         let OneStop { w, e, damping, mirrored } = self.drawn.closed;
         let (field, from, highest) = match self.other {
             Other::Frequency => ("excitation.frequency_hz", w / TAU, f64::INFINITY),
@@ -95,7 +95,7 @@ impl Case {
             Other::Restitution if mirrored => ("stops.restitution", e, 0.99),
             Other::Restitution => ("stops.restitution_right", e, 0.99),
         };
-        Second { field: field.into(), range: (from, (self.by * from).min(highest)) }
+        FieldRange { field: field.into(), range: (from, (self.by * from).min(highest)) }
     }
 
     /// The oscillator at a value of the other field.
@@ -140,10 +140,7 @@ impl Case {
                 // nearer to a grazing than motions are looked at
                 let gentlest = locus.orbits.last().and_then(|orbit| self.drawn.speed(orbit));
                 let hidden = gentlest.is_some_and(|speed| speed < 1e-3 * gap);
-                let mut all = rows.take();
-                *all.entry("loci").or_default() += 1;
-                *all.entry("lost").or_default() += usize::from(locus.end == LocusEnd::Lost && !hidden);
-                rows.set(all);
+                prop_assert!(locus.end != LocusEnd::Lost || hidden, "lost after {} rows", locus.orbits.len());
             }
         }
         Ok(any)
@@ -158,8 +155,6 @@ fn loci_of_linear_oscillators_lie_where_formulas_say() {
     hold_for("loci_of_linear_oscillators", 40, 0.4, cases(), show, check);
     let rows = rows.take();
     println!("{rows:?}");
-    // some come near to a grazing from far, or to motions that change too fast
-    assert!(20 * rows["lost"] <= rows["loci"], "{rows:?}");
     for of in ["grazing", "fold", "flip", "symmetry"] {
         assert!(rows.get(of).is_some_and(|rows| *rows > 40), "{rows:?}");
     }
@@ -172,7 +167,7 @@ fn loci_of_bouncing_balls_lie_where_formulas_say() {
     let check = |&(e, frequency, by): &(f64, f64, f64)| {
         let ball = Ball { e, frequency };
         let a = 0.5 * (ball.pace() + ball.flip());
-        let second = Second { field: "stops.restitution_left".into(), range: (e, by * e) };
+        let second = FieldRange { field: "stops.restitution_left".into(), range: (e, by * e) };
         for (of, to) in [(BranchEvent::Flip, 1.5 * ball.flip()), (BranchEvent::Fold, 0.5 * ball.pace())] {
             let loci = found(&ball.document(a), (AMPLITUDE, (a, to)), of, second.clone());
             let simple = |locus: &&Locus| locus.orbits[0].passage.impacts == 1;
@@ -195,7 +190,7 @@ fn loci_of_bouncing_balls_lie_where_formulas_say() {
 /// same phase.
 #[test]
 fn a_flip_ends_at_a_grazing_in_resonance() {
-    let flips = Second { field: "excitation.frequency_hz".into(), range: (0.1114, 0.09) };
+    let flips = FieldRange { field: "excitation.frequency_hz".into(), range: (0.1114, 0.09) };
     let scene =
         changed("impact-oscillator", &["excitation.frequency_hz=0.1114", "excitation.amplitude_g=0.07"]);
     let all = found(&scene, (AMPLITUDE, (0.07, 0.0545)), BranchEvent::Flip, flips);
@@ -228,7 +223,7 @@ fn a_locus_of_grazing_does_not_pass_through_the_other_stop() {
         let task = Task { tick: &|| (), cancel: &AtomicBool::new(false) };
         let options = BranchOptions { step, ..BranchOptions::new(phase, Some(1)) };
         let begun = branch(&family, AMPLITUDE, (0.03, 0.06), &options, &task).unwrap();
-        let second = Second { field: "stops.left_mm".into(), range: (1500.0, last) };
+        let second = FieldRange { field: "stops.left_mm".into(), range: (1500.0, last) };
         let all =
             loci(&family, &begun, (0.03, 0.06), (BranchEvent::Grazing, &second), &options, &task).unwrap();
         let locus = &all[0];
@@ -256,7 +251,7 @@ fn a_locus_of_grazing_begins_at_any_phase() {
                 &format!("excitation.amplitude_g={:?}", 0.6 * grazing),
             ],
         );
-        let second = Second { field: format!("stops.{side}_mm"), range: (at, 0.95 * at) };
+        let second = FieldRange { field: format!("stops.{side}_mm"), range: (at, 0.95 * at) };
         let all = found(&scene, (AMPLITUDE, (0.6 * grazing, 1.05 * grazing)), BranchEvent::Grazing, second);
         assert_eq!((all.len(), all[0].end), (1, LocusEnd::Range), "{side} {at} {e}");
         assert!(all[0].values.len() > 5);
@@ -272,7 +267,7 @@ fn a_locus_of_grazing_begins_at_any_phase() {
 fn folds_meet_in_a_cusp_where_a_symmetry_breaks() {
     let stops = "stops=Uneven(left_mm:1500,right_mm:1000,restitution_right:0.8,restitution_left:0.8)";
     let scene = changed("impact-oscillator", &[stops, "excitation.amplitude_g=0.03"]);
-    let second = Second { field: "stops.left_mm".into(), range: (1500.0, 500.0) };
+    let second = FieldRange { field: "stops.left_mm".into(), range: (1500.0, 500.0) };
     let all = found(&scene, (AMPLITUDE, (0.03, 0.1)), BranchEvent::Fold, second);
     let rows = all.iter().flat_map(|locus| locus.events.iter().zip(&locus.values));
     let cusps: Vec<[f64; 2]> =
@@ -293,7 +288,7 @@ fn folds_of_a_duffing_oscillator_meet_in_a_cusp() {
         ))
     };
     let range = (0.13, 0.3);
-    let second = Second { field: AMPLITUDE.into(), range: (0.02, 0.001) };
+    let second = FieldRange { field: AMPLITUDE.into(), range: (0.02, 0.001) };
     let all = found(&scene(0.02), (FREQUENCY, range), BranchEvent::Fold, second);
     // both folds lie on one locus
     assert_eq!((all.len(), all[0].end), (1, LocusEnd::Range));
@@ -306,7 +301,7 @@ fn folds_of_a_duffing_oscillator_meet_in_a_cusp() {
     assert!(locus.values.iter().all(|[_, amplitude]| *amplitude >= lowest * (1.0 - 1e-12)));
     // the numbers of folds beside it, and some rows against the branch at its amplitude
     let folds = |amplitude: f64| {
-        let second = Second { field: AMPLITUDE.into(), range: (amplitude, 1.001 * amplitude) };
+        let second = FieldRange { field: AMPLITUDE.into(), range: (amplitude, 1.001 * amplitude) };
         let all = found(&scene(amplitude), (FREQUENCY, range), BranchEvent::Fold, second);
         all.iter().map(|locus| locus.values[0][0]).collect::<Vec<f64>>()
     };
@@ -337,7 +332,7 @@ fn a_locus_of_grazing_beside_a_circuit_is_where_the_response_reaches_the_stop() 
             "stops: Uneven(right_mm: 50, restitution_right: 0.8), start: At(x_mm: 0, v_m_per_s: 0), \
              run: (duration_s: 900, settle_s: 800, tolerance: 1e-12)",
         ));
-        let second = Second {
+        let second = FieldRange {
             field: "excitation.frequency_hz".into(),
             range: (oscillator.frequency, 1.1 * oscillator.frequency),
         };
@@ -362,7 +357,7 @@ fn a_locus_does_not_depend_on_the_phase_of_its_rows() {
     for (phase, step) in [(0.0, 1e-2), (0.3, 1e-2), (0.6, 3e-3), (0.9, 5e-2)] {
         let options = BranchOptions { step, ..BranchOptions::new(phase, Some(1)) };
         let begun = branch(&family, AMPLITUDE, (0.056, 0.054), &options, &task).unwrap();
-        let second = Second { field: "damping.c_n_s_per_m".into(), range: (0.2, 0.22) };
+        let second = FieldRange { field: "damping.c_n_s_per_m".into(), range: (0.2, 0.22) };
         let of = (BranchEvent::Flip, &second);
         let all = loci(&family, &begun, (0.056, 0.054), of, &options, &task).unwrap();
         let [amplitude, damping] = all[0].values[all[0].values.len() - 1];

@@ -4,6 +4,7 @@ use nalgebra::Vector4;
 
 use super::SAME;
 use super::corrector::{Corrector, Point};
+use crate::dynamics::Multiplier;
 
 words! {
     /// A bifurcation or grazing of a periodic orbit at a value of the field.
@@ -127,7 +128,11 @@ fn joint(corrector: &Corrector, from: &Point, to: &Point) -> Option<(f64, Branch
 
 /// Whether a multiplier of the corrector's map is 1 or -1.
 pub(super) fn is_at(point: &Point, unit: f64) -> bool {
-    let multipliers = point.by_state.multipliers(point.determinant);
+    has(&point.by_state.multipliers(point.determinant), unit)
+}
+
+/// Whether one of the multipliers is 1 or -1.
+pub(super) fn has(multipliers: &[Multiplier], unit: f64) -> bool {
     multipliers.iter().any(|multiplier| (multiplier.re - unit).hypot(multiplier.im) <= AT_UNIT)
 }
 

@@ -30,7 +30,7 @@ use crate::scene::column_names;
 use corrector::Corrector;
 pub(super) use corrector::Units;
 pub use events::BranchEvent;
-pub use locus::{Locus, LocusEnd, LocusEvent, Second, loci, loci_table};
+pub use locus::{FieldRange, Locus, LocusEnd, LocusEvent, loci, loci_table};
 pub use switch::switched;
 use walk::Walk;
 

@@ -3,10 +3,10 @@
 use nalgebra::{Vector4, Vector5};
 
 use super::super::corrector::{Accuracy, Corrector, Equations, Point, newton, tangent};
-use super::super::events::{characteristic, differ, is_at};
+use super::super::events::{characteristic, differ, has, is_at};
 use super::super::grazing::{EXACT, FINEST, Grazing, Touch, grazings};
 use super::super::{SAME, Units, map_of};
-use super::{BranchEvent, BranchOptions, Orbit, Second};
+use super::{BranchEvent, BranchOptions, FieldRange, Orbit};
 use crate::dynamics::MapState;
 use crate::scene::FieldPath;
 use crate::study::Family;
@@ -80,7 +80,7 @@ impl<'a> Curve<'a> {
         orbit: &Orbit,
         value: f64,
         range: (f64, f64),
-        (of, second): (BranchEvent, &Second),
+        (of, second): (BranchEvent, &FieldRange),
         options: &BranchOptions,
     ) -> Option<(Self, Spot)> {
         let path = FieldPath::new(&second.field);
@@ -196,7 +196,9 @@ impl<'a> Curve<'a> {
         let Some(touch) = &self.touch else {
             let evaluate = |at: &Vector5<f64>| self.smooth(at);
             let ((point, slopes), at, _) = newton(guess, across, GOOD, evaluate)?;
-            let holds = is_at(&point, self.unit());
+            // the multiplier over the period, which the row has, is the square of that to the mirror image
+            let over_period = if self.corrector.mirrored { 1.0 } else { self.unit() };
+            let holds = is_at(&point, self.unit()) && has(&point.orbit.multipliers(), over_period);
             return holds.then_some(Spot { at, point, slopes, along: *across });
         };
         let look = |at: &Vector5<f64>| self.grazing(touch, at);

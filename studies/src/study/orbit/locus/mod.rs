@@ -95,9 +95,9 @@ pub fn loci_table(loci: &[Locus]) -> Table {
     with_orbits(table, &orbits).each("event", &events, |event| event.map_or("", LocusEvent::name))
 }
 
-/// The second field of a locus, and the value from which it is followed towards another.
+/// A field, and the value from which it is followed towards another.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Second {
+pub struct FieldRange {
     /// The field.
     pub field: String,
     /// The values.
@@ -113,7 +113,7 @@ pub fn loci(
     family: &Family,
     branch: &Branch,
     range: (f64, f64),
-    (of, second): (BranchEvent, &Second),
+    (of, second): (BranchEvent, &FieldRange),
     options: &BranchOptions,
     task: &Task,
 ) -> Result<Vec<Locus>, NoOrbit> {

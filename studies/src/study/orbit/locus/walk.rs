@@ -6,7 +6,7 @@ use super::super::corrector::tangent;
 use super::super::events::{characteristic, differ, is_at, root_between};
 use super::super::walk::AT_AN_END;
 use super::curve::{Curve, Spot};
-use super::{BranchEvent, BranchOptions, Locus, LocusEnd, LocusEvent, NoOrbit, Orbit, Second};
+use super::{BranchEvent, BranchOptions, FieldRange, Locus, LocusEnd, LocusEvent, NoOrbit, Orbit};
 use crate::study::Task;
 
 /// First step in the units.
@@ -35,12 +35,12 @@ pub(super) struct Walk<'a> {
     at: Spot,
     /// The phase of the rows, in forcing periods.
     phase: f64,
-    second: &'a Second,
+    second: &'a FieldRange,
 }
 
 impl<'a> Walk<'a> {
     /// A walk from a point; `phase` is that of the rows in forcing periods.
-    pub fn new(curve: Curve<'a>, locus: Locus, at: Spot, second: &'a Second, phase: f64) -> Self {
+    pub fn new(curve: Curve<'a>, locus: Locus, at: Spot, second: &'a FieldRange, phase: f64) -> Self {
         Self { curve, locus, at, phase, second }
     }
 
@@ -69,17 +69,14 @@ impl<'a> Walk<'a> {
         while self.locus.orbits.len() < options.count {
             task.check_cancelled().map_err(|_| NoOrbit::Cancelled)?;
             (task.tick)();
-            let Some((next, is_last)) = self.predicted(step, &ends) else {
+            let next = self.predicted(step, &ends);
+            let Some(((next, is_last), events)) = next.and_then(|next| {
+                let events = self.events_to(&next.0)?;
+                Some((next, events))
+            }) else {
                 step *= 0.5;
                 if step < SHORTEST {
                     return Ok(self.ended(&ends));
-                }
-                continue;
-            };
-            let Some(events) = self.events_to(&next) else {
-                step *= 0.5;
-                if step < SHORTEST {
-                    return Ok(LocusEnd::Lost);
                 }
                 continue;
             };
@@ -133,15 +130,16 @@ impl<'a> Walk<'a> {
             crossings.min_by(|a, b| a.2.total_cmp(&b.2))
         };
         let guess = at + along * step;
-        let over = beyond(&guess);
-        let next = match over {
-            None => self.curve.correct(guess, along)?,
-            Some(_) => Spot { at: guess, ..self.at.clone() },
+        // beyond an end nothing is computed
+        let next = match beyond(&guess) {
+            Some(_) => None,
+            None => Some(self.curve.correct(guess, along)?),
         };
-        let next = match over.or_else(|| beyond(&next.at)) {
-            None => Some((next, false)),
-            Some((axis, end, share)) => {
-                let mut there = at + (next.at - at) * share;
+        let to = next.as_ref().map_or(guess, |next| next.at);
+        let (next, is_last) = match (beyond(&to), next) {
+            (None, next) => (next?, false),
+            (Some((axis, end, share)), _) => {
+                let mut there = at + (to - at) * share;
                 there[axis] = end;
                 let last = self.curve.correct(there, &Vector5::ith(axis, 1.0))?;
                 let inside = |place: usize| {
@@ -149,10 +147,12 @@ impl<'a> Walk<'a> {
                     (low - SHORTEST..=high + SHORTEST).contains(&last.at[3 + place])
                 };
                 let is_near = (last.at - at).norm() <= 2.0 * step;
-                (is_near && inside(0) && inside(1)).then_some((last, true))
+                if !(is_near && inside(0) && inside(1)) {
+                    return None;
+                }
+                (last, true)
             }
         };
-        let (next, is_last) = next?;
         let onward = tangent(&next.slopes, along)?;
         let ahead = next.at - at;
         let follows = onward.dot(along) > STRAIGHT && ahead.dot(along) > STRAIGHT * ahead.norm();
@@ -179,13 +179,11 @@ impl<'a> Walk<'a> {
         };
         let at_unit = |unit: f64| move |spot: &Spot| characteristic(&spot.point, unit);
         match self.curve.of {
-            BranchEvent::Grazing if self.curve.corrector.mirrored => {
-                search(LocusEvent::GrazingFold, &at_unit(1.0))?;
-                search(LocusEvent::GrazingSymmetry, &at_unit(-1.0))?;
-            }
             BranchEvent::Grazing => {
+                let is_mirrored = self.curve.corrector.mirrored;
+                let flip = if is_mirrored { LocusEvent::GrazingSymmetry } else { LocusEvent::GrazingFlip };
                 search(LocusEvent::GrazingFold, &at_unit(1.0))?;
-                search(LocusEvent::GrazingFlip, &at_unit(-1.0))?;
+                search(flip, &at_unit(-1.0))?;
             }
             BranchEvent::Fold => {
                 // a locus that turns back over one field alone has no cusp
