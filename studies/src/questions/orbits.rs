@@ -303,8 +303,8 @@ impl Locus {
             false => format!("but {}", others.join(" and ")),
         };
         format!(
-            "at {} = {}, the branch over {field} from {from} to {to} has no {} {has}; it ends at {}, {}: take \
-             another range, start, period or number of motions",
+            "at {} = {}, the branch over {field} from {from} to {to} has no {} {has}; it ends at {}, {}: \
+             take another range, start, period or number of motions",
             second.field,
             second.range.0,
             of.name(),
