@@ -54,9 +54,8 @@ pub struct Arguments {
 
     /// Follow also the branches that begin at flips and breakings of the symmetry, those that begin on them,
     /// and so on to this number of levels [default without a number: 1]
-    #[arg(long, value_name = "LEVELS", allow_hyphen_values = true, num_args = 0..=1,
-          default_missing_value = "1", requires = "branch", conflicts_with = "locus",
-          value_parser = whole::<u32>(1..=10))]
+    #[arg(long, value_name = "LEVELS", num_args = 0..=1, default_missing_value = "1",
+          requires = "branch", conflicts_with = "locus", value_parser = whole::<u32>(1..=10))]
     pub switch: Option<u32>,
 
     /// Follow each event of this kind on the branch over a second field too: grazing, fold, flip or symmetry

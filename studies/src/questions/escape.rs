@@ -14,9 +14,8 @@ use crate::study::{
 ///
 /// Columns: the fields, `runs`, `escaped`, `ended_early`, `observed_s`, then `escape_rate_per_s`,
 /// `mean_first_passage_s` (its inverse), both with `low` and `high` of a 95 % interval,
-/// `median_first_passage_s`, `kramers_rate_per_s` and `kramers_fails`.
-/// Without an escape, the rate is 0, and the mean time and
-/// the upper end of its interval are missing.
+/// `median_first_passage_s`, `kramers_rate_per_s` and `kramers_fails`. Without an escape, the rate is 0, and
+/// the mean time and the upper end of its interval are missing.
 ///
 /// Method: the rate is the number of escapes over the time observed in all runs, those without an escape
 /// included, which is the estimate of largest likelihood for exponential waiting times; its interval is that

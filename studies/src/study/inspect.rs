@@ -20,7 +20,9 @@ pub fn inspect(scene: &Scene, mechanism: &Arc<Mechanism>) -> Result<Vec<String>,
     let mut lines = model.describe();
     if let (Excitation::Force { amplitude_n, .. }, Some(drive)) = (&scene.excitation, scene.harmonic()) {
         let (size, frequency) = (short(amplitude_n.abs()), drive.frequency_in_words());
-        lines.push(format!("that is -force/mass of a force on the mass: {size} N at {frequency}"));
+        lines.push(format!(
+            "force on the mass: {size} N at {frequency}; the base acceleration above is -force/mass"
+        ));
     }
     if mechanism.parts.is_empty() {
         lines.extend(force(mechanism));

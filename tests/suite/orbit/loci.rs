@@ -399,6 +399,8 @@ fn wrong_loci_are_refused() {
         ("--step 0.2", &["step", "0.05"]),
         ("--count 0", &["--count"]),
         ("--switch 11", &["--switch", "1 to 10"]),
+        ("--switch -1", &["-1"]),
+        ("--switch --locus fold --and damping.c_n_s_per_m=0.2:0.3", &["--switch", "--locus"]),
     ] {
         refused(line(rest), words);
     }

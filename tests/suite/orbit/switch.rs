@@ -12,6 +12,7 @@ use interwell::study::{
 
 use super::one_stop::OneStop;
 use super::{AMPLITUDE, Ball, at, document, over_amplitude, two};
+use crate::cli::stdout;
 use crate::measured::Noise;
 use crate::support::{changed, near, near_relative};
 
@@ -94,6 +95,15 @@ fn levels_follow_a_cascade_of_doublings() {
     let table = branches_table(&all);
     assert_eq!(table.columns()[0].name, "branch");
     assert_eq!(table.rows(), all.iter().map(|branch| branch.values.len()).sum::<usize>());
+}
+
+/// Without a number it is one level, whatever option follows.
+#[test]
+fn a_switch_without_a_number_is_one_level() {
+    let line = "orbit impact-oscillator --branch excitation.amplitude_g=0.056:0.0545 --switch";
+    let one = stdout(&format!("{line} --quiet"));
+    assert_eq!(one, stdout(&format!("{line} 1 --quiet")));
+    assert!(one.starts_with("branch,amplitude_g,period,") && one.lines().any(|row| row.starts_with("2,")));
 }
 
 /// A Duffing oscillator breaks its symmetry: the motions that are not their own mirror images begin there,
