@@ -138,13 +138,16 @@ fn time_of(corrector: &Corrector, map: &StroboscopicMap, t: f64) -> f64 {
     ((t - map.first_strobe()) / map.period()).rem_euclid(f64::from(corrector.periods))
 }
 
+/// Distance of two times within a flight, of which the end is followed by the beginning.
+fn apart(a: f64, b: f64, flight: f64) -> f64 {
+    let far = (a - b).rem_euclid(flight);
+    far.min(flight - far)
+}
+
 /// The intervals around the near misses of an orbit and its touch at the time `t` in which stops are ignored.
 fn openings(corrector: &Corrector, map: &StroboscopicMap, near: &Point, t: f64) -> Vec<(f64, f64)> {
     let flight = corrector.flight();
-    let apart = |a: f64, b: f64| {
-        let far = (a - b).rem_euclid(flight);
-        far.min(flight - far)
-    };
+    let apart = |a: f64, b: f64| apart(a, b, flight);
     // by rounding the touch may be an impact
     let is_touch = |event: &Event| {
         let far = apart(time_of(corrector, map, event.t), t);
@@ -298,7 +301,7 @@ impl Touch {
         }
         let gap = (x - self.stop(maps)?.0).abs();
         let t = maps.with.first_strobe() + time * maps.with.period();
-        misses.retain(|miss| (miss.t - t).abs() > AT_ONCE * maps.with.period());
+        misses.retain(|miss| apart(time_of(corrector, &maps.with, miss.t), time, flight) > AT_ONCE);
         misses.push(Miss { t, side, gap });
         let units = &corrector.units;
         let off = corrector.units.apart(state, corrector.image(at));
