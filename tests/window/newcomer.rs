@@ -99,8 +99,7 @@ fn the_lesson_says_what_the_scene_does() {
         let well = landscape.right_stable().unwrap().x;
         let hardest =
             landscape.extrema.iter().find(|extremum| extremum.x > 1e-4 && extremum.x < well).unwrap();
-        let words =
-            format!("most of all at ±{:.1} mm, and from there to the well less again", hardest.x * 1e3);
+        let words = format!("At ±{:.1} mm it presses hardest.", hardest.x * 1e3);
         harness.get_by_label_contains(&words);
         let session = &harness.state().session;
         let weak = harness.query_by_label_contains("Here this push does not carry it over.").is_some();

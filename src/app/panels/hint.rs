@@ -14,7 +14,7 @@ const TRIED_MM: f64 = 0.3;
 
 /// How stops between two wells act.
 const MIDDLE: &str = "a stop near the middle holds the mass high on the barrier: a weaker push carries it \
-                      over, but it travels less. Further out it presses harder";
+                      over, but it travels less.";
 
 /// What the line asks the user to try.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -187,10 +187,9 @@ pub fn guide_ui<R>(
 /// How stops between these wells act, for any travel limit.
 fn answer(session: &Session) -> String {
     let mut text = MIDDLE.to_owned();
-    text += &match hardest_mm(session) {
-        Some(mm) => format!(", most of all at ±{mm:.1} mm, and from there to the well less again."),
-        None => ", and near the well less again.".to_owned(),
-    };
+    if let Some(mm) = hardest_mm(session) {
+        text += &format!(" At ±{mm:.1} mm it presses hardest.");
+    }
     if session.crosses() == Some(false) {
         text += " Here this push does not carry it over.";
     }

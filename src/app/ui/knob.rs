@@ -142,7 +142,10 @@ impl Knob<'_> {
     ) -> (Response, bool) {
         let present = *value;
         let editing = ui.memory(|memory| memory.has_focus(ui.next_auto_id()));
-        let write = |number: f64| if editing { exact(number, decimals) } else { shown(number, decimals) };
+        let write = |number: f64| match editing {
+            true => exact(number, decimals),
+            false => shown(number, decimals).replace('-', "\u{2212}"),
+        };
         let entered = RefCell::new(None);
         let mut edited = present;
         let field = DragValue::new(&mut edited)
@@ -152,9 +155,9 @@ impl Knob<'_> {
             .custom_formatter(|number, _| write(number))
             .update_while_editing(false)
             .custom_parser(|text| {
-                let text = text.trim();
+                let text = &text.trim().replace('\u{2212}', "-");
                 // a text that was not changed leaves the value as it is
-                if text == shown(present, decimals) || text == exact(present, decimals) {
+                if *text == shown(present, decimals) || *text == exact(present, decimals) {
                     return Some(present);
                 }
                 let number = self.parsed(text, present);

@@ -45,8 +45,10 @@ pub fn basins_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     pane.response.widget_info(spoken);
     let Some(frame) = pane.frame(0) else { return };
     axes_input(ui, context.memory, View::Basins, &pane.response, (area, frame));
-    if let Some(Err(problem)) = &level {
-        empty_ui(ui, &style, frame, problem);
+    match &level {
+        Some(Ok(_)) => {}
+        Some(Err(problem)) => empty_ui(ui, &style, frame, problem),
+        None => empty_ui(ui, &style, frame, "The basins are being computed, first a coarse picture."),
     }
     stops_ui(ui, context, frame, (frame.top(), frame.bottom()), 0.0);
     if let Some(Ok(level)) = &level {

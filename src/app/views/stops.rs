@@ -1,10 +1,10 @@
 //! Stops as walls that can be dragged, in every view with the shared x axis.
 
-use eframe::egui::{self, CursorIcon, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
+use eframe::egui::{self, Align2, CursorIcon, Painter, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
 
 use crate::app::session::Session;
 use crate::app::session::sliders::reach;
-use crate::app::ui::style::GRAB;
+use crate::app::ui::style::{BALL, GRAB};
 use crate::app::ui::widgets::arrows;
 use crate::app::words::fields::info;
 use crate::app::words::numbers::{decimal, decimals, shown};
@@ -12,6 +12,7 @@ use crate::scene::Stops;
 
 use super::ViewContext;
 use super::context::Drawn;
+use super::labels::Taken;
 
 /// Resolution of a drag, in steps of the slider of a stop.
 const FINE: f64 = 0.2;
@@ -44,6 +45,31 @@ fn shown_stops(session: &Session, drawn: Drawn) -> ([Option<f64>; 2], bool) {
     (then, are_equal(then[0], present[0]) && are_equal(then[1], present[1]))
 }
 
+/// The displacement of a stop as text, to the resolution of a drag.
+fn limit_words(session: &Session, mm: f64) -> String {
+    format!("{} mm", shown(mm, decimals(FINE * key_step(session)))).replace('-', "\u{2212}")
+}
+
+/// Draws the travel limits over `rect` as lines with their numbers, where the faces of the stops stand the
+/// half width of the mass farther out; what is drawn is `taken`.
+pub(super) fn travel_limits(painter: &Painter, context: &ViewContext<'_>, rect: Rect, taken: &mut Taken) {
+    let style = context.style;
+    let (stops, _) = shown_stops(context.session, context.drawn);
+    for (mm, side) in stops.into_iter().zip([-1.0_f32, 1.0]) {
+        let Some(mm) = mm else { continue };
+        let line =
+            [rect.top(), rect.bottom()].map(|y| pos2(context.span.screen_from_world(mm / 1e3, rect), y));
+        painter.extend(Shape::dashed_line(&line, Stroke::new(style.width(1.3), style.stop()), 3.0, 3.0));
+        taken.lines.push(line.to_vec());
+        let text = limit_words(context.session, mm);
+        let [inner, outer] = [(-4.0, side), (BALL + WALL + 4.0, -side)].map(|(aside, towards)| {
+            let align = if towards > 0.0 { Align2::RIGHT_TOP } else { Align2::LEFT_TOP };
+            (text.as_str(), line[0] + vec2(side * aside, 4.0), align)
+        });
+        taken.write(painter, rect, (style.small(), style.ink()), [inner, outer]);
+    }
+}
+
 /// Draws the stops over `rect` between the heights `top` and `bottom`, and lets them be dragged. The face of
 /// a stop is drawn `radius` points, the half width of the mass, outside its travel limit.
 pub fn stops_ui(
@@ -64,7 +90,6 @@ pub fn stops_ui(
     let (stops, movable) = shown_stops(context.session, context.drawn);
     let step = key_step(context.session);
     let fine = FINE * step;
-    let words = |mm: f64| format!("{} mm", shown(mm, decimals(fine)));
     // the nearest to x = 0 that a stop may come; unequal ones may pass it up to the other stop
     let nearest = |side: f32| match (context.session.scene().stops, stops) {
         (Stops::Uneven { .. }, [left, right]) => {
@@ -90,8 +115,13 @@ pub fn stops_ui(
         painter.extend(hatching(wall, side, Stroke::new(1.0, style.ground())));
         if !movable {
             let then = match context.drawn {
-                Drawn::Pinned(_) => format!("The stop of the pinned motion, at {}.", words(mm)),
-                _ => format!("Then the stop was at {}. The controls change what is now.", words(mm)),
+                Drawn::Pinned(_) => {
+                    format!("The stop of the pinned motion, at {}.", limit_words(context.session, mm))
+                }
+                _ => format!(
+                    "Then the stop was at {}. The controls change what is now.",
+                    limit_words(context.session, mm)
+                ),
             };
             ui.interact(grab, id, Sense::hover()).on_hover_text(then);
             continue;
@@ -111,8 +141,8 @@ pub fn stops_ui(
             // 0.01 mm for the prototype, which is finer than a hand
             let distance = decimal((f64::from(side) * place / fine).round() * fine).max(nearest) + 0.0;
             context.session.edit(|scene| scene.stops.set_limit(side > 0.0, distance));
-            let text = words(distance);
-            let align = if side > 0.0 { egui::Align2::LEFT_TOP } else { egui::Align2::RIGHT_TOP };
+            let text = limit_words(context.session, distance);
+            let align = if side > 0.0 { Align2::LEFT_TOP } else { Align2::RIGHT_TOP };
             let at = pos2(x + side * (WALL + 5.0), top);
             painter.text(at, align, text, style.body(), style.ink());
         }

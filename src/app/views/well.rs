@@ -15,6 +15,7 @@ use crate::app::ui::style::BALL;
 use crate::app::words::numbers::energy;
 use crate::app::words::wells::well_name;
 use crate::dynamics::Model;
+use crate::mechanics::Barrier;
 use crate::output::{Chart, Layer, Marks, Panel, PlotAxis, Role, suited_unit};
 use crate::study::Table;
 
@@ -24,7 +25,7 @@ use super::labels::{Taken, ago, free_place};
 use super::mass::mass_ui;
 use super::pane::{LEGEND, Pane, Place, kept_pane_ui};
 use super::ranges::{bottom, room_for_push};
-use super::stops::{WALL, stops_ui};
+use super::stops::{WALL, stops_ui, travel_limits};
 use super::view::Axis;
 use super::{Span, View, ViewContext, too_small_ui};
 
@@ -42,6 +43,9 @@ const LIFT: f32 = 2.5;
 
 /// Height in points of what stands below the picture.
 const BELOW: f32 = 43.0;
+
+/// Radius in points of the dot in the middle of the ball.
+const MIDDLE: f32 = 2.5;
 
 /// Half the width in points of an end of the bracket.
 const BRACKET: f32 = 5.0;
@@ -106,23 +110,24 @@ pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     });
     let Some(frame) = pane.frame(0) else { return };
     axes_input(ui, context.memory, View::Well, &pane.response, (area, frame));
-    // the ball touches a stop at its travel limit
-    let ball = f64::from(BALL) / context.span.scale(frame) * 1e3;
     let (left, right) = model.stop_positions();
-    let face = |stop: Option<f64>, side: f64| stop.map_or(f64::NAN, |x| x * 1e3 + side * ball);
-    layers.extend(Layer::curve("", points, (face(left, -1.0), face(right, 1.0)), |mm| tipped.at(mm)));
+    let limit = |stop: Option<f64>| stop.map_or(f64::NAN, |x| x * 1e3);
+    layers.extend(Layer::curve("", points, (limit(left), limit(right)), |mm| tipped.at(mm)));
     let painter = ui.painter().with_clip_rect(frame);
     pane.draw(&painter, &style, 0, &layers);
     let on_curve = |x: f64, curve: &Potential<'_>| {
+        let ahead = 0.1 * f64::from(BALL) / context.span.scale(frame);
         let [at, ahead] =
-            [x * 1e3, x * 1e3 + 0.1 * ball].map(|mm| pane.place(0, (mm, curve.at(mm))).unwrap_or(frame.min));
+            [x * 1e3, (x + ahead) * 1e3].map(|mm| pane.place(0, (mm, curve.at(mm))).unwrap_or(frame.min));
         let slope = (ahead.y - at.y) / (ahead.x - at.x).max(1e-6);
         at - vec2(0.0, BALL * 1.0_f32.hypot(slope).min(LIFT))
     };
     let balls: Vec<(Pos2, &Ghost)> =
         all.iter().zip(&of_ghosts).map(|(ghost, curve)| (on_curve(ghost.state.x, curve), ghost)).collect();
     all.iter().for_each(|ghost| ghost.stops(&painter, context, frame, BALL));
-    landmarks(&painter, context, (&pane, frame), &level);
+    let mut taken = Taken::default();
+    landmarks(&painter, context, (&pane, frame), &level, &mut taken);
+    travel_limits(&painter, context, frame, &mut taken);
     let at = on_curve(state.x, &tipped);
     stops_ui(ui, context, frame, (frame.top() + 4.0, frame.bottom()), BALL);
     mass_ui(ui, context, at, frame);
@@ -130,6 +135,8 @@ pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let over = ui.painter().with_clip_rect(frame.expand(BALL + 1.0).intersect(area));
     balls.iter().for_each(|(at, ghost)| ghost.ball(&over, &style, *at, BALL));
     over.circle(at, BALL, style.mass(), Stroke::new(1.5, style.mass_edge()));
+    // its displacement is that of its middle
+    over.circle_filled(at, MIDDLE, style.mass_edge());
     if let Some(ago) = ago(context.session) {
         pane.reading(ui, &style, 0.0, &ago);
     }
@@ -155,14 +162,27 @@ fn still(level: &Potential<'_>, span: Span, (across, up): (PlotAxis, PlotAxis), 
     Chart::stack(vec![panel], "", Table::new())
 }
 
+/// The lowest places in m to the left and to the right of the barrier that the stops leave to the mass;
+/// `None` if no stop stands between a well and the barrier, or one stands beyond the barrier.
+fn feet(model: &Model, barrier: &Barrier) -> Option<[f64; 2]> {
+    let (left, right) = model.stop_positions();
+    let feet = [
+        left.map_or(barrier.left_well, |stop| stop.max(barrier.left_well)),
+        right.map_or(barrier.right_well, |stop| stop.min(barrier.right_well)),
+    ];
+    let is_cut = feet != [barrier.left_well, barrier.right_well];
+    (is_cut && feet[0] < barrier.x && feet[1] > barrier.x).then_some(feet)
+}
+
 /// Draws the height of the barrier as a bracket below its top, with its name where no curve comes that the
 /// `largest` push tips to either side; and the names of the wells in a row below, without those that do not
-/// fit.
+/// fit. Between stops inside the wells the bracket ends at the energy that the mass has at a stop.
 fn landmarks(
     painter: &egui::Painter,
     context: &ViewContext<'_>,
     (pane, rect): (&Pane, Rect),
     level: &Potential<'_>,
+    taken: &mut Taken,
 ) {
     let (style, model) = (context.style, context.drawn.model(context.session));
     let Some(barrier) = model.mechanism().landscape.barrier else { return };
@@ -170,21 +190,29 @@ fn landmarks(
     let screen = |x: f64| context.span.screen_from_world(x, rect);
     let (left, right) = model.stop_positions();
     let wall = |(stop, side): (f64, f32)| {
-        let face = screen(stop) + side * BALL;
-        Rect::from_two_pos(pos2(face, rect.top()), pos2(face + side * WALL, rect.bottom()))
+        let limit = screen(stop);
+        Rect::from_two_pos(pos2(limit, rect.top()), pos2(limit + side * (BALL + WALL), rect.bottom()))
     };
     let stops = [left.map(|x| (x, -1.0)), right.map(|x| (x, 1.0))].into_iter().flatten();
-    let mut taken = Taken { lines: Vec::new(), places: stops.map(wall).collect() };
-    let joule = model.mechanism().curve.potential(barrier.x) - bottom(model);
+    taken.places.extend(stops.map(wall));
+    let potential = |x: f64| model.mechanism().curve.potential(x);
+    let joule = potential(barrier.x) - bottom(model);
     let place = |x: f64, energy: f64| pane.place(0, (x * 1e3, energy)).unwrap_or(rect.min);
-    let [top, foot] = [joule, 0.0].map(|joule| place(barrier.x, joule * level.per_joule));
+    let feet = feet(model, &barrier);
+    let heights = feet.map_or([joule; 2], |feet| feet.map(|foot| potential(barrier.x) - potential(foot)));
+    let below_top = |height: f64| place(barrier.x, (joule - height) * level.per_joule);
+    let (top, ends) = (below_top(0.0), heights.map(below_top));
+    let foot = if ends[0].y > ends[1].y { ends[0] } else { ends[1] };
     if foot.y - top.y > 4.0 * BRACKET && foot.y < rect.bottom() {
         let stroke = Stroke::new(style.width(1.3), style.faint());
-        let ends = [top, foot].map(|at| vec![at - vec2(BRACKET, 0.0), at + vec2(BRACKET, 0.0)]);
-        taken.lines.extend(ends.into_iter().chain([vec![top, foot]]));
-        painter.extend(taken.lines.iter().map(|line| Shape::line(line.clone(), stroke)));
+        let [left, right] = [-BRACKET, BRACKET].map(|aside| vec2(aside, 0.0));
+        let lines =
+            [[top + left, top + right], [top, foot], [ends[0], ends[0] + left], [ends[1], ends[1] + right]];
+        taken.lines.extend(lines.map(|line| line.to_vec()));
+        painter.extend(lines.map(|line| Shape::line_segment(line, stroke)));
     }
-    taken.lines.push(vec![pos2(rect.left(), foot.y), pos2(rect.right(), foot.y)]);
+    let zero = place(barrier.x, 0.0).y;
+    taken.lines.push(vec![pos2(rect.left(), zero), pos2(rect.right(), zero)]);
     let largest = model.mass() * model.largest_base_acceleration();
     let swept = |x: f32| {
         let x = context.span.world_from_screen(x, rect);
@@ -193,8 +221,22 @@ fn landmarks(
     };
     let count = (rect.width() / STEP) as usize;
     taken.lines.extend((0..=count).map(|i| swept(rect.left() + STEP * i as f32)));
-    let line = format!("barrier {}", energy(joule));
-    let lines = line.replacen(' ', "\n", 1);
+    let (line, lines) = match feet {
+        None => {
+            let line = format!("barrier {}", energy(joule));
+            let lines = line.replacen(' ', "\n", 1);
+            (line, lines)
+        }
+        Some(_) if (heights[0] - heights[1]).abs() < 5e-3 * joule => {
+            let (climb, whole) = (energy(heights[0]), energy(joule));
+            let line = format!("barrier {whole}, {climb} from a stop");
+            (line, format!("barrier\n{whole},\n{climb}\nfrom a stop"))
+        }
+        Some(_) => {
+            let [left, right] = heights.map(energy);
+            (format!("{left} from the left, {right} from the right"), format!("left {left},\nright {right}"))
+        }
+    };
     let (x, row) = (foot.x, rect.bottom() - 3.0);
     let places = [
         (line.as_str(), foot + vec2(0.0, 4.0), Align2::CENTER_TOP),
