@@ -1,12 +1,13 @@
 //! Elementary functions with the same bits on every target: sines, exponentials, logarithms, powers and their
 //! inverses.
 //!
-//! The methods of `f64` call the mathematics library of the system, or the compiler computes them with the one
-//! that it has; such libraries differ in the last digit. These functions are those of the crate `libm`, which is
-//! compiled from Rust for every target and has nothing but sums, products, quotients and square roots, all of
-//! which IEEE 754 rounds in one way. Its feature `arch` takes `sqrt`, `fma` and roundings to whole numbers
-//! from the processor; they are exactly rounded there too, and no other function differs between targets. The
-//! `clippy.toml` of the kernel and that of the studies forbid the methods of `f64` in their place.
+//! The methods of `f64` call the mathematics library of the system, or the compiler computes them with the
+//! one that it has; such libraries differ in the last digit. These functions are those of the crate `libm`,
+//! which is compiled from Rust for every target and has nothing but sums, products, quotients and square
+//! roots, all of which IEEE 754 rounds in one way. Its feature `arch` takes `sqrt`, `fma` and roundings to
+//! whole numbers from the processor; they are exactly rounded there too, and no other function differs
+//! between targets. The `clippy.toml` of the kernel and that of the studies forbid the methods of `f64` in
+//! their place.
 //!
 //! Errors in units of the last digit (ulp), as the sources state them:
 //!

@@ -7,7 +7,7 @@ use crate::dynamics::drive::form::with_drive;
 use crate::dynamics::model::Model;
 use crate::dynamics::result::{EventKind, MapState};
 use crate::mechanics::{ForceCurve, Mechanism, Piece};
-use crate::numeric::{DoubleDouble, Number, Scalar, elementary};
+use crate::numeric::{DoubleDouble, Number, Scalar};
 use crate::scene::{Document, Files};
 
 /// The model of a unit mass with these fields.
@@ -200,7 +200,7 @@ fn a_circuit_remembers_over_a_rest() {
             }
             assert_eq!(passage.determinant, Some(0.0));
             remembered += u32::from(!jacobian.is_zero());
-            let size = jacobian.trace().abs().max(elementary::cbrt(jacobian.products()));
+            let size = jacobian.trace().abs().max(jacobian.products().cbrt());
             assert!(jacobian.multipliers(0.0)[1].magnitude() <= 1e-7 * size.max(1e-3), "{jacobian:?}");
         }
         assert!(remembered > 0);
