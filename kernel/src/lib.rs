@@ -4,6 +4,9 @@
 //! It is a separate crate so that a change in the studies or the window does not recompile the integrator.
 //! Programs use the crate `interwell`, which re-exports these modules and describes each layer.
 
+// Tests compare with the functions of std.
+#![cfg_attr(test, allow(clippy::disallowed_methods))]
+
 pub mod dynamics;
 pub mod mechanics;
 pub mod numeric;

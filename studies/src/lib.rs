@@ -4,6 +4,9 @@
 //! It is a separate crate so that a change in the window does not recompile the studies. Programs use the
 //! crate `interwell`, which re-exports these modules.
 
+// Tests compare with the functions of std.
+#![cfg_attr(test, allow(clippy::disallowed_methods))]
+
 pub(crate) use interwell_kernel::{dynamics, mechanics, numeric, scene, system};
 
 pub mod output;

@@ -18,7 +18,7 @@
 
 use std::f64::consts::PI;
 
-use crate::numeric::{bisect, even_half};
+use crate::numeric::{bisect, elementary, even_half};
 use crate::scene::Stops;
 
 /// Default of Poisson's ratio: that of aluminium, as for flexures.
@@ -102,15 +102,15 @@ impl Hertz {
             return None;
         }
         // The restitution lies between 1 - (2/3) a v and 1/(a v).
-        let (low, high) = ((0.5 * (1.0 - restitution)).ln(), -restitution.ln());
+        let (low, high) = (elementary::ln(0.5 * (1.0 - restitution)), -elementary::ln(restitution));
         let at = |impact: f64| Self { stiffness: 1.0, loss: impact, material: None }.restitution(1.0);
-        let (low, high) = bisect(low, high, 80, |logarithm| at(logarithm.exp()) > restitution);
-        Some((0.5 * (low + high)).exp())
+        let (low, high) = bisect(low, high, 80, |logarithm| at(elementary::exp(logarithm)) > restitution);
+        Some(elementary::exp(0.5 * (low + high)))
     }
 
     /// Largest depth in m of the impact of `mass` in kg at `speed` in m/s; without other forces.
     pub fn depth(&self, mass: f64, speed: f64) -> f64 {
-        (2.5 * mass * self.energy_speed(speed).powi(2) / (2.0 * self.stiffness)).powf(0.4)
+        elementary::powf(2.5 * mass * self.energy_speed(speed).powi(2) / (2.0 * self.stiffness), 0.4)
     }
 
     /// Duration in s of the impact of `mass` in kg at `speed` in m/s, above 0; without other forces.
@@ -125,8 +125,9 @@ impl Hertz {
             for node in [0.5 - 0.5 * node, 0.5 + 0.5 * node] {
                 // angle^(-1/5) is integrated as a polynomial in the fifth root of the angle
                 let angle = 0.5 * PI * node.powi(5);
-                let measure = 0.5 * PI * 5.0 * node.powi(4) * 0.5 * weight * angle.sin().powf(-0.2);
-                let q = q_max * angle.cos();
+                let (sine, cosine) = elementary::sin_cos(angle);
+                let measure = 0.5 * PI * 5.0 * node.powi(4) * 0.5 * weight * elementary::powf(sine, -0.2);
+                let q = q_max * cosine;
                 integral += measure * (1.0 / z_over_q(q) + 1.0 / z_over_q(-q));
             }
         }
@@ -136,10 +137,11 @@ impl Hertz {
     /// Largest force in N of the impact of `mass` in kg at `speed` in m/s; without other forces.
     pub fn peak_force(&self, mass: f64, speed: f64) -> f64 {
         let q_max = self.loss * self.energy_speed(speed);
-        let deepest = self.stiffness * self.depth(mass, speed).powf(1.5);
+        let deepest = self.stiffness * elementary::powf(self.depth(mass, speed), 1.5);
         let force = |angle: f64| {
-            let q = q_max * angle.cos();
-            deepest * angle.sin().powf(1.2) * (1.0 + q * z_over_q(q))
+            let (sine, cosine) = elementary::sin_cos(angle);
+            let q = q_max * cosine;
+            deepest * elementary::powf(sine, 1.2) * (1.0 + q * z_over_q(q))
         };
         // Golden section: the force has one maximum while the depth increases.
         let ratio = 0.5 * (5.0_f64.sqrt() - 1.0);
@@ -162,7 +164,7 @@ impl Hertz {
 
     /// Depth in m of the contact under a static `force` in N, 0 or above.
     pub fn static_depth(&self, force: f64) -> f64 {
-        (force / self.stiffness).powf(2.0 / 3.0)
+        elementary::powf(force / self.stiffness, 2.0 / 3.0)
     }
 
     /// Elastic energy in J stored in the contact at `depth` in m.
@@ -185,7 +187,8 @@ impl ContactMaterial {
 
     /// Pressure in Pa at the centre under `force` in N: (6 F E*^2/(pi^3 R^2))^(1/3) (Johnson 1985, eq. 4.24).
     pub fn pressure(&self, force: f64) -> f64 {
-        (6.0 * force / (PI * self.radius * self.radius)).cbrt() * (self.modulus / PI).powf(2.0 / 3.0)
+        elementary::cbrt(6.0 * force / (PI * self.radius * self.radius))
+            * elementary::powf(self.modulus / PI, 2.0 / 3.0)
     }
 
     /// The pressure in Pa at which the material begins to yield.
@@ -197,7 +200,7 @@ impl ContactMaterial {
 /// z - ln(1 + z) for z above -1; by its series near 0, where the difference would cancel.
 fn gamma(z: f64) -> f64 {
     if z.abs() > 0.1 {
-        return z - z.ln_1p();
+        return z - elementary::ln_1p(z);
     }
     let (mut power, mut sum) = (z, 0.0);
     for k in 2..20 {
@@ -220,9 +223,9 @@ fn z_over_q(q: f64) -> f64 {
 /// convex in y, so that Newton's method converges monotonically from the outer side.
 fn inverse(q: f64) -> f64 {
     let value = 0.5 * q * q;
-    let mut y = if q > 0.0 { q.min((1.0 + 2.0 * value).ln() + 1.0) } else { -(value - q) };
+    let mut y = if q > 0.0 { q.min(elementary::ln(1.0 + 2.0 * value) + 1.0) } else { -(value - q) };
     for _ in 0..100 {
-        let slope = y.exp_m1();
+        let slope = elementary::exp_m1(y);
         let excess = exp_minus_tangent(y) - value;
         if slope == 0.0 || !(excess > 0.0) {
             break;
@@ -233,13 +236,13 @@ fn inverse(q: f64) -> f64 {
         }
         y = next;
     }
-    y.exp_m1()
+    elementary::exp_m1(y)
 }
 
 /// e^y - 1 - y.
 fn exp_minus_tangent(y: f64) -> f64 {
     if y.abs() > 0.1 {
-        return y.exp_m1() - y;
+        return elementary::exp_m1(y) - y;
     }
     let (mut term, mut sum) = (y, 0.0);
     for k in 2..14 {

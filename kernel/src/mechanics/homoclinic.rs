@@ -8,7 +8,7 @@
 
 use super::curve::ForceCurve;
 use super::landscape::Well;
-use crate::numeric::{Scalar, bisect};
+use crate::numeric::{Scalar, bisect, elementary};
 
 /// Width of a panel in s, a sixth of the distance of the nearest pole of sech.
 const PANEL: f64 = 0.25;
@@ -61,7 +61,8 @@ impl<'a> Homoclinic<'a> {
         let outer = match last.is_finite() {
             true => last,
             false => {
-                let mut steps = (0..DOUBLINGS).map(|k| well.x + outward * distance * 2.0_f64.powi(k));
+                let mut steps =
+                    (0..DOUBLINGS).map(|k| well.x + outward * distance * elementary::powi(2.0, k));
                 steps.find(|x| !is_below(*x))?
             }
         };
@@ -109,7 +110,7 @@ impl<'a> Homoclinic<'a> {
             for (node, weight) in rule.nodes().iter().zip(rule.weights()) {
                 let s = from + node * (to - from);
                 let phase = angular_frequency * (time + integral(from, s));
-                sum += weight * (to - from) * self.slope(s) * phase.sin();
+                sum += weight * (to - from) * self.slope(s) * elementary::sin(phase);
             }
             time += integral(from, to);
         });
@@ -119,13 +120,13 @@ impl<'a> Homoclinic<'a> {
 
     /// |dx/ds| in m.
     fn slope(&self, s: f64) -> f64 {
-        let sech = 1.0 / s.cosh();
-        2.0 * (self.turn - self.barrier).abs() * sech * sech * s.tanh()
+        let sech = 1.0 / elementary::cosh(s);
+        2.0 * (self.turn - self.barrier).abs() * sech * sech * elementary::tanh(s)
     }
 
     /// |v| in m/s.
     fn speed(&self, s: f64, mass: f64) -> f64 {
-        let sech = 1.0 / s.cosh();
+        let sech = 1.0 / elementary::cosh(s);
         let share = sech * sech;
         let apart = self.turn - self.barrier;
         if share < NEAR {
@@ -134,7 +135,7 @@ impl<'a> Homoclinic<'a> {
         // each potential difference is taken from the nearer end, where it is small
         let kinetic = match share > 0.5 {
             true => {
-                let x = self.turn - apart * s.tanh() * s.tanh();
+                let x = self.turn - apart * elementary::tanh(s) * elementary::tanh(s);
                 -self.curve.potential_change(self.turn, x)
             }
             false => -self.curve.potential_change(self.barrier, self.barrier + apart * share),
@@ -145,7 +146,7 @@ impl<'a> Homoclinic<'a> {
     /// Calls `each` with the ends of all panels, ascending from 0.
     fn panels(&self, mut each: impl FnMut(f64, f64)) {
         let apart = self.turn - self.barrier;
-        let place = |share: f64| (1.0 / share).sqrt().acosh();
+        let place = |share: f64| elementary::acosh((1.0 / share).sqrt());
         let inside = |share: &f64| *share > NEAR && *share < 1.0;
         let breaks = self.curve.breaks().iter().map(|x| (x - self.barrier) / apart).filter(inside);
         let mut borders: Vec<f64> = breaks.map(place).chain([0.0, place(NEAR), END]).collect();

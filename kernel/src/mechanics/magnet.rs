@@ -22,6 +22,7 @@ use std::sync::OnceLock;
 use super::curve::{FitReport, ForceCurve, Piece};
 use super::fit::{allowed_error, fit_within};
 use super::table::ForceTable;
+use crate::numeric::elementary;
 use crate::scene::Moments;
 
 /// Half the length of the curve's domain in gaps; the force beyond is at most 4e-8 of its maximum.
@@ -103,7 +104,7 @@ fn unit_curve(moments: Moments) -> Result<&'static ForceCurve, String> {
         let last = SAMPLES as f64 - 1.0;
         let place = |i: f64| {
             let s: f64 = (2.0 * i - last) / last;
-            s.signum() * (s.abs() * REACH.asinh()).sinh()
+            s.signum() * elementary::sinh(s.abs() * elementary::asinh(REACH))
         };
         let x: Vec<f64> = (0..SAMPLES).map(|i| place(i as f64)).collect();
         let force = x.iter().map(|u| unit_force(*u)).collect();

@@ -1,6 +1,7 @@
 //! Exponential envelope of a decaying oscillation, fitted to its turning points.
 
 use super::bisect::{bisect, golden_section};
+use super::elementary;
 use super::regression::{least_squares, student};
 
 /// Smallest number of turning points: four numbers are fitted to them.
@@ -64,7 +65,7 @@ impl Envelope {
         let length = points[last].t - points[0].t;
         let swing = |k: usize| (points[k + 1].value - points[k].value).abs();
         let between = points[last - 1].t - points[0].t;
-        let mut rate = (swing(0) / swing(last - 1)).ln() / between;
+        let mut rate = elementary::ln(swing(0) / swing(last - 1)) / between;
         if !rate.is_finite() || !(length > 0.0) {
             return None;
         }
@@ -88,7 +89,7 @@ impl Envelope {
         let middle = 0.5 * (points[0].t + points[points.len() - 1].t);
         let row = |point: &TurningPoint| {
             let t = point.t - middle;
-            let (decay, weight) = ((-rate * t).exp(), point.weight.sqrt());
+            let (decay, weight) = (elementary::exp(-rate * t), point.weight.sqrt());
             let side = if point.maximum { decay } else { -decay };
             ([weight, weight * decayed(rate, t), weight * side], weight * point.value)
         };
@@ -126,13 +127,16 @@ impl Envelope {
     /// The value about which the oscillation swings at time `t`, and its amplitude.
     pub fn at(&self, t: f64) -> (f64, f64) {
         let t = t - self.middle;
-        (self.level + self.drift * decayed(self.rate, t), (self.swing * (-self.rate * t).exp()).abs())
+        (
+            self.level + self.drift * decayed(self.rate, t),
+            (self.swing * elementary::exp(-self.rate * t)).abs(),
+        )
     }
 }
 
 /// (1 - e^-rt)/r.
 fn decayed(rate: f64, t: f64) -> f64 {
-    if rate == 0.0 { t } else { -(-rate * t).exp_m1() / rate }
+    if rate == 0.0 { t } else { -elementary::exp_m1(-rate * t) / rate }
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! Exponential decay and its mean. Fast approximate base-2 logarithm and power, with the same bits on every
 //! processor.
 
+use super::elementary;
 use super::scalar::Scalar;
 
 /// Above this x, e^-x is 0 in every number type.
@@ -16,8 +17,8 @@ pub(crate) fn decay<T: Scalar>(x: T) -> (T, T) {
     if size > UNDERFLOW {
         return (T::zero(), one / x);
     }
-    let doublings = if size > 0.125 { (size.log2() + 3.0).ceil() } else { 0.0 };
-    let small = x * T::of((-doublings).exp2());
+    let doublings = if size > 0.125 { (elementary::log2(size) + 3.0).ceil() } else { 0.0 };
+    let small = x * T::of(elementary::exp2(-doublings));
     let (mut mean, mut term) = (one, one);
     for k in 2..30 {
         term = -(term * small / T::whole(k));

@@ -5,6 +5,8 @@
 //! over the points and keeps the lower coefficients, so that trying all degrees costs as much as fitting the
 //! highest. A QR factorisation per degree would cost `degree` times as much.
 
+use super::elementary;
+
 /// The polynomial q of lowest degree that `accept` accepts.
 ///
 /// Returns the monomial coefficients of q in the variable of `points`, from the constant up, where q
@@ -48,7 +50,7 @@ pub fn lowest_degree(
         }
         // The squared norm of monic orthogonal polynomials on [-1, 1] falls like 4^-degree. One that is
         // smaller by another twelve digits vanishes at every point and consists of rounding errors.
-        if norm <= first_norm * 1e-12 * 0.25_f64.powi(term as i32) || !norm.is_finite() {
+        if norm <= first_norm * 1e-12 * elementary::powi(0.25, term as i32) || !norm.is_finite() {
             return None;
         }
         let share = now.iter().zip(&rest).map(|(p, r)| p * r).sum::<f64>() / norm;

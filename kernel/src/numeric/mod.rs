@@ -5,7 +5,8 @@
 //! Riesenfeld 1981) and [`real_roots`] (all roots, for setup), [`DoubleDouble`] (about 31 digits; Dekker
 //! 1971), [`Dual`] (derivatives; Clifford 1873), [`Lanes`] (several numbers by the same instructions),
 //! [`GaussLegendre`], [`CompensatedSum`] (Neumaier 1974), [`Decimal`] (numbers as a person writes them), and
-//! for measured data [`Periodogram`], [`Envelope`], [`orthogonal`] and [`regression`].
+//! for measured data [`Periodogram`], [`Envelope`], [`orthogonal`] and [`regression`]. Sines, exponentials,
+//! powers and logarithms are those of [`elementary`] everywhere in the kernel and the studies.
 //!
 //! Numbers have no unit here, or the unit of the caller. Functions state their preconditions instead of
 //! returning errors; where there may be no answer they return an `Option`.
@@ -27,6 +28,7 @@ mod correlation;
 mod decimal;
 mod double_double;
 mod dual;
+pub mod elementary;
 mod envelope;
 mod exponential;
 pub mod fit;

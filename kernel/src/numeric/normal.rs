@@ -4,6 +4,8 @@ use std::f64::consts::{SQRT_2, TAU};
 
 use statrs::function::erf::erfc_inv;
 
+use super::elementary;
+
 /// Where the probability differs from 0 or 1 by less than a rounding of 1.
 const FAR: f64 = 8.5;
 
@@ -21,7 +23,7 @@ pub fn normal_probability(x: f64) -> f64 {
         term *= x * x / odd;
         sum += term;
     }
-    0.5 + sum * (-0.5 * x * x).exp() / TAU.sqrt()
+    0.5 + sum * elementary::exp(-0.5 * x * x) / TAU.sqrt()
 }
 
 /// The number that a standard normal number is at most with this probability: the inverse of

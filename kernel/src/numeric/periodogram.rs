@@ -5,6 +5,7 @@ use std::f64::consts::PI;
 use realfft::RealFftPlanner;
 use realfft::num_complex::Complex;
 
+use super::elementary;
 use super::sum::CompensatedSum;
 
 /// How values are weighted before they are transformed.
@@ -46,7 +47,7 @@ pub fn periodogram(mut values: Vec<f64>, step: f64, taper: Taper) -> Periodogram
     }
     let weight = |k: usize| match taper {
         // of one or two values the von Hann window would keep none or only one
-        Taper::Hann if n > 2 => (PI * k as f64 / n as f64).sin().powi(2),
+        Taper::Hann if n > 2 => elementary::sin(PI * k as f64 / n as f64).powi(2),
         _ => 1.0,
     };
     let total = |term: &dyn Fn(usize) -> f64| {
@@ -66,7 +67,7 @@ pub fn periodogram(mut values: Vec<f64>, step: f64, taper: Taper) -> Periodogram
     let (mut amplitude, mut density) = (Vec::with_capacity(lines.len()), Vec::with_capacity(lines.len()));
     for (k, line) in lines.iter().enumerate() {
         let sides = if k == 0 || 2 * k == n { 1.0 } else { 2.0 };
-        amplitude.push(sides * line.norm() / weights);
+        amplitude.push(sides * elementary::hypot(line.re, line.im) / weights);
         density.push(sides * step * line.norm_sqr() / squared_weights);
     }
     amplitude[0] = mean.abs();

@@ -2,6 +2,7 @@
 
 use std::sync::OnceLock;
 
+use super::elementary;
 use super::scalar::Number;
 
 /// Largest number of points of a rule.
@@ -75,7 +76,7 @@ fn roots<T: Number>(points: usize, first: usize, count: usize) -> ([T; MAX_POINT
     let mut x = [one; MAX_POINTS];
     for (i, x) in x[..count].iter_mut().enumerate() {
         let place = (first + i) as f64 + 0.75;
-        *x = T::of((std::f64::consts::PI * place / (points as f64 + 0.5)).cos());
+        *x = T::of(elementary::cos(std::f64::consts::PI * place / (points as f64 + 0.5)));
     }
     // All roots are refined together: with one root alone each division would wait for the previous one.
     let mut slope = [one; MAX_POINTS];

@@ -6,6 +6,8 @@
 //! miss a root or report one twice, and a double root is simply a root of the derivative at which the
 //! polynomial vanishes to rounding.
 
+use super::elementary;
+
 /// Value of the polynomial with `coefficients` from the constant up (Horner), and the sum of the magnitudes
 /// of its terms, to which its rounding error is proportional.
 pub fn value_and_magnitude(coefficients: &[f64], x: f64) -> (f64, f64) {
@@ -75,14 +77,14 @@ pub fn real_roots(coefficients: &[f64], left: f64, right: f64) -> Vec<f64> {
 /// avoid overflow; the factor includes a margin for their rounding.
 fn root_bound(core: &[f64]) -> f64 {
     let degree = core.len() - 1;
-    let lead = core[degree].abs().log2();
+    let lead = elementary::log2(core[degree].abs());
     let largest = core[..degree]
         .iter()
         .enumerate()
         .filter(|(_, c)| **c != 0.0)
-        .map(|(i, c)| (c.abs().log2() - lead) / (degree - i) as f64)
+        .map(|(i, c)| (elementary::log2(c.abs()) - lead) / (degree - i) as f64)
         .fold(f64::NEG_INFINITY, f64::max);
-    (largest + 1.001).exp2().min(f64::MAX)
+    elementary::exp2(largest + 1.001).min(f64::MAX)
 }
 
 /// Roots in a finite interval, after scaling variable and values by powers of two (exact).
@@ -91,13 +93,13 @@ fn scaled_roots(core: &[f64], low: f64, high: f64) -> Vec<f64> {
     if reach == 0.0 {
         return if core[0] == 0.0 { vec![0.0] } else { Vec::new() };
     }
-    let power = reach.log2().ceil().clamp(-1000.0, 1000.0) as i32;
-    let unit = 2.0_f64.powi(power);
+    let power = elementary::log2(reach).ceil().clamp(-1000.0, 1000.0) as i32;
+    let unit = elementary::powi(2.0, power);
     let top = core
         .iter()
         .enumerate()
         .filter(|(_, c)| **c != 0.0)
-        .map(|(i, c)| c.abs().log2().floor() as i32 + i as i32 * power)
+        .map(|(i, c)| elementary::log2(c.abs()).floor() as i32 + i as i32 * power)
         .max()
         .unwrap_or(0);
     let scaled: Vec<f64> =
@@ -109,7 +111,7 @@ fn scaled_roots(core: &[f64], low: f64, high: f64) -> Vec<f64> {
 fn times_power_of_two(mut c: f64, mut power: i32) -> f64 {
     while power != 0 && c != 0.0 && c.is_finite() {
         let part = power.clamp(-900, 900);
-        c *= 2.0_f64.powi(part);
+        c *= elementary::powi(2.0, part);
         power -= part;
     }
     c

@@ -3,6 +3,8 @@
 use nalgebra::{SMatrix, SVector};
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
+use super::elementary;
+
 /// Coefficients of a least-squares fit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Fit<const N: usize> {
@@ -58,7 +60,7 @@ pub fn least_squares<const N: usize>(rows: &[([f64; N], f64)]) -> Option<Fit<N>>
 
 /// The powers 1, u, u^2, .. as a row for the fit of a polynomial.
 pub fn powers<const N: usize>(u: f64) -> [f64; N] {
-    std::array::from_fn(|k| u.powi(k as i32))
+    std::array::from_fn(|k| elementary::powi(u, k as i32))
 }
 
 /// The half-width of a 95 % confidence interval in standard errors, if the error was estimated with `freedom`
@@ -84,11 +86,14 @@ pub fn geometric(values: &[f64]) -> Option<Fit<3>> {
     }
     let first = product / square;
     // c and a follow from q by linear least squares
-    let line: Vec<([f64; 2], f64)> =
-        values.iter().enumerate().map(|(k, value)| ([1.0, first.powi(k as i32)], *value)).collect();
+    let line: Vec<([f64; 2], f64)> = values
+        .iter()
+        .enumerate()
+        .map(|(k, value)| ([1.0, elementary::powi(first, k as i32)], *value))
+        .collect();
     let start = least_squares(&line)?.coefficients;
     let mut now = SVector::<f64, 3>::new(start[0], start[1], first);
-    let law = |c: &SVector<f64, 3>, k: usize| c[0] + c[1] * c[2].powi(k as i32);
+    let law = |c: &SVector<f64, 3>, k: usize| c[0] + c[1] * elementary::powi(c[2], k as i32);
     let misfit = |c: &SVector<f64, 3>| -> f64 {
         values.iter().enumerate().map(|(k, value)| (value - law(c, k)).powi(2)).sum()
     };
@@ -98,8 +103,9 @@ pub fn geometric(values: &[f64]) -> Option<Fit<3>> {
             .iter()
             .enumerate()
             .map(|(k, value)| {
-                let slope = if k == 0 { 0.0 } else { now[1] * k as f64 * now[2].powi(k as i32 - 1) };
-                ([1.0, now[2].powi(k as i32), slope], value - law(&now, k))
+                let slope =
+                    if k == 0 { 0.0 } else { now[1] * k as f64 * elementary::powi(now[2], k as i32 - 1) };
+                ([1.0, elementary::powi(now[2], k as i32), slope], value - law(&now, k))
             })
             .collect();
         let step = least_squares(&rows)?;

@@ -1,5 +1,7 @@
 //! Round numbers: a leading digit times a power of ten.
 
+use super::elementary;
+
 /// Leading digits of the steps of an axis.
 pub const ONE_TWO_FIVE: [f64; 3] = [1.0, 2.0, 5.0];
 
@@ -8,7 +10,7 @@ const ROUNDING: f64 = 1e-9;
 
 /// Exponent of the largest power of ten that is not above `value`, which is above 0.
 pub fn decade(value: f64) -> i32 {
-    value.log10().floor() as i32
+    elementary::log10(value).floor() as i32
 }
 
 /// The smallest product of one of `digits` and a power of ten that is not below `value`. `digits` ascend from

@@ -18,6 +18,7 @@ use super::error::clip;
 use super::scanner::skip_blank;
 use super::text::TOO_LARGE;
 use super::unit::STANDARD_GRAVITY;
+use crate::numeric::elementary;
 
 /// Largest length of an expression in bytes.
 const MAX_LENGTH: usize = 1000;
@@ -225,7 +226,7 @@ impl Parser<'_> {
             return Ok(value);
         }
         let at = self.advance();
-        finite(at, value.powf(self.signed()?))
+        finite(at, elementary::powf(value, self.signed()?))
     }
 
     fn operand(&mut self) -> Result<f64, Problem> {

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use super::data::Excitation;
 use super::unit::STANDARD_GRAVITY;
-use crate::numeric::{TrigonometricPolynomial, number_text};
+use crate::numeric::{TrigonometricPolynomial, elementary, number_text};
 
 /// Smallest and largest tolerance of [`Excitation::from_fn`].
 const TOLERANCES: (f64, f64) = (1e-12, 0.1);
@@ -190,7 +190,9 @@ impl Harmonics {
     /// amplitudes add up to at most `left_out`.
     fn of(values: &[f64], left_out: f64) -> Self {
         let polynomial = TrigonometricPolynomial::through(values);
-        let term = |(k, (cosine, sine)): (usize, &(f64, f64))| (k, cosine.hypot(*sine), cosine.atan2(*sine));
+        let term = |(k, (cosine, sine)): (usize, &(f64, f64))| {
+            (k, elementary::hypot(*cosine, *sine), elementary::atan2(*cosine, *sine))
+        };
         let mut terms: Vec<_> = (1..).zip(&polynomial.harmonics).map(term).collect();
         terms.sort_by(|a, b| a.1.total_cmp(&b.1));
         let is_left_out = polynomial.mean.abs() <= left_out;
@@ -206,7 +208,8 @@ impl Harmonics {
     fn value(&self, t: f64) -> f64 {
         // whole turns are taken off before the sine
         let turns = |k: usize| (k as f64 * t).fract();
-        let value = |(k, amplitude, phase): &(usize, f64, f64)| amplitude * (TAU * turns(*k) + phase).sin();
+        let value =
+            |(k, amplitude, phase): &(usize, f64, f64)| amplitude * elementary::sin(TAU * turns(*k) + phase);
         self.mean + self.terms.iter().map(value).sum::<f64>()
     }
 

@@ -13,6 +13,7 @@ use super::files::Files;
 use super::measured::{ColumnRequest, Measured, MeasuredError, too_few};
 use super::timing::Timing;
 use super::unit::Quantity;
+use crate::numeric::elementary;
 use crate::numeric::pieces::{Piece, pieces};
 
 const TIME: &str = "t_s";
@@ -72,13 +73,13 @@ impl Record {
     /// Polynomials that replace the lines between samples. Their integrals, in m/s and m, differ from those
     /// of the lines by at most `limits` (rounded down to powers of two). They are computed once and shared.
     pub(crate) fn pieces(&self, limits: (f64, f64)) -> Arc<Vec<Piece>> {
-        let exponent = |limit: f64| limit.log2().floor().max(-1000.0) as i32;
+        let exponent = |limit: f64| elementary::log2(limit).floor().max(-1000.0) as i32;
         let key = (exponent(limits.0), exponent(limits.1));
         let mut cached = self.derived.pieces.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some((_, found)) = cached.iter().find(|entry| entry.0 == key) {
             return Arc::clone(found);
         }
-        let limits = (f64::from(key.0).exp2(), f64::from(key.1).exp2());
+        let limits = (elementary::exp2(f64::from(key.0)), elementary::exp2(f64::from(key.1)));
         let new = Arc::new(pieces(&self.times, &self.accelerations, limits));
         if cached.len() < MAX_CACHED {
             cached.push((key, Arc::clone(&new)));

@@ -10,7 +10,7 @@ use crate::app::session::editor::keep_start_inside;
 use crate::app::session::explore::{STARTS, WalkQuantity, longest_wait};
 use crate::app::session::map::{ground, over};
 use crate::app::session::measured::Overlay;
-use crate::numeric::short;
+use crate::numeric::{elementary, short};
 use crate::output::{
     Argument, Cut, Figure, Format, RMS, RunPanel, Sheet, Sink, View, csv, picture_arguments, words_of,
 };
@@ -302,7 +302,7 @@ impl FigureOrder {
 
 /// A suggested range of times, rounded to a thousandth of its length or finer; `None` if it is empty.
 pub fn round_times((from, to): (f64, f64)) -> Option<(f64, f64)> {
-    let digit = 10_f64.powf((to - from).log10().floor() - 3.0);
+    let digit = elementary::powf(10.0, elementary::log10(to - from).floor() - 3.0);
     let round = |t: f64| short((t / digit).round() * digit).parse::<f64>().unwrap_or(t);
     (from < to && digit.is_finite() && digit > 0.0).then(|| (round(from.max(0.0)), round(to)))
 }

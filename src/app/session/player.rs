@@ -6,6 +6,7 @@
 use std::time::Duration;
 
 use crate::dynamics::{Event, EventKind, Model, Outcome, Sample};
+use crate::numeric::elementary;
 use crate::scene::{Excitation, Scene};
 use crate::study::Watch;
 use crate::system::clock::WallClock;
@@ -26,7 +27,7 @@ const PERIOD_ON_SCREEN: f64 = 3.0;
 
 /// The speed, at most real time, that suits a motion with this characteristic time in s.
 pub fn fitting_speed(characteristic_time: f64) -> f64 {
-    let off = |speed: f64| (characteristic_time / speed / PERIOD_ON_SCREEN).ln().abs();
+    let off = |speed: f64| elementary::ln(characteristic_time / speed / PERIOD_ON_SCREEN).abs();
     let speeds = SPEEDS.iter().map(|(speed, _)| *speed).filter(|speed| *speed <= 1.0);
     speeds.min_by(|a, b| off(*a).total_cmp(&off(*b))).unwrap_or(1.0)
 }

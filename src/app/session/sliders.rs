@@ -3,6 +3,8 @@
 use crate::app::words::fields::Reach;
 use crate::app::words::numbers::{below, decimal, round_up};
 use crate::dynamics::STANDARD_GRAVITY;
+use crate::numeric::elementary;
+use crate::numeric::round::decade;
 use crate::scene::{Control, FieldPath, Mechanism, Scale, Stops};
 
 use super::Session;
@@ -58,8 +60,8 @@ fn travel(session: &Session) -> Reach {
 
 /// Five powers of ten around a value; `None` around 0 and infinity.
 fn decades(value: Option<f64>) -> Option<Reach> {
-    let size = value.filter(|value| *value > 0.0 && value.is_finite())?.log10().floor() as i32;
-    let power = |exponent: i32| decimal(10.0_f64.powi(exponent));
+    let size = decade(value.filter(|value| *value > 0.0 && value.is_finite())?);
+    let power = |exponent: i32| decimal(elementary::powi(10.0, exponent));
     (-100..100)
         .contains(&size)
         .then(|| Reach { ratios: true, ..Reach::even(power(size - 2), power(size + 3), power(size - 2)) })

@@ -4,6 +4,7 @@ use eframe::egui::{self, Align2, RichText, Sense, Ui, UiBuilder, vec2};
 
 use crate::app::session::pins::{Pin, PinKind};
 use crate::app::words::numbers::three;
+use crate::numeric::elementary;
 use crate::output::{Chart, Marks, Panel, PlotAxis, Role};
 use crate::study::{Table, distances};
 
@@ -44,13 +45,13 @@ pub fn distance_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
             (pin.place(), distances(session.player.watch(), pin.watch(), span, MAX_POINTS))
         })
         .collect();
-    let seen = || lines.iter().flat_map(|line| &line.1).map(|point| (point.1 * 1e3).log10());
+    let seen = || lines.iter().flat_map(|line| &line.1).map(|point| elementary::log10(point.1 * 1e3));
     let finite = || seen().filter(|log| log.is_finite());
     // if all motions are equal to the last digit, the axis starts at its lowest end
     let bottom = if finite().next().is_some() { 0.0 } else { MIN_LOG };
     let low = finite().fold(bottom, f64::min).floor().max(MIN_LOG);
     let high = finite().fold(low + 1.0, f64::max).ceil().max(1.0);
-    let height = |metres: f64| (metres * 1e3).log10().max(low);
+    let height = |metres: f64| elementary::log10(metres * 1e3).max(low);
     let model = session.shown();
     let shortest = PERIODS * model.forcing_period().unwrap_or(model.characteristic_time());
     let to = from + ((now - from) / PRESENT).max(shortest);
@@ -63,7 +64,7 @@ pub fn distance_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     };
     let at_each = |t: f64| of_all(&|pin| millimetres(distance(pin, t)));
     let between = |a: f64, b: f64| {
-        let rate = |pin: &Pin| (distance(pin, b) / distance(pin, a)).ln() / (b - a);
+        let rate = |pin: &Pin| elementary::ln(distance(pin, b) / distance(pin, a)) / (b - a);
         let text = |rate: f64| if rate.is_finite() { format!("{} /s", three(rate)) } else { "-".to_owned() };
         format!("exponential rate {}", of_all(&|pin| text(rate(pin))))
     };

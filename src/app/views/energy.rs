@@ -7,7 +7,7 @@ use eframe::egui::{self, Align, Align2, Color32, Layout, Rect, RichText, Sense, 
 
 use crate::app::ui::style::Style;
 use crate::dynamics::LiveLedger;
-use crate::numeric;
+use crate::numeric::{self, elementary};
 
 use super::ghosts::dashed;
 use super::ranges::{axis_end, bottom};
@@ -97,7 +97,7 @@ fn share_of_work(joule: f64, ledger: &LiveLedger, is_nothing: bool) -> Option<St
 
 /// Whether a value of the ledger rounds to nothing.
 fn is_nothing(joule: f64, unit: f64, decimals: usize) -> bool {
-    (joule / unit).abs() < 0.5 * 0.1_f64.powi(decimals as i32)
+    (joule / unit).abs() < 0.5 * elementary::powi(0.1, decimals as i32)
 }
 
 /// The share of the longest bar that a value is drawn as: 0 for what rounds to nothing.
@@ -354,7 +354,7 @@ fn present_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect, (unit, nam
 
 /// A number with three digits.
 fn short(value: f64) -> String {
-    let decimals = (2.0 - value.abs().max(1e-6).log10().floor()).clamp(0.0, 3.0) as usize;
+    let decimals = (2.0 - elementary::log10(value.abs().max(1e-6)).floor()).clamp(0.0, 3.0) as usize;
     let text = format!("{value:.decimals$}");
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }

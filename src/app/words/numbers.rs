@@ -1,6 +1,6 @@
 //! Formats of numbers in fields, on axes and in sentences, and round numbers for ranges and steps.
 
-use crate::numeric::{self, round};
+use crate::numeric::{self, elementary, round};
 use crate::output::suited_unit;
 
 /// The least round number, of one or two significant digits, that is not below `value`.
@@ -122,7 +122,7 @@ pub fn grams(g: f64) -> String {
 
 /// A threshold in g, rounded up to three significant digits, so that the amplitude in the text is enough.
 pub fn grams_up(g: f64) -> String {
-    let unit = 10_f64.powf(g.log10().floor() - 2.0);
+    let unit = elementary::powf(10.0, elementary::log10(g).floor() - 2.0);
     grams(((g / unit - 1e-6).ceil() * unit).max(g))
 }
 

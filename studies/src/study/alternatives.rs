@@ -10,6 +10,7 @@ use super::settled::{followed, settled_within, shared_runs};
 use super::{Cancelled, Family, Found, Onset, SummaryField, Table, Task};
 use crate::dynamics::{Model, Run, Summary};
 use crate::mechanics::Mechanism;
+use crate::numeric::elementary;
 use crate::numeric::round::decade;
 use crate::scene::{Excitation, FieldPath, Files, STANDARD_GRAVITY, Scene, Start, numeric_fields};
 use crate::system::threads::Pool;
@@ -193,7 +194,7 @@ impl Rating<'_> {
             shared_runs(Some(self.pool), self.task, values.len(), model, crosses).ok_or(Cancelled)
         };
         let values: Vec<f64> = (-STEPS..=STEPS)
-            .map(|i| decimal(frequency_hz * SEARCHED_SPAN.powf(f64::from(i) / f64::from(STEPS))))
+            .map(|i| decimal(frequency_hz * elementary::powf(SEARCHED_SPAN, f64::from(i) / f64::from(STEPS))))
             .collect();
         let does = ask(&values)?;
         let mut bands: Vec<(usize, usize)> = Vec::new();
@@ -229,7 +230,7 @@ impl Rating<'_> {
 
 /// A number to five digits, above 0.
 fn decimal(value: f64) -> f64 {
-    multiple(value, 10_f64.powi(decade(value) - 4))
+    multiple(value, elementary::powi(10.0, decade(value) - 4))
 }
 
 /// A row for each scene: thresholds, numbers of the settled motion, band of frequencies, sensitivity.

@@ -8,13 +8,14 @@ use super::thresholds::{Answers, Search};
 use super::{Cancelled, Family, Found, Onset, Task, Verdict};
 use crate::dynamics::{Model, Request, STANDARD_GRAVITY};
 use crate::mechanics::{Landscape, Mechanism};
+use crate::numeric::elementary;
 use crate::numeric::round::{ONE_TWO_FIVE, decade, round_down};
 use crate::scene::{Files, Scene, Start, Stops};
 use crate::system::threads::Pool;
 
 /// The place value of the third significant digit.
 fn third_digit(value: f64) -> f64 {
-    10_f64.powi(decade(value) - 2)
+    elementary::powi(10.0, decade(value) - 2)
 }
 
 /// Threshold amplitudes in g of motions from rest at the frequency of the scene.

@@ -8,7 +8,7 @@ use super::identify::median;
 use crate::dynamics::{EventKind, Model, Outcome, Request, Summary};
 use crate::mechanics::Hertz;
 use crate::numeric::round::{ONE_TWO_FIVE, round_up};
-use crate::numeric::{bisect, short};
+use crate::numeric::{bisect, elementary, short};
 use crate::scene::{Scene, Stops};
 use crate::system::threads;
 
@@ -46,7 +46,7 @@ pub fn contact(model: &Model, rigid: f64) -> Option<Table> {
 pub fn yield_speed(stop: &Hertz, mass: f64) -> Option<f64> {
     let material = stop.material?;
     let yields = |v: f64| material.pressure(stop.peak_force(mass, v)) > material.yield_pressure();
-    Some(10_f64.powf(bisect(-30.0, 30.0, 60, |power| !yields(10_f64.powf(power))).1))
+    Some(elementary::powf(10_f64, bisect(-30.0, 30.0, 60, |power| !yields(elementary::powf(10.0, power))).1))
 }
 
 /// A warning, one sentence, if the contact of a run was pressed beyond the yield pressure of its material.

@@ -5,7 +5,7 @@ use super::{Table, Task};
 use crate::mechanics::flexure::{FlexureError, Flexures, State};
 use crate::mechanics::{Equilibrium, Mechanism};
 use crate::numeric::round::decade;
-use crate::numeric::{Decimal, short};
+use crate::numeric::{Decimal, elementary, short};
 use crate::scene::Scene;
 
 /// Default number of positions of a force curve.
@@ -64,7 +64,7 @@ pub fn default_positions(scene: &Scene, mechanism: &Mechanism, points: usize) ->
 /// `value` above 0 rounded up to two significant digits, as the double nearest to that decimal.
 fn two_digits_up(value: f64) -> f64 {
     let exponent = decade(value) - 1;
-    let digits = (value / 10_f64.powi(exponent)).ceil();
+    let digits = (value / elementary::powi(10.0, exponent)).ceil();
     format!("{digits}e{exponent}").parse().unwrap_or(value)
 }
 

@@ -3,6 +3,7 @@
 
 use std::f64::consts::PI;
 
+use interwell::numeric::elementary;
 use interwell::scene::*;
 use proptest::prelude::*;
 
@@ -38,7 +39,7 @@ impl Tree {
                     '-' => left - right,
                     '*' => left * right,
                     '/' => left / right,
-                    _ => left.powf(right),
+                    _ => elementary::powf(left, right),
                 }
             }
         };

@@ -12,8 +12,8 @@ use crate::dynamics::equation::Equation;
 use crate::dynamics::model::Model;
 use crate::dynamics::model::excitation::TonePart;
 use crate::dynamics::model::scales::Scales;
-use crate::numeric::Scalar;
 use crate::numeric::pieces::Piece;
+use crate::numeric::{Scalar, elementary};
 use crate::scene;
 
 /// Permitted change of the speed by a polynomial that replaces lines of a record, as a share of the
@@ -100,7 +100,7 @@ pub(crate) fn clock<T: Scalar>(model: &Model, unit: f64) -> Clock<T> {
         // Without a drive: a power of two of the time unit, short enough for the phase to be exact and long
         // enough for the cycles to be countable.
         let units = model.duration / unit;
-        1.0 / (unit * SHORTEST_CYCLE.max((units.log2().ceil() - 50.0).exp2()))
+        1.0 / (unit * SHORTEST_CYCLE.max(elementary::exp2(elementary::log2(units).ceil() - 50.0)))
     });
     Clock::new(frequency, unit)
 }

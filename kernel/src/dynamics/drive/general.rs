@@ -11,7 +11,7 @@ use super::tone::{Chirp, ChirpState, LastValue, Sine, Tone, next_chirp};
 use super::{Base, Circuit, ContactAcceleration, Drive, ReleaseRoot, Span};
 use crate::dynamics::clock::{Clock, Instant};
 use crate::dynamics::series::{ROOM, SEEDED, Series, Tail};
-use crate::numeric::Scalar;
+use crate::numeric::{Scalar, elementary};
 
 /// Maximum number of tones that the check of a step evaluates one by one. The series of more tones cannot
 /// cancel by chance. More steady tones than this are advanced side by side.
@@ -260,7 +260,7 @@ impl<T: Scalar> Drive<T> for General<T> {
             return (ReleaseRoot::Never, 0); // the push keeps its sign
         }
         // slightly longer, so that the push is negligible at the end
-        let lasts = T::of((push.abs() / negligible).to_f64().ln() + 1.0) / rate;
+        let lasts = T::of(elementary::ln((push.abs() / negligible).to_f64()) + 1.0) / rate;
         let fades = lasts < self.clock.between(&span.from, &span.until);
         let until = if fades { self.clock.advance(&span.from, lasts) } else { span.until };
         let mut search = self.search(without(threshold), span.segment);

@@ -4,7 +4,7 @@
 use super::{Base, ContactAcceleration, Drive, ReleaseRoot, Span};
 use crate::dynamics::clock::{Clock, Instant};
 use crate::dynamics::series::{ROOM, Tail};
-use crate::numeric::{DoubleDouble, Number, Ratio, Scalar};
+use crate::numeric::{DoubleDouble, Number, Ratio, Scalar, elementary};
 
 /// Linear growth of a tone's amplitude from the run's start to an instant; constant from there.
 #[derive(Debug, Clone)]
@@ -203,7 +203,7 @@ impl<T: Scalar> Drive<T> for Sine<T> {
         if !(height.abs() < T::of(1.0)) {
             return (ReleaseRoot::Never, 0); // never reached, or touched without a change of sign
         }
-        let mut turns = T::of(height.to_f64().asin() / std::f64::consts::TAU);
+        let mut turns = T::of(elementary::asin(height.to_f64()) / std::f64::consts::TAU);
         for _ in 0..3 {
             // Newton's method corrects the last bits, and in a longer number type all of them
             let (s, c) = T::sin_cos_turns(turns);

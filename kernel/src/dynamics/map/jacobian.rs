@@ -2,6 +2,8 @@
 
 use nalgebra::Matrix3;
 
+use crate::numeric::elementary;
+
 /// Derivatives of a state (rows) with respect to the state at an earlier time (columns), in SI. A state is
 /// displacement and velocity, and beside a circuit the current in A or the voltage in V as a third number.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -23,7 +25,7 @@ pub struct Multiplier {
 impl Multiplier {
     /// Magnitude.
     pub fn magnitude(self) -> f64 {
-        self.re.hypot(self.im)
+        elementary::hypot(self.re, self.im)
     }
 }
 
@@ -192,7 +194,8 @@ impl Jacobian {
                 let (row, column) = (size(&|i| balanced.rows[k][i]), size(&|i| balanced.rows[i][k]));
                 if row > 0.0 && column > 0.0 {
                     let mut units = [1.0; 3];
-                    units[k] = (0.5 * (row / column).log2()).round().clamp(-500.0, 500.0).exp2();
+                    units[k] =
+                        elementary::exp2((0.5 * elementary::log2(row / column)).round().clamp(-500.0, 500.0));
                     balanced = balanced.in_units(units);
                 }
             }

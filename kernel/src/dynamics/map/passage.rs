@@ -10,7 +10,7 @@ use crate::dynamics::result::{Event, EventKind, Outcome, Request, Side};
 use crate::dynamics::series::Series;
 use crate::dynamics::state::{Contact, MotionState, Opening};
 use crate::dynamics::step::stepper::{ROUNDINGS, Stepper};
-use crate::numeric::{PolynomialRoots, Scalar};
+use crate::numeric::{PolynomialRoots, Scalar, elementary};
 
 /// The motion between two strobes.
 #[derive(Debug, Clone, PartialEq)]
@@ -164,7 +164,7 @@ fn traced<T: Scalar>(
     let time = record.clock.between(&from, &at).to_f64() * equation.unit;
     let determinant = equation.compliant.is_none().then(|| match rested {
         true => 0.0,
-        false => model.contraction(time).exp() * squared_restitutions(model, &events),
+        false => elementary::exp(model.contraction(time)) * squared_restitutions(model, &events),
     });
     let state = (x.to_f64(), v.to_f64() / equation.unit);
     let electrical = model.circuit().map_or(0.0, |known| known.amount * circuit.to_f64() / equation.unit);

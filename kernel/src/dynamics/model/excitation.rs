@@ -7,7 +7,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
 use super::start::fault;
-use crate::numeric::{Ratio, greatest_common_divisor};
+use crate::numeric::{Ratio, elementary, greatest_common_divisor};
 use crate::scene::{Excitation, Fault, Harmonic, Record};
 
 pub use crate::scene::STANDARD_GRAVITY;
@@ -217,12 +217,12 @@ impl ExcitationParts {
     pub(crate) fn at(&self, t: f64) -> f64 {
         let tones = self.tones.iter().map(|tone| {
             let quarter = if tone.quarter { 0.25 } else { 0.0 };
-            tone.amplitude_at(t) * (TAU * (tone.frequency * t + tone.phase + quarter)).sin()
+            tone.amplitude_at(t) * elementary::sin(TAU * (tone.frequency * t + tone.phase + quarter))
         });
         let chirps = self.chirps.iter().map(|chirp| {
             let swept = t.min(chirp.over);
             let turns = chirp.from * swept + (chirp.to - chirp.from) * swept * swept / (2.0 * chirp.over);
-            chirp.amplitude * (TAU * (turns + chirp.to * (t - swept))).sin()
+            chirp.amplitude * elementary::sin(TAU * (turns + chirp.to * (t - swept)))
         });
         self.constant + tones.chain(chirps).sum::<f64>()
     }

@@ -12,6 +12,7 @@ pub(crate) mod transducer;
 use std::sync::Arc;
 
 use crate::mechanics::{Hertz, Mechanism};
+use crate::numeric::elementary;
 use crate::scene::{self, Damping, Fault, Scene, Start};
 use excitation::{ExcitationParts, Rhythm};
 use scales::{Scales, scales};
@@ -180,7 +181,7 @@ impl Model {
     fn choose_barrier(&mut self) {
         let Some(left) = self.mechanism.landscape.left_barrier else { return };
         let pushes = || {
-            let times = (0..=PROBES).rev().map(|halvings| self.duration * 0.5_f64.powi(halvings));
+            let times = (0..=PROBES).rev().map(|halvings| self.duration * elementary::powi(0.5, halvings));
             std::iter::once(0.0).chain(times).map(|t| -self.excitation.at(t))
         };
         let towards = [self.start.0, self.start.1].into_iter().chain(pushes()).find(|side| *side != 0.0);

@@ -22,6 +22,7 @@
 use super::excitation::ExcitationParts;
 use super::stops::StopPair;
 use crate::mechanics::{Hertz, Mechanism};
+use crate::numeric::elementary;
 use crate::scene::Scene;
 
 /// Impacts slower than this share of the speed scale are not counted and may be part of a chatter that is
@@ -117,7 +118,7 @@ impl Scales {
 
     /// The power of two of a second nearest to the time scale.
     pub(crate) fn unit(&self) -> f64 {
-        self.time.log2().round().clamp(-900.0, 900.0).exp2()
+        elementary::exp2(elementary::log2(self.time).round().clamp(-900.0, 900.0))
     }
 }
 

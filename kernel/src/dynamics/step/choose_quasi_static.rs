@@ -7,7 +7,7 @@ use crate::dynamics::drive::Drive;
 use crate::dynamics::equation::{Compliant, End, Mode};
 use crate::dynamics::series::{MAX_ORDER, SEEDED, natural_steps, polynomial};
 use crate::dynamics::state::{Contact, MotionState};
-use crate::numeric::{Scalar, fast_log2};
+use crate::numeric::{Scalar, elementary, fast_log2};
 
 /// Sweeps after which the iteration has converged at a coarse tolerance: each reduces the error to a
 /// thousandth or less if the step is long enough to be useful. Each costs two orders, those of d''.
@@ -162,7 +162,7 @@ impl<'a, T: Scalar, D: Drive<T>> Stepper<'a, T, D> {
             order,
             |k| [path.depth[k].magnitude()],
             &[fast_log2(scale.to_f64())],
-            tolerance.log2(),
+            elementary::log2(tolerance),
             &[self.settings.longest],
         );
         let mut length = T::of(natural);

@@ -24,6 +24,9 @@ const MIN_SPEED_SHARE: f64 = 1e-4;
 /// thousandths of the tolerance in each contact. The share adds one step in ten.
 const CONTACT_SHARE: f64 = 0.03;
 
+/// Its logarithm to base 2.
+const CONTACT_SHARE_LOG2: f64 = -5.058_893_689_053_568;
+
 /// Orders by which the series of a contact exceeds that of free flight, because of this tolerance.
 const CONTACT_ORDERS: usize = 2;
 
@@ -91,7 +94,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         let mut terms = if few { Terms::Few } else { Terms::More };
         let force = (&mode.force, state.mode);
         path.expand((order, terms), force, damping);
-        let settings = (fast_log2(speed.to_f64()), self.settings.tolerance_log2 + CONTACT_SHARE.log2());
+        let settings = (fast_log2(speed.to_f64()), self.settings.tolerance_log2 + CONTACT_SHARE_LOG2);
         let mut whole = T::of(path.natural_step(settings.0, settings.1, cap));
         let border = self.drive.segment_end(state.segment);
         let allowed = T::of(RESIDUAL * order as f64 * tolerance) * speed;

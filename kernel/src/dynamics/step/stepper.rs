@@ -12,7 +12,7 @@ use crate::dynamics::equation::{End, Equation, Mode};
 use crate::dynamics::model::Model;
 use crate::dynamics::series::{Endpoint, MAX_ORDER, Series};
 use crate::dynamics::state::MotionState;
-use crate::numeric::{Scalar, fast_log2};
+use crate::numeric::{Scalar, elementary, fast_log2};
 
 /// Maximum number of halvings of a step before it is given up.
 pub(super) const MAX_HALVINGS: u32 = 200;
@@ -50,14 +50,14 @@ impl<T: Scalar> Settings<T> {
     /// The order is the cheapest in measurements on the nominal cubic: about 5/4 coefficients per digit.
     pub fn new(model: &Model, unit: f64, tolerance: f64) -> Self {
         let local = tolerance * LOCAL_SHARE;
-        let order = (3.0 - 1.25 * local.log10()).round().clamp(8.0, MAX_ORDER as f64) as usize;
+        let order = (3.0 - 1.25 * elementary::log10(local)).round().clamp(8.0, MAX_ORDER as f64) as usize;
         let speed = model.scales.speed * unit;
         let (at_high_order, otherwise) = model.scales.longest_step;
         let longest = if order >= HIGH_ORDER { at_high_order } else { otherwise };
         Self {
             order,
             tolerance: local,
-            tolerance_log2: local.log2(),
+            tolerance_log2: elementary::log2(local),
             speed: T::of(speed),
             speed_log2: fast_log2(speed),
             longest: longest / unit,

@@ -6,7 +6,7 @@
 //! the linear terms, and every integral is taken over one half.
 
 use super::beam::dot;
-use crate::numeric::even_half;
+use crate::numeric::{elementary, even_half};
 
 /// The functions sampled at quadrature points; xi runs over \[-1, 1] along a flexure.
 #[derive(Debug, Clone, PartialEq)]
@@ -47,7 +47,7 @@ impl Basis {
         let mut row = vec![0.0; 2 * self.modes];
         for (xi, weight) in rule {
             slopes(xi, &mut row);
-            let slope = PI * (PI * (1.0 + xi)).cos();
+            let slope = PI * elementary::cos(PI * (1.0 + xi));
             for (s, f) in sum.iter_mut().zip(row.iter().skip(1).step_by(2)) {
                 *s += 2.0 * weight * slope * f;
             }
@@ -59,7 +59,7 @@ impl Basis {
     pub fn shortening(&self, odd: &[f64]) -> f64 {
         let rows = self.odd.chunks_exact(self.modes).zip(&self.weights);
         rows.map(|(row, weight)| {
-            let sine = (0.5 * dot(row, odd)).sin();
+            let sine = elementary::sin(0.5 * dot(row, odd));
             2.0 * weight * sine * sine
         })
         .sum()

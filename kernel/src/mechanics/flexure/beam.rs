@@ -21,6 +21,7 @@
 //! unstable solution close by.
 
 use super::basis::Basis;
+use crate::numeric::elementary;
 
 /// One flexure of a group, in the scaled units of the mechanism.
 #[derive(Debug, Clone, PartialEq)]
@@ -116,11 +117,11 @@ fn odd_functions(q: f64, psi: f64) -> (f64, f64, f64) {
         (cosine, psi * sine, psi * psi * psi * by_q)
     } else if q > 0.0 {
         let root = q.sqrt();
-        let (sine, cosine) = (root * psi).sin_cos();
+        let (sine, cosine) = elementary::sin_cos(root * psi);
         (cosine, sine / root, (psi * cosine - sine / root) / (2.0 * q))
     } else {
         let root = (-q).sqrt();
-        let (sine, cosine) = ((root * psi).sinh(), (root * psi).cosh());
+        let (sine, cosine) = (elementary::sinh(root * psi), elementary::cosh(root * psi));
         (cosine, sine / root, (psi * cosine - sine / root) / (2.0 * q))
     }
 }
@@ -174,7 +175,7 @@ impl Beam {
             let weight = weight * self.length;
             let angle = dot(even, state.even);
             let psi = if odd_modes > 0 { dot(odd, state.odd) } else { 0.0 };
-            let (sine, cosine) = angle.sin_cos();
+            let (sine, cosine) = elementary::sin_cos(angle);
             let (c, s, s_by_q) = odd_functions(q, psi);
             let (cosine_2, sine_2) = (cosine * cosine - sine * sine, 2.0 * sine * cosine);
             // The cosine of the doubled odd part, and its sine over sqrt(q).
@@ -193,7 +194,7 @@ impl Beam {
             let along = 0.5 * (h * cosine_2 + lateral * sine_2);
             let across = 0.5 * (h * sine_2 - lateral * cosine_2);
             let half = odd_functions(q, 0.5 * psi).1;
-            let half_sine = (0.5 * angle).sin();
+            let half_sine = elementary::sin(0.5 * angle);
             let shortened = 2.0 * half_sine * half_sine + cosine * q * 2.0 * half * half;
             t.deflection += weight * (c * sine + kappa * c_2 * across);
             t.shortening += weight * (shortened - kappa * c_2 * along);

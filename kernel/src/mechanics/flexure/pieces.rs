@@ -14,6 +14,7 @@ use super::branch::Segment;
 use super::point::Point;
 use super::solver::{Failure, MAX_MODES, Solver};
 use crate::mechanics::{ForceCurve, Piece};
+use crate::numeric::elementary;
 
 /// Points of a piece; its degree is twice this less one.
 const POINTS: usize = 7;
@@ -143,7 +144,7 @@ pub(super) fn fit(
                 }
             }
             // the error grows like the size to the power of the number of conditions
-            let change = (0.3 * CHECK_SHARE / error.max(1e-30)).powf(0.5 / POINTS as f64);
+            let change = elementary::powf(0.3 * CHECK_SHARE / error.max(1e-30), 0.5 / POINTS as f64);
             if error <= CHECK_SHARE {
                 from = to;
                 size *= change.clamp(0.5, 2.5);
@@ -173,7 +174,7 @@ fn odd_piece(solver: &mut Solver, segment: &mut Segment, to: f64) -> Result<Scal
     let mut right = DVector::zeros(terms);
     let degrees: Vec<usize> = (0..terms).map(|i| 2 * i + 1).collect();
     for j in 0..=ODD_POINTS {
-        let t = (0.5 * PI * j as f64 / ODD_POINTS as f64).cos();
+        let t = elementary::cos(0.5 * PI * j as f64 / ODD_POINTS as f64);
         let (t, x) = if j == ODD_POINTS { (0.0, 0.0) } else { (t, t * to) };
         let point = segment.at(solver, x)?;
         let slope_row = if j == ODD_POINTS { 2 * ODD_POINTS } else { 2 * j + 1 };
@@ -204,7 +205,7 @@ fn piece(solver: &mut Solver, segment: &mut Segment, from: f64, to: f64) -> Resu
     let mut matrix = DMatrix::zeros(terms, terms);
     let mut right = DVector::zeros(terms);
     for j in 0..POINTS {
-        let t = -(PI * j as f64 / (POINTS - 1) as f64).cos();
+        let t = -elementary::cos(PI * j as f64 / (POINTS - 1) as f64);
         let x = match j {
             0 => from,
             _ if j == POINTS - 1 => to,
@@ -275,7 +276,8 @@ fn lower_degree(ScaledPiece { to, piece, .. }: &mut ScaledPiece, scale: Scale, t
             continue;
         }
         // the leading coefficient of T_n is 2^(n-1)
-        let size = piece.coefficients[highest] * to.powi(highest as i32) / 2.0_f64.powi(highest as i32 - 1);
+        let size = piece.coefficients[highest] * elementary::powi(to, highest as i32)
+            / elementary::powi(2.0, highest as i32 - 1);
         force += 2.0 * size.abs();
         slope += 4.0 * (highest - 1) as f64 * size.abs() / to;
         if force > DEGREE_SHARE * tolerance * scale.force

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use super::basis::{functions, slopes};
 use super::beam::{Beam, Shape, dot};
 use super::point::Point;
-use crate::numeric::GaussLegendre;
+use crate::numeric::{GaussLegendre, elementary};
 
 /// Number of points of a centre line; odd, so that one is the middle.
 const LINE_POINTS: usize = 65;
@@ -49,11 +49,11 @@ impl<'a> Deflected<'a> {
         let mut points = vec![[0.0; 3]];
         let mut at = [0.0; 2];
         for i in 1..LINE_POINTS {
-            let knot = |i: usize| 0.5 - 0.5 * (PI * i as f64 / (LINE_POINTS - 1) as f64).cos();
+            let knot = |i: usize| 0.5 - 0.5 * elementary::cos(PI * i as f64 / (LINE_POINTS - 1) as f64);
             let (from, to) = (knot(i - 1), knot(i));
             for (node, weight) in rule.nodes().iter().zip(rule.weights()) {
                 functions(2.0 * (from + (to - from) * node) - 1.0, &mut row);
-                let (sine, cosine) = dot(&row, &self.rotation).sin_cos();
+                let (sine, cosine) = elementary::sin_cos(dot(&row, &self.rotation));
                 let stretch = 1.0 + self.beam.stretch * (self.axial * cosine + self.lateral * sine);
                 let shear = self.beam.shear * (self.lateral * cosine - self.axial * sine);
                 let ds = weight * (to - from) * self.beam.length;
@@ -74,7 +74,8 @@ impl<'a> Deflected<'a> {
                 *b -= natural;
             }
         }
-        let places = (0..CURVATURE_POINTS).map(|i| (PI * i as f64 / (CURVATURE_POINTS - 1) as f64).cos());
+        let places =
+            (0..CURVATURE_POINTS).map(|i| elementary::cos(PI * i as f64 / (CURVATURE_POINTS - 1) as f64));
         places.fold(0.0, |largest: f64, xi| {
             slopes(xi, &mut row);
             largest.max((dot(&row, &bend) * 2.0 / self.beam.length).abs())

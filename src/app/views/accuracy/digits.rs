@@ -3,6 +3,7 @@
 use eframe::egui::{self, Grid, RichText, Ui, WidgetInfo};
 
 use crate::app::ui::style::Style;
+use crate::numeric::elementary;
 use crate::output::{Chart, Marks, Panel, PlotAxis, Role};
 use crate::study::Table;
 use crate::study::accuracy::scene::{
@@ -112,7 +113,7 @@ const MIN_ERROR: f64 = 1e-16;
 fn chart(known: &Tolerances, tolerance: f64, stepped: Option<&StepSize>) -> Chart {
     let smallest = MIN_ERROR * known.travel.max(f64::MIN_POSITIVE);
     let point = |time: f64, error: f64| (time.max(1e-9), 1e3 * error.max(smallest));
-    let logs = |(x, y): (f64, f64)| (x.log10(), y.log10());
+    let logs = |(x, y): (f64, f64)| (elementary::log10(x), elementary::log10(y));
     let runs: Vec<(f64, f64)> = known.runs.iter().map(|run| point(run.statistics.cpu_s, run.error)).collect();
     let ghost = stepped.filter(|run| run.stepped.ended_at.is_none());
     let ghost = ghost.map(|run| (point(run.stepped.cpu_s, run.error), run));

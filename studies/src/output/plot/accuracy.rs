@@ -8,6 +8,7 @@ use super::drawn::Drawn;
 use super::figure::Point;
 use super::mark::Caption;
 use super::role::Role;
+use crate::numeric::elementary;
 use crate::scene::PROGRAM;
 use crate::study::Table;
 use crate::study::accuracy::PROBLEMS;
@@ -43,7 +44,7 @@ pub fn accuracy_chart(table: &Table, version: &str) -> (Chart, Caption) {
             let points: Vec<Point> = (0..problems.len())
                 .filter(|row| problems[*row] == *problem && methods[*row] == *method)
                 .filter(|row| errors[*row].is_finite() && times[*row] > 0.0)
-                .map(|row| (times[row].log10(), floored(errors[row]).log10()))
+                .map(|row| (elementary::log10(times[row]), elementary::log10(floored(errors[row]))))
                 .collect();
             panel.draw(Role::Method(place), Marks::Path(points.clone()));
             panel.layer(Role::Method(place), *method, Marks::Points(points));

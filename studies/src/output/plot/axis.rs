@@ -1,7 +1,7 @@
 //! Axes with their ticks and labels.
 
-use crate::numeric::extent;
 use crate::numeric::round::{ONE_TWO_FIVE, decade, round_up};
+use crate::numeric::{elementary, extent};
 
 /// A range of values with its ticks.
 #[derive(Debug, Clone, PartialEq)]
@@ -77,8 +77,8 @@ impl PlotAxis {
         let largest = low.abs().max(high.abs());
         let power = decade(largest);
         let power = if (-3..5).contains(&power) { 0 } else { power };
-        let scale = 10_f64.powi(power);
-        let decimals = (power - (step.log10() + 1e-9).floor() as i32).clamp(0, 12) as usize;
+        let scale = elementary::powi(10.0, power);
+        let decimals = (power - (elementary::log10(step) + 1e-9).floor() as i32).clamp(0, 12) as usize;
         // if the step is lost in the rounding of large numbers, only the ends have ticks
         let ticks = if step > 8.0 * f64::EPSILON * largest {
             let (first, last) = ((low / step - 1e-9).ceil(), (high / step + 1e-9).floor());
@@ -166,7 +166,8 @@ impl PlotAxis {
     /// A logarithmic axis in whole decades that covers `values`, which are not logarithms and above 0, with
     /// ticks at powers of ten.
     pub fn decades(values: impl IntoIterator<Item = f64>, label: &str) -> Self {
-        let logs = values.into_iter().filter(|value| value.is_finite() && *value > 0.0).map(f64::log10);
+        let logs =
+            values.into_iter().filter(|value| value.is_finite() && *value > 0.0).map(elementary::log10);
         let (low, high) = extent(logs);
         let (low, high) =
             if low > high { (0.0, 1.0) } else { (low.floor(), high.ceil().max(low.floor() + 1.0)) };
@@ -189,7 +190,7 @@ impl PlotAxis {
     /// Position of `value` between the ends: 0 at the lower, 1 at the upper end.
     pub fn share(&self, value: f64) -> f64 {
         match self.scale {
-            Scale::Counts => (1.0 + value.max(0.0)).ln() / (1.0 + self.high).ln(),
+            Scale::Counts => elementary::ln(1.0 + value.max(0.0)) / elementary::ln(1.0 + self.high),
             Scale::Linear | Scale::Decades | Scale::Given => {
                 (value.clamp(-LARGEST, LARGEST) - self.low) / (self.high - self.low)
             }

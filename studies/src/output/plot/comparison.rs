@@ -9,7 +9,7 @@ use super::mark::REGIMES;
 use super::quantity::suited_unit;
 use super::role::Role;
 use crate::numeric::round::decade;
-use crate::numeric::short;
+use crate::numeric::{elementary, short};
 use crate::study::{Rated, SEARCHED_SPAN, Table, Values};
 
 /// What the picture of a comparison is drawn from.
@@ -106,7 +106,7 @@ fn three(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return short(value);
     }
-    let digit = 10_f64.powi(decade(value) - 2);
+    let digit = elementary::powi(10.0, decade(value) - 2);
     short((value / digit).round() * digit)
 }
 
@@ -226,13 +226,13 @@ fn panel(picture: &ComparisonPicture<'_>, shown: &Shown, up: &PlotAxis) -> Panel
     let label = format!("{}, {better} is good", shown.unit);
     let across = match shown.is_band {
         true => {
-            let ends = [frequency_hz / SEARCHED_SPAN, frequency_hz * SEARCHED_SPAN].map(f64::log10);
+            let ends = [frequency_hz / SEARCHED_SPAN, frequency_hz * SEARCHED_SPAN].map(elementary::log10);
             // with room for the words beyond the widest band
             PlotAxis::powers(ends[0], ends[1] + BAND_ROOM * (ends[1] - ends[0]), &label)
         }
         false => PlotAxis::between(0.0, if longest > 0.0 { ROOM * longest } else { 1.0 }, &label),
     };
-    let scaled = |value: f64| if shown.is_band { value.log10() } else { value };
+    let scaled = |value: f64| if shown.is_band { elementary::log10(value) } else { value };
     let (low, high) = (across.low, across.high);
     let best = shown.best();
     let height = (ROW * rated.len() as f64).max(1.0);
@@ -263,7 +263,11 @@ fn panel(picture: &ComparisonPicture<'_>, shown: &Shown, up: &PlotAxis) -> Panel
     });
     panel.draw(Role::Motion, Marks::Words(words.collect()));
     if shown.is_band {
-        panel.layer(Role::Drive, "frequency of the drive", Marks::Verticals(vec![frequency_hz.log10()]));
+        panel.layer(
+            Role::Drive,
+            "frequency of the drive",
+            Marks::Verticals(vec![elementary::log10(frequency_hz)]),
+        );
     }
     let marks = rated.iter().enumerate();
     match shown.mark {

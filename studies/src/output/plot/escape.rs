@@ -7,7 +7,7 @@ use super::figure::Point;
 use super::role::Role;
 use super::sweep::{MAX_PICTURE_CELLS, NoPicture};
 use super::swept::{ascending, swept_axis};
-use crate::numeric::short;
+use crate::numeric::{elementary, short};
 use crate::study::{EscapeOptions, Grid, Table, Until};
 
 /// What the picture is drawn from.
@@ -46,13 +46,16 @@ pub fn escape_chart(picture: &EscapePicture) -> Result<Chart, NoPicture> {
     let drawn = rate.iter().chain(low).chain(high).copied();
     let label = "escape rate (1/s)";
     let up = match ranges.y.filter(|range| range.0 > 0.0) {
-        Some((low, high)) => PlotAxis::powers(low.log10(), high.log10(), label),
+        Some((low, high)) => PlotAxis::powers(elementary::log10(low), elementary::log10(high), label),
         None => PlotAxis::decades(drawn, label),
     };
     let mut panel = Panel::new(swept_axis(rows, x, ranges.x), up);
     let order = ascending(places, |row| rate[row] > 0.0);
-    let log = |values: &[f64], row: usize| (places[row], values[row].log10());
-    let bars = order.iter().map(|&row| [places[row], low[row].log10(), high[row].log10()]).collect();
+    let log = |values: &[f64], row: usize| (places[row], elementary::log10(values[row]));
+    let bars = order
+        .iter()
+        .map(|&row| [places[row], elementary::log10(low[row]), elementary::log10(high[row])])
+        .collect();
     panel.layer(Role::Interval, "95 % interval", Marks::Intervals(bars));
     let theory = ascending(places, |row| kramers[row] > 0.0);
     if !theory.is_empty() {

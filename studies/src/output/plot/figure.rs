@@ -11,7 +11,7 @@ use super::role::Look;
 use super::sheet::Sheet;
 use super::style::{self, Ink, Theme};
 use super::surface::SurfaceFrame;
-use crate::numeric::short;
+use crate::numeric::{elementary, short};
 use crate::study::Table;
 
 /// A position on the canvas, to the right and down from the upper left corner.
@@ -280,8 +280,10 @@ impl Figure {
     /// Adds a broken line with dashes and gaps of the given lengths, longer ones in a line of very many.
     pub fn dashed(&mut self, points: &[Point], width: f64, ink: Ink, (on, off): (f64, f64), within: Area) {
         for part in within.parts(points) {
-            let length: f64 =
-                part.windows(2).map(|pair| (pair[1].0 - pair[0].0).hypot(pair[1].1 - pair[0].1)).sum();
+            let length: f64 = part
+                .windows(2)
+                .map(|pair| elementary::hypot(pair[1].0 - pair[0].0, pair[1].1 - pair[0].1))
+                .sum();
             let longer = (length / (MAX_DASHES * (on + off))).max(1.0);
             for piece in dashes(&part, (on * longer, off * longer)) {
                 self.shapes.push(Shape::Line(piece, width, ink));
@@ -374,7 +376,7 @@ fn dashes(points: &[Point], (on, off): (f64, f64)) -> Vec<Vec<Point>> {
     for pair in points.windows(2) {
         let (mut from, to) = (pair[0], pair[1]);
         loop {
-            let length = (to.0 - from.0).hypot(to.1 - from.1);
+            let length = elementary::hypot(to.0 - from.0, to.1 - from.1);
             if length <= left {
                 left -= length;
                 if drawing {

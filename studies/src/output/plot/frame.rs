@@ -9,6 +9,7 @@ use super::mark::{REGIMES, dot, mark, marker};
 use super::role::{Look, Role};
 use super::style::{self, Theme};
 use super::thinned::{extremes, once, thinned};
+use crate::numeric::elementary;
 
 /// Half the size of the points of a cloud of few points, and of one of many.
 const CLOUD: (f64, f64) = (6.0, 2.2);
@@ -257,8 +258,9 @@ impl Frame {
         for part in places.split(|(x, y)| !(x.is_finite() && y.is_finite())) {
             let mut kept: Vec<Point> = Vec::new();
             for place in part {
-                let far =
-                    kept.last().is_none_or(|last: &Point| (last.0 - place.0).hypot(last.1 - place.1) > NEAR);
+                let far = kept
+                    .last()
+                    .is_none_or(|last: &Point| elementary::hypot(last.0 - place.0, last.1 - place.1) > NEAR);
                 if far {
                     kept.push(*place);
                 }
@@ -306,7 +308,7 @@ impl Frame {
     fn cloud(&self, figure: &mut Figure, points: &[Point], look: &Look, theme: &Theme) {
         let mut places = self.inside(points);
         once(&mut places);
-        let many = ((places.len() as f64 / FEW).ln() / (MANY / FEW).ln()).clamp(0.0, 1.0);
+        let many = (elementary::ln(places.len() as f64 / FEW) / elementary::ln(MANY / FEW)).clamp(0.0, 1.0);
         let size = CLOUD.0 + many * (CLOUD.1 - CLOUD.0);
         for at in places {
             if look.halo.is_some() {

@@ -3,6 +3,8 @@
 //! The view is turned by 37.5 degrees and seen from 30 degrees above, with the least values of both fields in
 //! front. Faces are in the order from back to front, which for a height over a grid is exact.
 
+use crate::numeric::elementary;
+
 /// Turn and elevation of the view in degrees, and height of the box over the length of its sides.
 const TURN: f64 = 37.5;
 const ELEVATION: f64 = 30.0;
@@ -43,7 +45,8 @@ impl Projection {
 
 /// Where a place in the box stands, before it is fitted: to the right, upward.
 fn flat((u, v, w): BoxPlace) -> (f64, f64) {
-    let ((sin, cos), (up, flat)) = (TURN.to_radians().sin_cos(), ELEVATION.to_radians().sin_cos());
+    let ((sin, cos), (up, flat)) =
+        (elementary::sin_cos(TURN.to_radians()), elementary::sin_cos(ELEVATION.to_radians()));
     (u * cos - v * sin, (u * sin + v * cos) * up + w * HEIGHT * flat)
 }
 

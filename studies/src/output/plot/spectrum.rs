@@ -5,7 +5,7 @@ use super::chart::{Chart, Marks, Panel};
 use super::drawn::Drawn;
 use super::figure::Point;
 use super::role::Role;
-use crate::numeric::{Taper, short};
+use crate::numeric::{Taper, elementary, short};
 use crate::study::{Signal, Spectrum};
 
 /// The column that is shown.
@@ -42,8 +42,10 @@ pub fn spectrum_chart(spectrum: &Spectrum, quantity: SpectrumQuantity, ranges: R
         seen.fold((f64::INFINITY, 0.0_f64), |(low, high), value| (low.min(value), high.max(value)));
     let decades = if quantity == SpectrumQuantity::Density { 2.0 * DECADES } else { DECADES };
     let up = match ranges.y {
-        Some((low, high)) => PlotAxis::powers(low.log10(), high.log10(), label),
-        None => PlotAxis::decades([least.max(greatest * 10_f64.powf(-decades)), greatest * 1.5], label),
+        Some((low, high)) => PlotAxis::powers(elementary::log10(low), elementary::log10(high), label),
+        None => {
+            PlotAxis::decades([least.max(greatest * elementary::powf(10.0, -decades)), greatest * 1.5], label)
+        }
     };
     let mut panel = Panel::new(across, up);
     let marked: Vec<f64> = spectrum.forcing_hz.iter().copied().take(MAX_MARKED).collect();
@@ -57,7 +59,7 @@ pub fn spectrum_chart(spectrum: &Spectrum, quantity: SpectrumQuantity, ranges: R
         panel.layer(Role::Drive, words, Marks::Verticals(marked.clone()));
     }
     let floor = panel.y.low - 1.0;
-    let height = |value: f64| if value > 0.0 { value.log10().max(floor) } else { floor };
+    let height = |value: f64| if value > 0.0 { elementary::log10(value).max(floor) } else { floor };
     let points: Vec<Point> =
         frequencies.iter().zip(values).map(|(frequency, value)| (*frequency, height(*value))).collect();
     let is_lines = spectrum.period.is_some() && spectrum.taper == Taper::None;

@@ -6,6 +6,7 @@ use super::figure::{Align, Area, Figure, Point, Text};
 use super::font;
 use super::projection::{AXIS_EDGES, BACK_EDGES, BoxPlace, Face, Projection, SIDES, faces, wall_lines};
 use super::style::{self, Ink, Theme, viridis};
+use crate::numeric::elementary;
 
 /// Largest number of cells that are drawn as faces.
 pub const MAX_SURFACE_CELLS: u64 = 60_000;
@@ -52,7 +53,7 @@ impl SurfaceFrame {
         self.faces(cells).iter().rev().find_map(|face| {
             let corners = face.corners.map(|corner| self.place(corner));
             let under = [[0, 1, 2], [0, 2, 3]].iter().any(|three| is_inside(three.map(|i| corners[i])));
-            let distance = |i: &usize| (corners[*i].0 - at.0).hypot(corners[*i].1 - at.1);
+            let distance = |i: &usize| elementary::hypot(corners[*i].0 - at.0, corners[*i].1 - at.1);
             let nearest = (0..4).min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
             let step = [(0, 0), (1, 0), (1, 1), (0, 1)][nearest];
             under.then_some((face.cell.0 + step.0, face.cell.1 + step.1))

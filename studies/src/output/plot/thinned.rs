@@ -3,6 +3,7 @@
 use std::collections::HashSet;
 
 use super::figure::Point;
+use crate::numeric::elementary;
 
 /// Keeps one of the points in the same half pixel.
 pub(super) fn once(places: &mut Vec<Point>) {
@@ -26,7 +27,8 @@ pub(super) fn thinned<'a>(marks: &[(Point, &'a str)], apart: f64, close: f64) ->
     let mut kept: Vec<(Point, &str)> = Vec::new();
     for (at, word) in marks {
         let stands = kept.last().is_none_or(|(last, other)| {
-            (at.0 - last.0).hypot(at.1 - last.1) >= if other == word { apart } else { close.min(apart) }
+            elementary::hypot(at.0 - last.0, at.1 - last.1)
+                >= if other == word { apart } else { close.min(apart) }
         });
         if stands {
             kept.push((*at, word));

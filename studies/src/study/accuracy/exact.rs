@@ -8,7 +8,7 @@ use std::array::from_fn;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use crate::mechanics::{ForceCurve, Piece};
-use crate::numeric::{DoubleDouble, Number, Scalar};
+use crate::numeric::{DoubleDouble, Number, Scalar, elementary};
 
 /// A double as a double-double.
 pub(crate) fn dd(value: f64) -> DoubleDouble {
@@ -33,7 +33,7 @@ pub fn exp(x: DoubleDouble) -> DoubleDouble {
     }
     // in two halves, since 2^halvings itself may be out of range
     let half = (halvings * 0.5).floor();
-    sum * dd(half.exp2()) * dd((halvings - half).exp2())
+    sum * dd(elementary::exp2(half)) * dd(elementary::exp2(halvings - half))
 }
 
 /// (sin, cos) of an angle in radians, to some 30 digits of a turn.
@@ -51,7 +51,7 @@ pub(super) fn turns(turns: DoubleDouble) -> (DoubleDouble, DoubleDouble) {
 pub fn sine_turns(sine: DoubleDouble) -> DoubleDouble {
     let one = dd(1.0);
     let cosine = ((one - sine) * (one + sine)).sqrt();
-    let mut angle = dd(sine.to_f64().atan2(cosine.to_f64()));
+    let mut angle = dd(elementary::atan2(sine.to_f64(), cosine.to_f64()));
     for _ in 0..3 {
         let (s, c) = sin_cos(angle);
         // the difference of two angles from the sine of it, which stays well conditioned near a quarter turn
@@ -168,13 +168,13 @@ impl Corner {
     /// y from y = 0.
     pub fn time_beyond(self, v: f64) -> f64 {
         let w = self.outer.sqrt();
-        2.0 * (FRAC_PI_2 - (self.at / self.outer * w / v).atan()) / w
+        2.0 * (FRAC_PI_2 - elementary::atan(self.at / self.outer * w / v)) / w
     }
 
     /// Period in s of the orbit that passes x = 0 with speed `v` in m/s, above `at`/s: half a turn to the
     /// left of 0, twice the way from 0 to the corner, and the time beyond it.
     pub fn period(self, v: f64) -> f64 {
-        PI + 2.0 * (self.at / v).asin() + self.time_beyond((v * v - self.at * self.at).sqrt())
+        PI + 2.0 * elementary::asin(self.at / v) + self.time_beyond((v * v - self.at * self.at).sqrt())
     }
 
     /// The largest force in N on that orbit, at its right turn: outer y = force - at, v^2 = at^2 + 2 at y +
@@ -353,8 +353,8 @@ fn exponential<const N: usize>(rates: Matrix<N>, t: DoubleDouble) -> Matrix<N> {
     let sizes = rates.map(|row| row.iter().map(|rate| (*rate * t).abs().to_f64()).sum::<f64>());
     let largest = sizes.into_iter().fold(0.0, f64::max);
     // below 1/16, where 18 terms leave 1e-38
-    let squarings = (largest * 16.0).log2().ceil().max(0.0);
-    let small = rates.map(|row| row.map(|rate| rate * t * dd((-squarings).exp2())));
+    let squarings = elementary::log2(largest * 16.0).ceil().max(0.0);
+    let small = rates.map(|row| row.map(|rate| rate * t * dd(elementary::exp2(-squarings))));
     let unit = |i, j| dd(if i == j { 1.0 } else { 0.0 });
     let mut sum = from_fn(|i| from_fn(|j| unit(i, j)));
     for order in (1..=18).rev() {

@@ -11,6 +11,7 @@ use std::f64::consts::TAU;
 use super::Stopped;
 use super::setup::Setup;
 use crate::dynamics::{Event, EventKind, Model, Outcome, Request, Run, Sample, Summary};
+use crate::numeric::elementary;
 use crate::scene::{FieldPath, numeric_fields};
 use crate::study::Task;
 
@@ -83,7 +84,7 @@ impl Check {
 
 /// Decimal digits of a relative error: those of a double at most.
 fn digits(error: f64) -> f64 {
-    if error.is_nan() { 0.0 } else { (-error.log10()).clamp(0.0, 16.0) }
+    if error.is_nan() { 0.0 } else { (-elementary::log10(error)).clamp(0.0, 16.0) }
 }
 
 /// One run of a case with its checks.

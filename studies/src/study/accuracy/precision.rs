@@ -5,6 +5,7 @@ use super::measure::REFERENCE_TOLERANCE;
 use super::methods::{MethodRun, Scheme, Statistics, dormand_prince, fixed_step};
 use super::setup::Setup;
 use crate::dynamics::{Event, Model, Request};
+use crate::numeric::elementary;
 use crate::study::Task;
 
 /// The name of the program's own method.
@@ -110,7 +111,8 @@ impl Problem {
         // as written: a power of ten by multiplication is off by an ulp
         let tolerances = [1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12, 1e-13, 1e-14]
             .map(Setting::Tolerance);
-        let steps = [0, 1, 2, 3, 4, 5, 6, 7].map(|i| Setting::Step(10_f64.powf(-0.5 * f64::from(i)) / 60.0));
+        let steps = [0, 1, 2, 3, 4, 5, 6, 7]
+            .map(|i| Setting::Step(elementary::powf(10.0, -0.5 * f64::from(i)) / 60.0));
         measure(OWN, &tolerances, &|tolerance, request| model.with_tolerance(tolerance).run(request).into())?;
         measure("Dormand-Prince 5(4)", &tolerances, &|tolerance, request| {
             dormand_prince(&model, tolerance, request)

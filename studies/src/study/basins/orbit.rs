@@ -13,6 +13,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::stroboscopic::{Point, Stroboscope};
 use crate::dynamics::{Capture, Jacobian, MapState, Outcome};
+use crate::numeric::elementary;
 use crate::study::Cancelled;
 use crate::study::orbit::newton_step;
 
@@ -171,12 +172,12 @@ fn square(norm: &Matrix3<f64>, vector: &Vector3<f64>) -> f64 {
 fn directions(size: usize) -> Vec<Vector3<f64>> {
     let golden = std::f64::consts::PI * (3.0 - 5.0_f64.sqrt());
     let on_circle = |part: usize| {
-        let (sine, cosine) = (std::f64::consts::TAU * part as f64 / AROUND as f64).sin_cos();
+        let (sine, cosine) = elementary::sin_cos(std::f64::consts::TAU * part as f64 / AROUND as f64);
         Vector3::new(cosine, sine, 0.0)
     };
     let on_sphere = |part: usize| {
         let height = 1.0 - (2 * part + 1) as f64 / ON_SPHERE as f64;
-        let (sine, cosine) = (golden * part as f64).sin_cos();
+        let (sine, cosine) = elementary::sin_cos(golden * part as f64);
         let across = (1.0 - height * height).sqrt();
         Vector3::new(across * cosine, across * sine, height)
     };
@@ -196,7 +197,7 @@ fn radius(
     let around: Option<Vec<Vector3<f64>>> =
         directions(scope.size()).iter().map(|unit| factor.solve_upper_triangular(unit)).collect();
     let Some(around) = around else { return Ok(None) };
-    let radii = || (0..RADII).map(|step| MIN_RADIUS * GROWTH.powi(step as i32));
+    let radii = || (0..RADII).map(|step| MIN_RADIUS * elementary::powi(GROWTH, step as i32));
     let circles: Vec<Vector3<f64>> =
         radii().flat_map(|radius| around.iter().map(move |unit| unit * radius)).collect();
     let starts: Vec<(Point, u32)> =

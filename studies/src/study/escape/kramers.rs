@@ -9,6 +9,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 
 use crate::dynamics::Model;
 use crate::mechanics::{Homoclinic, Well};
+use crate::numeric::elementary;
 
 /// Smallest height of the barriers over k_B T.
 const MIN_HEIGHT: f64 = 3.0;
@@ -116,7 +117,7 @@ pub fn kramers_rate(model: &Model) -> Result<f64, NoKramers> {
     // with g small beside w_b the difference of the root and g/2 is exact enough; with g large it is not
     let half = 0.5 * damping_rate;
     let over_barrier = barrier_rate / ((half * half + barrier_rate * barrier_rate).sqrt() + half);
-    let rate = depopulation(lost) * over_barrier * well_rate / TAU * (-height / temperature).exp();
+    let rate = depopulation(lost) * over_barrier * well_rate / TAU * elementary::exp(-height / temperature);
     (rate > 0.0).then_some(rate).ok_or(NoKramers::Rate)
 }
 
@@ -163,8 +164,8 @@ fn check_white(model: &Model, well: f64, barrier: f64, damping: f64) -> Result<(
 pub fn depopulation(loss: f64) -> f64 {
     let step = FRAC_PI_2 / POINTS as f64;
     let term = |i: usize| {
-        let cos = ((i as f64 + 0.5) * step).cos();
-        (-(-loss / (4.0 * cos * cos)).exp_m1()).ln()
+        let cos = elementary::cos((i as f64 + 0.5) * step);
+        elementary::ln(-elementary::exp_m1(-loss / (4.0 * cos * cos)))
     };
-    (step * (0..POINTS).map(term).sum::<f64>() / FRAC_PI_2).exp()
+    elementary::exp(step * (0..POINTS).map(term).sum::<f64>() / FRAC_PI_2)
 }

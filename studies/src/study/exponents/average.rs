@@ -6,7 +6,7 @@ use std::sync::atomic::{self, AtomicBool};
 use super::tangent::Tangent;
 use super::{Estimate, Exponents, NoExponents};
 use crate::dynamics::{Jacobian, MapState, Model};
-use crate::numeric::CompensatedSum;
+use crate::numeric::{CompensatedSum, elementary};
 
 /// Number of forcing periods before the average, in which a perturbation turns into the direction of fastest
 /// growth.
@@ -53,12 +53,12 @@ pub(super) fn average(
         if growth == 0.0 {
             return Ok(Exponents::of_rest(None, (periods, time), tangent));
         }
-        let mut growths = vec![growth.ln()];
+        let mut growths = vec![elementary::ln(growth)];
         if has_circuit {
             let [first, second] = &mut changes;
             let growth = stretched(&passed.jacobian, second, Some(first));
             // after a rest all perturbations have one direction
-            growths.push(if passed.rested { f64::NEG_INFINITY } else { growth.ln() });
+            growths.push(if passed.rested { f64::NEG_INFINITY } else { elementary::ln(growth) });
         }
         growths.push(match passed.rested {
             true => f64::NEG_INFINITY,
@@ -129,7 +129,7 @@ fn stretched(derivative: &Jacobian, change: &mut [f64; 3], other: Option<&[f64; 
         let along: f64 = next.iter().zip(other).map(|(a, b)| a * b).sum();
         next.iter_mut().zip(other).for_each(|(part, other)| *part -= along * other);
     }
-    let growth = next[0].hypot(next[1]).hypot(next[2]);
+    let growth = elementary::hypot(elementary::hypot(next[0], next[1]), next[2]);
     if growth > 0.0 {
         *change = next.map(|part| part / growth);
     }

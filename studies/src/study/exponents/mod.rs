@@ -20,6 +20,7 @@ mod tangent;
 use std::sync::atomic::AtomicBool;
 
 use crate::dynamics::{MapState, Model, Outcome, Request, Run};
+use crate::numeric::elementary;
 use crate::scene::{Fault, Scene};
 use crate::study::grid_study::fields;
 use crate::study::settled::PATIENCE;
@@ -240,7 +241,7 @@ impl Exponents {
     /// An irregular transient that lasts longer than these periods counts as irregular.
     pub fn is_irregular(&self) -> bool {
         let (periods, time) = self.span;
-        let shear = f64::from(periods.max(2)).ln();
+        let shear = elementary::ln(f64::from(periods.max(2)));
         self.period.is_none()
             && self.first.per_s > CLEAR * self.first.error
             && self.first.per_s * time > BEYOND_SHEAR * shear

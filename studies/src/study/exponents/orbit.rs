@@ -3,6 +3,7 @@
 use super::tangent::{Passed, Tangent};
 use super::{Estimate, Exponents, NoExponents};
 use crate::dynamics::MapState;
+use crate::numeric::elementary;
 use crate::study::orbit::newton_step;
 
 /// Largest distance of a state of a repeating motion from the state one period later, in units of the scales.
@@ -48,11 +49,12 @@ pub(super) fn of_orbit(
 /// Logarithms of the magnitudes of the multipliers of an orbit, by falling size.
 fn growths(orbit: &Passed) -> Vec<f64> {
     if orbit.rested {
-        return vec![orbit.jacobian.trace().abs().ln(), f64::NEG_INFINITY, f64::NEG_INFINITY];
+        return vec![elementary::ln(orbit.jacobian.trace().abs()), f64::NEG_INFINITY, f64::NEG_INFINITY];
     }
     let all = orbit.log_determinant();
-    let multipliers = orbit.jacobian.multipliers(all.exp());
-    let mut growths: Vec<f64> = multipliers.iter().map(|multiplier| multiplier.magnitude().ln()).collect();
+    let multipliers = orbit.jacobian.multipliers(elementary::exp(all));
+    let mut growths: Vec<f64> =
+        multipliers.iter().map(|multiplier| elementary::ln(multiplier.magnitude())).collect();
     // the smallest, or a pair of that size, follows from the others, however small it is
     let size = growths.len();
     let smallest = if multipliers[size - 1].im == 0.0 { 1 } else { 2 };
@@ -81,7 +83,7 @@ fn find(
             Err(error) => return Err(error),
         };
         let off = tangent.units().apart(state, orbit.state);
-        let distance = off[0].hypot(off[1]).hypot(off[2]);
+        let distance = elementary::hypot(elementary::hypot(off[0], off[1]), off[2]);
         if step == 0 && !(distance <= NEAR) || best.is_some_and(|best| !(distance < best.1)) {
             break;
         }

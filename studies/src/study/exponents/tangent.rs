@@ -2,6 +2,7 @@
 
 use super::NoExponents;
 use crate::dynamics::{Event, EventKind, Jacobian, MapState, Model, Outcome, Passage, Side, StroboscopicMap};
+use crate::numeric::elementary;
 use crate::study::orbit::Units;
 
 /// Share of its two products below which a determinant is lost in rounding, which is about 1e-15 of the
@@ -58,7 +59,7 @@ impl Tangent {
         let stops = model.stops();
         let kept = |side: Side| {
             let pair = stops.and_then(|pair| if side == Side::Left { pair.left } else { pair.right });
-            2.0 * pair.map_or(1.0, |stop| stop.restitution).ln()
+            2.0 * elementary::ln(pair.map_or(1.0, |stop| stop.restitution))
         };
         let struck = model.compliant().is_none().then(|| [Side::Left, Side::Right].map(kept));
         let damped = model.contraction(map.period());
@@ -107,8 +108,8 @@ impl Tangent {
     /// `least` of its products.
     fn logarithm(&self, passage: &Passage, derivative: &Jacobian, share: f64, least: f64) -> Option<f64> {
         let determinant = derivative.determinant().abs();
-        let exact = passage.determinant.unwrap_or_else(|| (self.damped * share).exp());
-        (exact.min(determinant) > least * derivative.products()).then(|| determinant.ln())
+        let exact = passage.determinant.unwrap_or_else(|| elementary::exp(self.damped * share));
+        (exact.min(determinant) > least * derivative.products()).then(|| elementary::ln(determinant))
     }
 
     /// The same for a period, from its parts; NaN if one of them is lost in rounding.

@@ -6,7 +6,7 @@ use super::clipped::{Clipped, clipped};
 use super::peaks::{Peak, peaks};
 use super::{Identified, Identity, Unidentified, noise, reach, turns, with_interval};
 use crate::numeric::regression::{least_squares, student};
-use crate::numeric::{Envelope, MIN_TURNS, TurningPoint, short};
+use crate::numeric::{Envelope, MIN_TURNS, TurningPoint, elementary, short};
 use crate::scene::Channel;
 use crate::study::Table;
 
@@ -157,7 +157,7 @@ impl Decay {
         }
         let late = student(line.freedom) * line.covariance[(1, 1)].sqrt();
         let of_rate = |rate: f64| match rate * step {
-            d if rate.is_finite() => d / PI.hypot(d),
+            d if rate.is_finite() => d / elementary::hypot(PI, d),
             _ => rate.signum(),
         };
         let damping = Identity {
@@ -170,11 +170,11 @@ impl Decay {
         let frequency =
             Identity { name: "frequency_hz", value: 0.5 / step, interval: (0.5 / (step + late), highest) };
         let last = points.len() - 1;
-        let logarithms: f64 = points.iter().map(|point| envelope.at(point.t).1.ln()).sum();
+        let logarithms: f64 = points.iter().map(|point| elementary::ln(envelope.at(point.t).1)).sum();
         Some(Self {
             turns: points.len(),
             span: (points[0].t, points[last].t),
-            amplitude: (logarithms / points.len() as f64).exp(),
+            amplitude: elementary::exp(logarithms / points.len() as f64),
             ratio: damping,
             natural: natural(frequency, damping),
             frequency,
@@ -206,7 +206,7 @@ fn natural(frequency: Identity, damping: Identity) -> Identity {
     // of one end of both intervals
     let error = |f: f64, z: f64| {
         let of_ratio = damping.value / slower.powi(2) * (z - damping.value);
-        value * (f / frequency.value - 1.0).hypot(of_ratio)
+        value * elementary::hypot(f / frequency.value - 1.0, of_ratio)
     };
     let low = error(frequency.interval.0, damping.interval.0);
     let high = error(frequency.interval.1, damping.interval.1);

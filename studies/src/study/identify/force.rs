@@ -3,7 +3,7 @@
 use super::rests::Rest;
 use super::{Identified, Identity, Unidentified, median, noise, turns, with_interval};
 use crate::numeric::regression::{Fit, least_squares, powers, student};
-use crate::numeric::{extent, short};
+use crate::numeric::{elementary, extent, short};
 use crate::study::{Table, Values};
 
 /// Default number of points of a curve.
@@ -42,7 +42,7 @@ impl Known {
     pub fn and(self, other: Self) -> Self {
         Self {
             value: 0.5 * (self.value + other.value),
-            error: 0.5 * self.error.hypot(other.error),
+            error: 0.5 * elementary::hypot(self.error, other.error),
             freedom: self.freedom + other.freedom,
         }
     }
@@ -224,7 +224,7 @@ impl Curve {
         let freedom: usize = inside.iter().map(|i| self.mean[*i].0.freedom).sum();
         Some(Known {
             value: first.value + points.windows(2).map(piece).sum::<f64>() - last.value,
-            error: first.error.hypot(last.error).hypot(middle),
+            error: elementary::hypot(elementary::hypot(first.error, last.error), middle),
             freedom: freedom + first.freedom + last.freedom,
         })
     }

@@ -12,7 +12,7 @@ pub use force::{FORCE_POINTS, force};
 pub use restitution::{restitution, restitution_of_times};
 
 use super::{Table, label_and_unit};
-use crate::numeric::{MIN_TURNS, extent, short};
+use crate::numeric::{MIN_TURNS, elementary, extent, short};
 pub(super) use crate::numeric::{Turn, turns};
 use peaks::MIN_SAMPLES;
 use restitution::ENOUGH;
@@ -185,7 +185,7 @@ pub(super) fn noise(values: &[f64]) -> f64 {
 pub(super) fn reach(values: &[f64], noise: f64) -> f64 {
     let count = values.len().max(2) as f64;
     let (low, high) = extent(values.iter().copied());
-    (2.0 * noise * ((2.0 * count.ln()).sqrt() + 1.0)).max(1e-9 * (high - low))
+    (2.0 * noise * ((2.0 * elementary::ln(count)).sqrt() + 1.0)).max(1e-9 * (high - low))
 }
 
 /// The median; for an even number of values, the larger of the two middle ones.

@@ -7,7 +7,7 @@ use nalgebra::SVector;
 
 use super::{Turn, Unidentified, median};
 use crate::numeric::regression::{Fit, least_squares};
-use crate::numeric::{Envelope, MIN_TURNS, TurningPoint, short};
+use crate::numeric::{Envelope, MIN_TURNS, TurningPoint, elementary, short};
 
 /// Share of a period on each side of a turning point over which it is fitted.
 const REACH: f64 = 0.125;
@@ -236,7 +236,7 @@ fn swing<const N: usize>(
 ) -> Option<Local> {
     let (w, r) = (frequency, rate);
     let terms = |t: f64| {
-        let (left, (sine, cosine)) = ((-r * t).exp(), (w * t).sin_cos());
+        let (left, (sine, cosine)) = (elementary::exp(-r * t), elementary::sin_cos(w * t));
         let (s, c) = (left * sine, 1.0 - left * cosine);
         [1.0, s, c, c * s, s * s - c * c - 2.0 * c + 2.0 * r / w * s]
     };

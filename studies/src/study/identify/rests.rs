@@ -5,7 +5,7 @@ use nalgebra::SVector;
 use super::Identity;
 use super::force::{Known, Pull, within};
 use crate::numeric::regression::{Fit, least_squares};
-use crate::numeric::{bisect, golden_section};
+use crate::numeric::{bisect, elementary, golden_section};
 
 /// Shares of the range, on each side of an equilibrium, over which the force is fitted.
 const REACHES: [f64; 6] = [0.04, 0.02, 0.01, 0.005, 0.0025, 0.001];
@@ -166,7 +166,8 @@ impl Near {
     /// The fit to samples over u, with a kink there; `None` if they are too few.
     fn fit(samples: &[(f64, f64)], centre: f64, reach: f64, kink: Option<f64>) -> Option<Self> {
         let Some(kink) = kink else {
-            let smooth = |(u, force): &(f64, f64)| (std::array::from_fn(|k| u.powi(k as i32)), *force);
+            let smooth =
+                |(u, force): &(f64, f64)| (std::array::from_fn(|k| elementary::powi(*u, k as i32)), *force);
             let fit = least_squares(&samples.iter().map(smooth).collect::<Vec<_>>())?;
             let enough = fit.freedom >= MIN_FREEDOM;
             let fit = Polynomial::Smooth(Box::new(fit));
@@ -197,7 +198,7 @@ impl Near {
             Polynomial::Smooth(fit) => (fit.form(&terms.fixed_rows::<4>(0).into_owned()), fit.freedom),
             Polynomial::Kinked(fit) => (fit.form(terms), fit.freedom),
         };
-        let unit = self.reach.powi(order as i32);
+        let unit = elementary::powi(self.reach, order as i32);
         Known { value: value / unit, error: error / unit, freedom }
     }
 

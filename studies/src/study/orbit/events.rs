@@ -5,6 +5,7 @@ use nalgebra::Vector4;
 use super::SAME;
 use super::corrector::{Corrector, Point};
 use crate::dynamics::Multiplier;
+use crate::numeric::elementary;
 
 words! {
     /// A bifurcation or grazing of a periodic orbit at a value of the field.
@@ -117,7 +118,7 @@ fn joint(corrector: &Corrector, from: &Point, to: &Point) -> Option<(f64, Branch
     let breaks = |point: &Point| characteristic(point, -1.0);
     let length = (to.at - from.at).norm();
     (0..HALVINGS).rev().find_map(|halving| {
-        let width = length * 0.5_f64.powi(halving);
+        let width = length * elementary::powi(0.5, halving);
         let (low, high) = (at(middle.w - width)?, at(middle.w + width)?);
         (breaks(&low) * breaks(&high) < 0.0).then_some(())?;
         let (_, point) = root(&half, (&low, &high), breaks)?;
@@ -133,7 +134,7 @@ pub(super) fn is_at(point: &Point, unit: f64) -> bool {
 
 /// Whether one of the multipliers is 1 or -1.
 pub(super) fn has(multipliers: &[Multiplier], unit: f64) -> bool {
-    multipliers.iter().any(|multiplier| (multiplier.re - unit).hypot(multiplier.im) <= AT_UNIT)
+    multipliers.iter().any(|multiplier| elementary::hypot(multiplier.re - unit, multiplier.im) <= AT_UNIT)
 }
 
 /// The zero of a quantity with different signs at two points of the branch, as a share of their distance;

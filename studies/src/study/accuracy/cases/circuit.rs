@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 
 use super::linear::{closed_form, electrical_size};
 use crate::dynamics::EventKind;
-use crate::numeric::{DoubleDouble, Number, Scalar, bisect};
+use crate::numeric::{DoubleDouble, Number, Scalar, bisect, elementary};
 use crate::scene::{Mechanism, Transducer};
 use crate::study::accuracy::exact::{dd, exp, sin_cos};
 use crate::study::accuracy::measure::{Bench, CHANGE, STEP_ERROR, Trials, hard_impacts, off, pairs, times};
@@ -114,8 +114,8 @@ impl Pulls {
 pub(super) fn circuit_release(bench: &Bench) -> Trials {
     let (dip, turns) = (0.3, 0.15);
     let angle = TAU * turns;
-    let reach = TAU * dip * angle.cos();
-    let (press, push) = (angle.sin() + reach, -reach * (turns / dip).exp());
+    let reach = TAU * dip * elementary::cos(angle);
+    let (press, push) = (elementary::sin(angle) + reach, -reach * elementary::exp(turns / dip));
     let mut trials = Vec::new();
     for (name, constant, press, push, amplitude) in [
         ("during the decay", 0.1, 1.0, -0.6, 1.4),

@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use crate::dynamics::{EventKind, Outcome};
+use crate::numeric::elementary;
 use crate::study::accuracy::Stopped;
 use crate::study::accuracy::exact::Corner;
 use crate::study::accuracy::measure::{Bench, CHANGE, STEP_ERROR, Trial, Trials, hard_impacts, off, times};
@@ -78,12 +79,12 @@ pub(super) fn stop_on_break(bench: &Bench) -> Trials {
     let stops = stops_at(None, Some(300.0), 0.5);
     let setup = |v: f64| Setup::new(polynomial(&[0.0]), (b, v), 2.0).on(curve.clone()).stops(stops);
     let mut impact = bench.run("impact", &setup(0.5), &[])?;
-    let exact = b.hypot(0.25) * (2.0 + 0.25_f64.atan2(b)).cos();
+    let exact = elementary::hypot(b, 0.25) * elementary::cos(2.0 + elementary::atan2(0.25, b));
     impact.final_x("displacement at 2 s", exact, impact.model.scales().length, impact.added());
     impact.fact("one impact at 0", times(&impact.run, EventKind::Impact) == [0.0]);
     let mut release = bench.run("release", &setup(0.0).drive(sine(0.25, 1.0, 270.0)), &[])?;
-    let (angle, kind) = (b.acos(), EventKind::Release);
-    release.time("time of release", kind, angle / (0.5 * PI), STEP_ERROR / angle.tan() / angle);
+    let (angle, kind) = (elementary::acos(b), EventKind::Release);
+    release.time("time of release", kind, angle / (0.5 * PI), STEP_ERROR / elementary::tan(angle) / angle);
     release.fact("rests at 0", release.first(EventKind::Rest) == 0.0);
     Ok(vec![impact, release])
 }

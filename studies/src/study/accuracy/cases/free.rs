@@ -4,7 +4,7 @@
 use std::f64::consts::{FRAC_PI_2, SQRT_2};
 
 use crate::dynamics::{EventKind, Outcome, Side};
-use crate::numeric::{DoubleDouble, Scalar};
+use crate::numeric::{DoubleDouble, Scalar, elementary};
 use crate::study::accuracy::Stopped;
 use crate::study::accuracy::exact::{UnitWell, dd, first_hit, impact_time, rest_time, sine_turns};
 use crate::study::accuracy::measure::{Bench, STEP_ERROR, Trial, Trials, off, times};
@@ -165,16 +165,16 @@ fn crest(bench: &Bench, name: &'static str, stop: f64) -> Result<Trial, Stopped>
     trial.fact("few steps", trial.run.summary.steps < 40);
     if depth < 0.0 {
         trial.fact("no impact", impacts.is_empty());
-        trial.final_x("displacement at 3 s", 3.0_f64.sin(), 1.0, added);
+        trial.final_x("displacement at 3 s", elementary::sin(3.0), 1.0, added);
     } else if depth == 0.0 {
         trial.fact("at most one impact and no rest", impacts.len() <= 1 && trial.run.summary.rests == 0);
-        trial.final_x("displacement at 3 s", 3.0_f64.sin(), 1.0, 2.0 * (2.0 * added).sqrt());
+        trial.final_x("displacement at 3 s", elementary::sin(3.0), 1.0, 2.0 * (2.0 * added).sqrt());
     } else {
         let speed = (depth * (2.0 - depth)).sqrt();
         let angle = (sine_turns(dd(stop)) * DoubleDouble::tau()).to_f64();
         let slow = impacts.first().map_or(f64::NAN, |impact| off(impact.v_in, speed, speed));
         // the impact cuts off the crest: the rest of the wave comes earlier by the duration of the crest
-        let exact = (3.0 + 2.0 * (FRAC_PI_2 - angle)).sin();
+        let exact = elementary::sin(3.0 + 2.0 * (FRAC_PI_2 - angle));
         trial.fact("one impact", impacts.len() == 1);
         trial.time("time of impact", EventKind::Impact, angle, added / speed);
         trial.number("speed of impact", slow, added / (speed * speed));

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use crate::dynamics::{EventKind, Run};
-use crate::numeric::{DoubleDouble, Scalar, bisect};
+use crate::numeric::{DoubleDouble, Scalar, bisect, elementary};
 use crate::scene::{Damping, Excitation};
 use crate::study::accuracy::Stopped;
 use crate::study::accuracy::exact::{State, dd, sine_turns, turns};
@@ -132,7 +132,12 @@ pub(super) fn release_threshold(bench: &Bench) -> Trials {
             let amplitude = dd(trial.model.excitation().tones[0].amplitude);
             let exact = (sine_turns(threshold / amplitude) / dd(3.0)).to_f64();
             let angle = exact * 3.0 * TAU;
-            trial.time("time of release", EventKind::Release, exact, STEP_ERROR * angle.tan() / angle);
+            trial.time(
+                "time of release",
+                EventKind::Release,
+                exact,
+                STEP_ERROR * elementary::tan(angle) / angle,
+            );
         } else {
             let stays = trial.first(EventKind::Release).is_nan() && trial.run.summary.final_x == D_MM / 1e3;
             trial.fact("stays at rest", stays);
@@ -179,7 +184,7 @@ pub(super) fn plastic_sine(bench: &Bench) -> Trials {
     let first = closed_form.release();
     let landing = closed_form.landing(first);
     let speed = closed_form.flight((0.0, dd(0.0)), first, landing).1.to_f64().abs();
-    let angle = (1.0_f64 / 1.8).asin();
+    let angle = elementary::asin(1.0 / 1.8);
     let per_flight = trial.run.summary.steps as f64 / 10.0;
     let in_time = |kind: EventKind, first: DoubleDouble, allowed: f64| -> Vec<(f64, f64)> {
         let pair = |(i, t): (usize, f64)| {
@@ -188,7 +193,7 @@ pub(super) fn plastic_sine(bench: &Bench) -> Trials {
         };
         times(&trial.run, kind).into_iter().enumerate().map(pair).collect()
     };
-    let released = STEP_ERROR * angle.tan();
+    let released = STEP_ERROR * elementary::tan(angle);
     let landed = released + per_flight * STEP_ERROR * trial.model.scales().length / speed;
     let releases = in_time(EventKind::Release, first, released);
     let impacts = in_time(EventKind::Impact, landing, landed);

@@ -8,7 +8,7 @@
 
 use super::{MethodRun, Problem, Tally, TimedState, is_cancelled};
 use crate::dynamics::{Model, Phase, Request, Side};
-use crate::numeric::bisect;
+use crate::numeric::{bisect, elementary};
 
 /// A pressed rebound slower than this share of the scene's speed counts as a rest: a solver that does not sum
 /// chatter needs such a limit.
@@ -72,7 +72,7 @@ impl Step {
         let combine = |weights: &[f64; 7], i: usize| -> f64 {
             weights.iter().zip(&k).map(|(weight, k)| weight * k[i]).sum::<f64>() * h
         };
-        let error = (combine(&ERROR, 0) / scales.length).hypot(combine(&ERROR, 1) / scales.speed);
+        let error = elementary::hypot(combine(&ERROR, 0) / scales.length, combine(&ERROR, 1) / scales.speed);
         let mut dense = [[0.0; 2]; 5];
         for i in 0..2 {
             let rise = end[i] - y[i];
@@ -219,7 +219,7 @@ impl March<'_> {
         let length = if last { end - now.t } else { self.h };
         let step = Step::take(&problem, now.t, [now.x, now.v], start, length, self.tolerance);
         self.evaluations += 6;
-        let factor = if step.error > 0.0 { 0.9 * step.error.powf(-0.2) } else { 5.0 };
+        let factor = if step.error > 0.0 { 0.9 * elementary::powf(step.error, -0.2) } else { 5.0 };
         if !(step.error <= 1.0) {
             self.h = length * if factor.is_finite() { factor.clamp(0.2, 1.0) } else { 0.2 };
             return now.t + self.h > now.t;

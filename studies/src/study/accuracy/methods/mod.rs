@@ -15,6 +15,7 @@ pub use dormand_prince::dormand_prince;
 pub use fixed::fixed_step;
 
 use crate::dynamics::{Event, EventKind, Model, Phase, Request, Run, Sample, Side, StopAt, Summary};
+use crate::numeric::elementary;
 use crate::system::clock::ThreadClock;
 
 words! {
@@ -143,7 +144,7 @@ impl<'a> Problem<'a> {
                 _ => tone.amplitude,
             };
             let angle = TAU * turns;
-            sum += amplitude * if tone.quarter { angle.cos() } else { angle.sin() };
+            sum += amplitude * if tone.quarter { elementary::cos(angle) } else { elementary::sin(angle) };
         }
         for chirp in &drive.chirps {
             let turns = if t < chirp.over {
@@ -151,7 +152,7 @@ impl<'a> Problem<'a> {
             } else {
                 0.5 * (chirp.from + chirp.to) * chirp.over + chirp.to * (t - chirp.over)
             };
-            sum += chirp.amplitude * (TAU * turns).sin();
+            sum += chirp.amplitude * elementary::sin(TAU * turns);
         }
         for record in &drive.records {
             let after = record.times.partition_point(|at| *at <= t);

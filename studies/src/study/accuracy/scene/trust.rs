@@ -4,6 +4,7 @@
 use std::sync::atomic::AtomicBool;
 
 use crate::dynamics::{Model, Outcome, Regime, Request, Run, Sample};
+use crate::numeric::elementary;
 use crate::study::accuracy::methods::Statistics;
 use crate::study::accuracy::precision::median;
 
@@ -228,10 +229,10 @@ fn parted(model: &Model, beside: &Beside, better: &Run, until: f64, next: Option
     }
     // from the decades observed, or from the delay gained by the tighter pair of runs
     let start = ABOVE_START * model.tolerance() * model.scales().length;
-    let decades = (beside.limit / start).log10();
+    let decades = elementary::log10(beside.limit / start);
     let decade = match beside.reaches(start) {
         Some(t) if decades > 1.0 => (until - t) / decades,
-        _ => (next - until).max(0.0) / -TIGHTER.log10(),
+        _ => (next - until).max(0.0) / -elementary::log10(TIGHTER),
     };
     Course::Chaotic { until, decade }
 }

@@ -2,7 +2,7 @@
 
 use super::{Course, Lateness, StepSize, TRUSTED_SHARE, Trust};
 use crate::dynamics::Outcome;
-use crate::numeric::decimals;
+use crate::numeric::{decimals, elementary};
 
 /// A number with two digits, written out.
 fn two(value: f64) -> String {
@@ -54,7 +54,7 @@ pub fn small_length(m: f64, travel: f64) -> String {
     let least = 2.0 * f64::EPSILON * travel;
     if m < least || m == 0.0 {
         let least = if least > 0.0 { least } else { f64::EPSILON * 1e-3 };
-        let power = (least * 1e3).log10().ceil();
+        let power = elementary::log10(least * 1e3).ceil();
         return format!("below 1e{power:.0} mm");
     }
     format!("about {} mm", length_mm(m))

@@ -11,7 +11,7 @@ use self::motion::Motion;
 use self::trials::{Choice, Single, Trial, each, together, trials};
 use super::{Identified, Identity, Unidentified, median, with_interval};
 use crate::numeric::regression::{geometric, student};
-use crate::numeric::short;
+use crate::numeric::{elementary, short};
 use crate::study::Table;
 
 /// Columns of the restitution with its interval.
@@ -125,7 +125,7 @@ fn half(number: Identity) -> f64 {
 
 /// Whether two numbers differ by more than one and a half times the interval of their difference.
 fn differ(one: Identity, other: Identity) -> bool {
-    (one.value - other.value).abs() > 1.5 * half(one).hypot(half(other))
+    (one.value - other.value).abs() > 1.5 * elementary::hypot(half(one), half(other))
 }
 
 /// The weighted mean of two numbers, with an interval that contains both of theirs.
@@ -138,7 +138,9 @@ fn spanning(one: Identity, other: Identity) -> Identity {
 /// Factor by which single impacts scatter beyond their intervals; `None` if they do not.
 fn scatter(common: Choice, singles: &[&Single]) -> Option<f64> {
     let count = singles.len() as f64;
-    let apart = |single: &&Single| (single.ratio.value - common.value) / single.ratio.half.hypot(common.half);
+    let apart = |single: &&Single| {
+        (single.ratio.value - common.value) / elementary::hypot(single.ratio.half, common.half)
+    };
     // half of an interval is about two standard errors
     let square = 4.0 * singles.iter().map(|single| apart(single).powi(2)).sum::<f64>() / count;
     (square > 1.0 + 4.0 * (2.0 / count).sqrt()).then(|| square.sqrt())
@@ -259,8 +261,9 @@ pub fn restitution_of_times(times: &[f64]) -> Result<Identified, Unidentified> {
     if !(e > 0.0 && law.coefficients[1] < 0.0) {
         return Err(none("the flights do not become shorter; give such as lie between bounces alone"));
     }
-    let misfit =
-        |(k, t): (usize, &f64)| (t - law.coefficients[0] - law.coefficients[1] * e.powi(k as i32)).powi(2);
+    let misfit = |(k, t): (usize, &f64)| {
+        (t - law.coefficients[0] - law.coefficients[1] * elementary::powi(e, k as i32)).powi(2)
+    };
     let noise = (times.iter().enumerate().map(misfit).sum::<f64>() / law.freedom as f64).sqrt();
     let row = |times: &[f64]| {
         let flight = times[1] - times[0];

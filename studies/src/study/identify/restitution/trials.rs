@@ -8,6 +8,7 @@ use std::ops::RangeInclusive;
 use super::contacts::{Contact, Impact, limit};
 use super::meeting::{Meeting, Sides};
 use super::{Motion, median};
+use crate::numeric::elementary;
 use crate::numeric::orthogonal::MAX_TERMS;
 use crate::numeric::regression::student;
 
@@ -166,7 +167,8 @@ pub fn each(trials: &[Trial], contacts: usize) -> Vec<Single> {
         // errors of the ratio other than noise are attributed to the speeds in the same proportion
         let (_, noise) = trial.estimate(impact.ratio());
         let more = (ratio.half.powi(2) - noise.powi(2)).max(0.0).sqrt() / ratio.value.abs();
-        let half = |speed: f64, variance: f64| trial.estimate((0.0, variance)).1.hypot(more * speed);
+        let half =
+            |speed: f64, variance: f64| elementary::hypot(trial.estimate((0.0, variance)).1, more * speed);
         let halves = [half(impact.towards, impact.of_towards), half(impact.away, impact.of_away)];
         Some(Single { contact, impact, ratio, halves })
     };
@@ -207,7 +209,7 @@ pub fn narrowest(estimates: &Estimates) -> Option<Choice> {
         let narrower = |by: usize| (window.wrapping_sub(by), terms);
         let neighbours = [(window, terms + 1), narrower(1), narrower(2)];
         let difference = neighbours.into_iter().filter_map(apart).fold(fewer, f64::max);
-        Some(Choice { setting, value, half: noise.hypot(difference) })
+        Some(Choice { setting, value, half: elementary::hypot(noise, difference) })
     };
     estimates.iter().filter_map(choice).min_by(|a, b| a.half.total_cmp(&b.half))
 }

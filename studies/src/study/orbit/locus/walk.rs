@@ -7,6 +7,7 @@ use super::super::events::{characteristic, differ, is_at, root_between};
 use super::super::walk::AT_AN_END;
 use super::curve::{Curve, Spot};
 use super::{BranchEvent, BranchOptions, FieldRange, Locus, LocusEnd, LocusEvent, NoOrbit, Orbit};
+use crate::numeric::elementary;
 use crate::study::Task;
 
 /// First step in the units.
@@ -200,7 +201,7 @@ impl<'a> Walk<'a> {
             BranchEvent::Symmetry => {}
         }
         let is_one = |(_, event, spot): &(f64, LocusEvent, Spot)| match event {
-            LocusEvent::Cusp => spot.along[3].hypot(spot.along[4]) <= AT_A_CUSP,
+            LocusEvent::Cusp => elementary::hypot(spot.along[3], spot.along[4]) <= AT_A_CUSP,
             LocusEvent::GrazingFold => is_at(&spot.point, 1.0),
             LocusEvent::FoldFlip => is_at(&spot.point, 1.0) && is_at(&spot.point, -1.0),
             LocusEvent::GrazingFlip | LocusEvent::GrazingSymmetry => is_at(&spot.point, -1.0),
@@ -255,7 +256,7 @@ impl<'a> Walk<'a> {
     /// Takes states at another phase of the drive where an event at a stop comes near to the present one.
     fn keep_clear(&mut self) {
         let along = self.at.along;
-        if along[3].hypot(along[4]) > UPRIGHT
+        if elementary::hypot(along[3], along[4]) > UPRIGHT
             && let Some((curve, spot)) = self.curve.cleared(&self.at)
         {
             (self.curve, self.at) = (curve, spot);
