@@ -1,8 +1,13 @@
-//! Wall, thread and process clocks.
+//! Wall, thread and process clocks. A web page can read no clock of the processor; there all three are the
+//! wall clock.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
+#[cfg(not(target_arch = "wasm32"))]
 use cpu_time::{ProcessTime, ThreadTime};
+use web_time::Instant;
+#[cfg(target_arch = "wasm32")]
+use web_time::{Instant as ProcessTime, Instant as ThreadTime};
 
 macro_rules! clocks {
     ($($(#[$doc:meta])* $name:ident($inner:ident);)*) => {$(

@@ -5,9 +5,10 @@ use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use rayon::prelude::*;
+use web_time::Instant;
 
 /// Number of processors that the program may use; at least 1.
 pub fn processors() -> usize {
@@ -28,10 +29,12 @@ pub fn sleep(time: Duration) {
     std::thread::sleep(time);
 }
 
-/// A pool of threads that share the parts of one study.
+/// A pool of threads that share the parts of one study; or the calling thread alone, which works on one part
+/// after the other, as in a web page, where no thread can be started.
 #[derive(Debug)]
 pub struct Pool {
-    threads: rayon::ThreadPool,
+    /// `None` for the calling thread.
+    threads: Option<rayon::ThreadPool>,
     /// The process that started them: one that is forked from it has no threads of the pool.
     process: u32,
 }
@@ -44,22 +47,35 @@ pub struct NoThreads {
     reason: String,
 }
 
+/// The number of this process; a web page has none.
+fn process() -> u32 {
+    if cfg!(target_arch = "wasm32") { 0 } else { std::process::id() }
+}
+
 impl Pool {
-    /// Starts `count` threads.
+    /// Starts `count` threads. In a web page, where there are none, the pool is the calling thread.
     pub fn new(count: usize) -> Result<Self, NoThreads> {
+        if cfg!(target_arch = "wasm32") {
+            return Ok(Self::calling_thread());
+        }
         let pool = rayon::ThreadPoolBuilder::new().num_threads(count).stack_size(STACK).build();
         let threads = pool.map_err(|error| NoThreads { count, reason: error.to_string() })?;
-        Ok(Self { threads, process: std::process::id() })
+        Ok(Self { threads: Some(threads), process: process() })
+    }
+
+    /// The calling thread.
+    pub fn calling_thread() -> Self {
+        Self { threads: None, process: process() }
     }
 
     /// Number of threads.
     pub fn count(&self) -> usize {
-        self.threads.current_num_threads()
+        self.threads.as_ref().map_or(1, rayon::ThreadPool::current_num_threads)
     }
 
     /// Whether its threads are there: they are not in a process that was forked from the one of the pool.
     pub fn is_alive(&self) -> bool {
-        self.process == std::process::id()
+        self.process == process()
     }
 
     /// The results of parts 0 to `parts` (exclusive) in order, or an error of one of them, after which no
@@ -70,7 +86,11 @@ impl Pool {
         state: impl Fn() -> S + Sync,
         part: impl Fn(&mut S, usize) -> Result<R, E> + Sync,
     ) -> Result<Vec<R>, E> {
-        self.threads.install(|| (0..parts).into_par_iter().with_max_len(1).map_init(&state, &part).collect())
+        let Some(threads) = &self.threads else {
+            let mut state = state();
+            return (0..parts).map(|number| part(&mut state, number)).collect();
+        };
+        threads.install(|| (0..parts).into_par_iter().with_max_len(1).map_init(&state, &part).collect())
     }
 
     /// The result of the first of parts 0 to `parts` (exclusive) that has one.
@@ -80,8 +100,12 @@ impl Pool {
         state: impl Fn() -> S + Sync,
         part: impl Fn(&mut S, u64) -> Option<R> + Sync,
     ) -> Option<R> {
+        let Some(threads) = &self.threads else {
+            let mut state = state();
+            return (0..parts).find_map(|number| part(&mut state, number));
+        };
         let all = || (0..parts).into_par_iter().map_init(&state, &part);
-        self.threads.install(|| all().find_first(Option::is_some).flatten())
+        threads.install(|| all().find_first(Option::is_some).flatten())
     }
 
     /// Computes results on all threads and passes them in order to `receive` on this thread, while further
@@ -100,11 +124,21 @@ impl Pool {
         per_task: usize,
         ahead: usize,
         work: impl Fn(&dyn Fn(UnderWay) -> Option<usize>, &dyn Fn(usize, R)) + Sync,
-        mut receive: impl FnMut(Vec<R>) -> bool,
+        receive: impl FnMut(Vec<R>) -> bool,
     ) {
         let queue = Queue { ahead, ..Queue::new(count, self.count()) };
+        let mut delivery = Delivery { queue: &queue, per_task, waiting: BTreeMap::new(), passed: 0, receive };
+        let Some(threads) = &self.threads else {
+            let delivery = RefCell::new(delivery);
+            let done = |index, result| {
+                if !delivery.borrow_mut().pass([(index, result)]) {
+                    queue.stop();
+                }
+            };
+            return work(&|under_way| queue.take(under_way), &done);
+        };
         let (sender, receiver) = channel();
-        self.threads.in_place_scope(|scope| {
+        threads.in_place_scope(|scope| {
             scope.spawn_broadcast(|_, _| {
                 let sender = EndNotice(sender.clone());
                 let pending = RefCell::new((Vec::new(), Instant::now()));
@@ -131,10 +165,14 @@ impl Pool {
             });
             // Stops the queue on every exit, including a panic of `receive`, so that no thread keeps waiting.
             let _stop = StopOnDrop(&queue);
-            let (mut waiting, mut passed, mut working) = (BTreeMap::new(), 0, self.count());
+            let mut working = self.count();
             while working > 0 {
                 match receiver.recv() {
-                    Ok(Message::Done(results)) => waiting.extend(results),
+                    Ok(Message::Done(results)) => {
+                        if !delivery.pass(results) {
+                            return;
+                        }
+                    }
                     Ok(Message::Ended) => {
                         // If tasks remain, this thread has given up or panicked (the scope propagates the
                         // panic after all threads have ended). Some results will then be missing, and no
@@ -144,33 +182,53 @@ impl Pool {
                     }
                     Err(_) => break,
                 }
-                loop {
-                    // all results of one or more tasks, or a part of the results of one large task
-                    let (step, limit) = match per_task <= MAX_BATCH {
-                        true => (per_task, MAX_BATCH),
-                        false => (1, MAX_BATCH.min(per_task - passed % per_task)),
-                    };
-                    let ends = (1..=limit / step).map(|steps| passed + steps * step);
-                    let until = ends.take_while(|end| waiting.contains_key(&(end - 1))).last();
-                    let in_order =
-                        (passed..until.unwrap_or(passed)).map_while(|index| waiting.remove(&index));
-                    let next: Vec<R> = in_order.collect();
-                    if next.is_empty() {
-                        break;
-                    }
-                    passed += next.len();
-                    queue.set_finished(passed / per_task);
-                    if !receive(next) {
-                        return;
-                    }
-                }
             }
         });
     }
 
     /// Runs `work` on each thread.
     pub fn everywhere(&self, work: impl Fn() + Sync) {
-        self.threads.broadcast(|_| work());
+        match &self.threads {
+            Some(threads) => drop(threads.broadcast(|_| work())),
+            None => work(),
+        }
+    }
+}
+
+/// Results that wait for earlier ones, and their receiver.
+struct Delivery<'a, R, F> {
+    queue: &'a Queue,
+    per_task: usize,
+    waiting: BTreeMap<usize, R>,
+    /// Number of results that have been received.
+    passed: usize,
+    receive: F,
+}
+
+impl<R, F: FnMut(Vec<R>) -> bool> Delivery<'_, R, F> {
+    /// Takes results, each with its index, and passes on what is in order. Returns false once the receiver
+    /// wants no more.
+    fn pass(&mut self, results: impl IntoIterator<Item = (usize, R)>) -> bool {
+        self.waiting.extend(results);
+        loop {
+            // all results of one or more tasks, or a part of the results of one large task
+            let (step, limit) = match self.per_task <= MAX_BATCH {
+                true => (self.per_task, MAX_BATCH),
+                false => (1, MAX_BATCH.min(self.per_task - self.passed % self.per_task)),
+            };
+            let ends = (1..=limit / step).map(|steps| self.passed + steps * step);
+            let until = ends.take_while(|end| self.waiting.contains_key(&(end - 1))).last();
+            let in_order = self.passed..until.unwrap_or(self.passed);
+            let next: Vec<R> = in_order.map_while(|index| self.waiting.remove(&index)).collect();
+            if next.is_empty() {
+                return true;
+            }
+            self.passed += next.len();
+            self.queue.set_finished(self.passed / self.per_task);
+            if !(self.receive)(next) {
+                return false;
+            }
+        }
     }
 }
 

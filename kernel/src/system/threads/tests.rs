@@ -12,10 +12,15 @@ fn full(runs: usize) -> UnderWay {
     UnderWay { runs, full: true }
 }
 
+/// A pool of `threads`, or the calling thread for none.
+fn pool_of(threads: usize) -> Pool {
+    if threads == 0 { Pool::calling_thread() } else { Pool::new(threads).unwrap() }
+}
+
 #[test]
 fn results_come_in_order_and_none_is_begun_too_far_ahead() {
-    for threads in [1, 2, 5] {
-        let pool = Pool::new(threads).unwrap();
+    for threads in [0, 1, 2, 5] {
+        let pool = pool_of(threads);
         let (begun, received) = (Mutex::new(0), Mutex::new(Vec::new()));
         let work = |next: &dyn Fn(UnderWay) -> Option<usize>, done: &dyn Fn(usize, usize)| {
             while let Some(first) = next(not_full(0)) {
@@ -94,7 +99,7 @@ fn a_panic_of_the_receiver_ends_all() {
 
 #[test]
 fn results_of_a_task_are_received_together_unless_they_are_too_many() {
-    for (threads, each) in (1..=8).flat_map(|threads| [1, 7, 255, 256, 257, 300, 700].map(|n| (threads, n))) {
+    for (threads, each) in (0..=8).flat_map(|threads| [1, 7, 255, 256, 257, 300, 700].map(|n| (threads, n))) {
         let all = 2000 / each + 3;
         let work = |next: &dyn Fn(UnderWay) -> Option<usize>, done: &dyn Fn(usize, usize)| {
             while let Some(number) = next(not_full(0)) {
@@ -105,7 +110,7 @@ fn results_of_a_task_are_received_together_unless_they_are_too_many() {
             }
         };
         let mut received = Vec::new();
-        Pool::new(threads).unwrap().in_order(all, each, 4, work, |results| {
+        pool_of(threads).in_order(all, each, 4, work, |results| {
             assert!(results.len() <= MAX_BATCH);
             let (first, last) = (results[0], results[results.len() - 1]);
             let together = first % each == 0 && (last + 1) % each == 0;
@@ -119,6 +124,9 @@ fn results_of_a_task_are_received_together_unless_they_are_too_many() {
 
 #[test]
 fn shared_results_come_in_order_and_an_error_is_returned() {
+    let here = Pool::calling_thread();
+    assert_eq!(here.map(3, || 1, |_, part| if part < 2 { Ok(part) } else { Err("third") }), Err("third"));
+    assert_eq!(here.find_first(9, || 1, |_, part| (part > 4).then_some(part)), Some(5));
     let pool = Pool::new(3).unwrap();
     let squares = |next: &dyn Fn(UnderWay) -> Option<usize>| {
         Ok::<_, ()>(std::iter::from_fn(|| next(not_full(0))).map(|i| (i, i * i)).collect())
