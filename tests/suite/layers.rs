@@ -37,7 +37,7 @@ const ORDERS: [Order; 3] = [
     },
     Order {
         root: &["app"],
-        names: &["start", "task", "words", "session", "export", "ui", "panels", "views", "window"],
+        names: &["task", "words", "session", "export", "ui", "panels", "views", "window", "desktop"],
         with_tests: true,
     },
     Order {

@@ -1,11 +1,17 @@
-//! Read access to files.
+//! Read access to files; in a web page, to those that it keeps.
 
-use std::fs::{self, File};
+use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
+#[cfg(target_arch = "wasm32")]
+use super::page;
+
 /// Opens the file, device or pipe at `path`.
 pub fn open(path: &Path) -> io::Result<impl Read + use<>> {
+    #[cfg(target_arch = "wasm32")]
+    return page::bytes(path).map(io::Cursor::new);
+    #[cfg(not(target_arch = "wasm32"))]
     File::open(path)
 }
 
@@ -18,16 +24,24 @@ pub fn open_at(path: &Path, offset: u64) -> io::Result<impl Read> {
 
 /// All bytes of a file.
 pub fn bytes(path: &Path) -> io::Result<Vec<u8>> {
-    fs::read(path)
+    let mut bytes = Vec::new();
+    open(path)?.read_to_end(&mut bytes)?;
+    Ok(bytes)
 }
 
 /// Whether anything exists at `path`.
 pub fn exists(path: &Path) -> bool {
+    #[cfg(target_arch = "wasm32")]
+    return page::is_kept(path);
+    #[cfg(not(target_arch = "wasm32"))]
     path.exists()
 }
 
 /// Whether there is a regular file at `path`.
 pub fn is_file(path: &Path) -> bool {
+    #[cfg(target_arch = "wasm32")]
+    return page::is_kept(path);
+    #[cfg(not(target_arch = "wasm32"))]
     path.is_file()
 }
 

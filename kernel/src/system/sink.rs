@@ -175,6 +175,14 @@ impl Sink {
 /// Writes a whole file; an existing one is replaced only after all bytes are written. The error
 /// is a sentence.
 pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), String> {
+    #[cfg(target_arch = "wasm32")]
+    return super::page::write(path, bytes);
+    #[cfg(not(target_arch = "wasm32"))]
+    write_whole(path, bytes)
+}
+
+#[cfg(not(target_arch = "wasm32"))]
+fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), String> {
     let mut sink = Sink::open(path).map_err(|error| error.to_string())?;
     let refused = |error: io::Error| format!("cannot write {}: {error}", path.display());
     sink.put_bytes(bytes).map_err(refused)?;

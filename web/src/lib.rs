@@ -1,0 +1,139 @@
+//! The window in a web page, and the worker that answers its questions.
+//!
+//! `page/page.js` opens the window and has the workers; `page/worker.js` calls [`answer`]. Both load the same
+//! module, each into a memory of its own.
+
+#![cfg(target_arch = "wasm32")]
+
+mod tables;
+
+use std::cell::{Cell, RefCell};
+
+use eframe::egui;
+use interwell::app::window::Window;
+use interwell::app::window::leave::Next;
+use interwell::app::{begin, session, task};
+use interwell::system::page;
+use wasm_bindgen::prelude::*;
+
+#[wasm_bindgen(js_namespace = interwell)]
+extern "C" {
+    fn ask(name: &str, text: &str) -> u32;
+    fn cancel(id: u32);
+    fn download(name: &str, bytes: &[u8]);
+    fn show(link: &str, title: &str, status: &str);
+}
+
+/// Shortest time in s between two looks at the scene for the address and the status.
+const LOOK: f64 = 0.5;
+
+thread_local! {
+    static CONTEXT: RefCell<Option<egui::Context>> = const { RefCell::new(None) };
+    /// A link that the address has become.
+    static LINK: Cell<Option<String>> = const { Cell::new(None) };
+}
+
+/// The window, whose scene the address follows.
+struct Page {
+    window: Window,
+    looked_at: f64,
+    /// The link of the scene.
+    link: String,
+}
+
+impl Page {
+    /// Opens what the address has become, unless it is the scene that is open.
+    fn follow_address(&mut self, ctx: &egui::Context) {
+        let asked = LINK.take().filter(|link| *link != self.link && !link.is_empty());
+        if let Some(link) = asked {
+            self.window.leave_for(ctx, Next::Open(link));
+        }
+    }
+
+    /// Shows the link of the scene as the address, its title and what it does.
+    fn show(&mut self, ctx: &egui::Context) {
+        let now = ctx.input(|input| input.time);
+        if now - self.looked_at < LOOK || self.window.session.editor.in_gesture() {
+            return;
+        }
+        self.looked_at = now;
+        let session = &self.window.session;
+        // the link of a lesson stays as it was opened
+        let link = match self.window.lesson() {
+            Some(_) => String::new(),
+            None => session.editor.document().link().unwrap_or_default(),
+        };
+        show(&link, &format!("{} - interwell", session.scene().title), &session.sentence().text);
+        self.link = link;
+    }
+}
+
+impl eframe::App for Page {
+    fn logic(&mut self, ctx: &egui::Context, frame: &mut eframe::Frame) {
+        self.follow_address(ctx);
+        eframe::App::logic(&mut self.window, ctx, frame);
+        self.show(ctx);
+    }
+
+    fn ui(&mut self, ui: &mut egui::Ui, frame: &mut eframe::Frame) {
+        eframe::App::ui(&mut self.window, ui, frame);
+    }
+
+    fn clear_color(&self, visuals: &egui::Visuals) -> [f32; 4] {
+        self.window.clear_color(visuals)
+    }
+
+    fn raw_input_hook(&mut self, ctx: &egui::Context, input: &mut egui::RawInput) {
+        self.window.raw_input_hook(ctx, input);
+    }
+
+    fn save(&mut self, storage: &mut dyn eframe::Storage) {
+        self.window.save(storage);
+    }
+
+    fn persist_egui_memory(&self) -> bool {
+        self.window.persist_egui_memory()
+    }
+}
+
+/// Opens the window in a canvas, on the scene or lesson of a link, which may be empty.
+#[wasm_bindgen]
+pub async fn open_window(canvas: web_sys::HtmlCanvasElement, link: String) -> Result<(), JsValue> {
+    page::set_download(|name, bytes| {
+        download(name, bytes);
+        Ok(())
+    });
+    task::set_workers(task::Workers { ask, cancel });
+    let options = eframe::WebOptions { dithering: false, ..eframe::WebOptions::default() };
+    let start = move |creation: &eframe::CreationContext<'_>| -> Result<Box<dyn eframe::App>, _> {
+        CONTEXT.set(Some(creation.egui_ctx.clone()));
+        let window = begin(creation, Some(link.as_str()).filter(|link| !link.is_empty()))?;
+        Ok(Box::new(Page { window, looked_at: f64::NEG_INFINITY, link: String::new() }))
+    };
+    eframe::WebRunner::new().start(canvas, options, Box::new(start)).await
+}
+
+/// Opens another scene or lesson, as the address has changed.
+#[wasm_bindgen]
+pub fn open_link(link: String) {
+    LINK.set(Some(link));
+    CONTEXT.with_borrow(|context| context.as_ref().map(egui::Context::request_repaint));
+}
+
+/// Takes a part of the answer to a question from a worker; without text there are no more.
+#[wasm_bindgen]
+pub fn answer_part(id: u32, text: Option<String>) {
+    task::take_part(id, text);
+}
+
+/// Answers a question in a worker, and passes each part to `each`. Returns what is wrong with the question.
+#[wasm_bindgen]
+pub fn answer(name: &str, question: &str, each: &js_sys::Function) -> Option<String> {
+    session::answer(name, question, &|part| drop(each.call1(&JsValue::NULL, &part.into()))).err()
+}
+
+/// Tables of a built-in scene as CSV, to be compared with those of a desktop.
+#[wasm_bindgen]
+pub fn tables_of(preset: &str) -> String {
+    tables::tables(preset).unwrap_or_else(|error| error.to_string())
+}

@@ -1,0 +1,34 @@
+//! Tables of a built-in scene as CSV, by which a web page and a desktop are compared to the bit.
+
+use interwell_studies::output::csv;
+use interwell_studies::questions::{Curve, Error, Progress, Sampling, Simulation, Sweep, Table, Threshold};
+
+/// Number of cells of the sweep.
+const CELLS: usize = 13;
+
+/// Samples and events of the run, the force curve, a sweep over the amplitude and the threshold of a built-in scene;
+/// of a question that does not apply to the scene, the reason.
+pub fn tables(preset: &str) -> Result<String, Error> {
+    let (simulation, progress) = (Simulation::preset(preset)?, Progress::none().threads(1));
+    let recorded = simulation.record(&Sampling::Every(0.01), None, &progress)?;
+    let sweep = match simulation.scene().harmonic() {
+        Some(drive) => Sweep::over(drive.amplitude_path(), 0.1..=1.5, CELLS),
+        None => Sweep::over("mass_g", 5.0..=25.0, CELLS),
+    };
+    let sweep = Sweep { columns: vec!["all".to_owned()], ..sweep };
+    let answers = [
+        ("samples", Ok(recorded.samples)),
+        ("events", Ok(recorded.events)),
+        ("curve", Curve::default().run(&simulation)),
+        ("sweep", sweep.run(&simulation, &progress)),
+        ("threshold", Threshold::default().run(&simulation, &progress)),
+    ];
+    Ok(answers.map(|(name, answer)| format!("{preset} {name}\n{}", text(answer))).concat())
+}
+
+fn text(answer: Result<Table, Error>) -> String {
+    match answer {
+        Ok(table) => csv(&table),
+        Err(error) => format!("{error}\n"),
+    }
+}
