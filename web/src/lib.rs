@@ -7,6 +7,8 @@
 
 mod tables;
 
+pub(crate) use interwell;
+
 use std::cell::{Cell, RefCell};
 
 use eframe::egui;

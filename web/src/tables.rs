@@ -1,16 +1,19 @@
 //! Tables of a built-in scene as CSV, by which a web page and a desktop are compared to the bit.
 
-use interwell_studies::output::csv;
-use interwell_studies::questions::{Curve, Error, Progress, Sampling, Simulation, Sweep, Table, Threshold};
+use crate::interwell::output::csv;
+use crate::interwell::questions::{Curve, Error, Progress, Sampling, Simulation, Sweep, Table, Threshold};
 
 /// Number of cells of the sweep.
 const CELLS: usize = 13;
 
-/// Samples and events of the run, the force curve, a sweep over the amplitude and the threshold of a built-in scene;
-/// of a question that does not apply to the scene, the reason.
+/// Number of samples of the run.
+const SAMPLES: f64 = 500.0;
+
+/// Samples and events of the run, the force curve, a sweep over the amplitude and the threshold of a built-in
+/// scene; of a question that does not apply to the scene, the reason.
 pub fn tables(preset: &str) -> Result<String, Error> {
     let (simulation, progress) = (Simulation::preset(preset)?, Progress::none().threads(1));
-    let recorded = simulation.record(&Sampling::Every(0.01), None, &progress)?;
+    let recorded = simulation.record(&Sampling::Every(simulation.scene().run.duration_s / SAMPLES), None, &progress)?;
     let sweep = match simulation.scene().harmonic() {
         Some(drive) => Sweep::over(drive.amplitude_path(), 0.1..=1.5, CELLS),
         None => Sweep::over("mass_g", 5.0..=25.0, CELLS),

@@ -4,8 +4,8 @@
 //! wall and CPU time in s; [`files`] reads, and [`Sink`] and [`write_file`] write a file as a whole or not at
 //! all. [`Part`] writes a long file in blocks with a journal, so that an interruption loses no complete
 //! block, and [`checksum`] has the SHA-256 by which it is resumed. A block is synced before it counts, which
-//! costs a wait for the disk on a thread of its own. In a web page the calling thread does all work, files are
-//! those that the user has opened there, and a file that is written is a download.
+//! costs a wait for the disk on a thread of its own. In a web page the calling thread does all work, files
+//! are those that the user has opened there, and a file that is written is a download.
 //!
 //! Errors: [`OpenError`] for an output that cannot be opened, [`PartError`] for a file that cannot be begun
 //! or resumed; `std::io::Error`, or a sentence, for the rest.

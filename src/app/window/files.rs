@@ -273,6 +273,7 @@ impl Window {
         // the suggested path if the desktop has no dialog
         let start = folder.clone().unwrap_or_else(files::working_folder);
         let start = if wanted.is_read() { start.join("") } else { start.join(format!("{stem}.{ending}")) };
+        #[cfg(not(target_arch = "wasm32"))]
         self.file_dialog.ask((), &self.wake, move |(), _, _| {
             let endings = if wanted == Wanted::Measured { &ENDINGS[..] } else { &[ending][..] };
             let mut dialog = rfd::FileDialog::new().add_filter(kind, endings);

@@ -10,7 +10,8 @@ fn main() -> ExitCode {
         return ExitCode::from(2);
     };
     let mut bindgen = wasm_bindgen_cli_support::Bindgen::new();
-    let made = bindgen.input_path(module).out_name("interwell").typescript(false).web(true);
+    bindgen.input_path(module).out_name("interwell").typescript(false).remove_name_section(true);
+    let made = bindgen.web(true);
     match made.and_then(|bindgen| bindgen.generate(folder)) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {

@@ -1,6 +1,8 @@
 //! Prints tables of built-in scenes as CSV, to be compared with those of the page: `tables PRESET ..`.
 
-#[path = "../tables.rs"]
+use interwell_studies as interwell;
+
+#[path = "../src/tables.rs"]
 mod tables;
 
 fn main() {
