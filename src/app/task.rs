@@ -1,13 +1,17 @@
 //! Background questions: a question that can be compared, and its answer, which a thread computes in parts.
 //!
 //! The newest answer stays until it is replaced. A question that is replaced is cancelled, and parts of its
-//! answer that come later are dropped.
+//! answer that come later are dropped. A [`Question`] is data, so that another program can answer it; what
+//! concerns the machine of the user alone is a job, a function.
 
 use std::ops::Deref;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
+
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
 
 use crate::system::clock::WallClock;
 use crate::system::threads::{Pool, processors, sleep, spawn};
@@ -23,8 +27,42 @@ pub type Wake = Arc<dyn Fn() + Send + Sync>;
 /// Shortest interval between two wakes of the window while a job runs.
 const WAKE_INTERVAL: Duration = Duration::from_millis(40);
 
+/// A question that a thread, or in a web page a worker, answers.
+pub trait Question: Clone + PartialEq + Serialize + DeserializeOwned + Send + 'static {
+    /// The name of the question in a message.
+    const NAME: &'static str;
+    /// A part of its answer.
+    type Part: Serialize + DeserializeOwned + Send + 'static;
+
+    /// Answers it: passes on parts as they come, and returns the last one, if there is one. Ends early once
+    /// `cancel` is set.
+    fn answer(&self, cancel: &AtomicBool, each: Each<'_, Self::Part>) -> Option<Self::Part>;
+}
+
+/// A question or a part of an answer as the text of a message.
+pub fn to_text<T: Serialize>(data: &T) -> Result<String, String> {
+    ron::to_string(data).map_err(|error| error.to_string())
+}
+
+/// The question or the part of an answer in a message.
+pub fn from_text<T: DeserializeOwned>(text: &str) -> Result<T, String> {
+    ron::from_str(text).map_err(|error| error.to_string())
+}
+
+/// A part of a question that does not take part in its comparison.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct Uncompared<T>(pub T);
+
+impl<T> PartialEq for Uncompared<T> {
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
+}
+
 /// A shared value that is compared by its address, not by its content.
-#[derive(Debug)]
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(transparent)]
 pub struct Identity<T>(pub Arc<T>);
 
 impl<T> Clone for Identity<T> {
@@ -147,10 +185,23 @@ impl<Q, P> Default for Background<Q, P> {
     }
 }
 
+impl<Q: Question> Background<Q, Q::Part> {
+    /// Asks a question, and cancels the one before.
+    pub fn ask(&mut self, question: Q, wake: &Wake) {
+        self.ask_job(question, wake, Q::answer);
+    }
+
+    /// Asks a question unless it is answered or being computed; to be called in every frame in which a view
+    /// shows the answer. Nothing is begun unless the scene stands `still`.
+    pub fn want(&mut self, question: Q, still: bool, wake: &Wake) {
+        self.want_job(question, still, wake, Q::answer);
+    }
+}
+
 impl<Q: PartialEq, P: Send + 'static> Background<Q, P> {
-    /// Asks a question, and cancels the one before. `job` is given the question, a cancel flag to check and a
-    /// callback for each part; it returns the last part, if there is one.
-    pub fn ask(
+    /// Like [`ask`](Self::ask), for a function that answers. `job` is given the question, a cancel flag to
+    /// check and a callback for each part; it returns the last part, if there is one.
+    pub fn ask_job(
         &mut self,
         question: Q,
         wake: &Wake,
@@ -166,9 +217,8 @@ impl<Q: PartialEq, P: Send + 'static> Background<Q, P> {
         self.work = job.map_or(Work::Paused, Work::Running);
     }
 
-    /// Asks a question unless it is answered or being computed; to be called in every frame in which a view
-    /// shows the answer. Nothing is begun unless the scene stands `still`. `job` is as in [`ask`](Self::ask).
-    pub fn want(
+    /// Like [`want`](Self::want), for a function that answers as in [`ask_job`](Self::ask_job).
+    pub fn want_job(
         &mut self,
         question: Q,
         still: bool,
@@ -179,7 +229,7 @@ impl<Q: PartialEq, P: Send + 'static> Background<Q, P> {
     {
         self.is_wanted = true;
         if still && (self.is_paused() || self.question.as_ref() != Some(&question)) {
-            self.ask(question, wake, job);
+            self.ask_job(question, wake, job);
         }
     }
 

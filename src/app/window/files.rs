@@ -273,7 +273,7 @@ impl Window {
         // the suggested path if the desktop has no dialog
         let start = folder.clone().unwrap_or_else(files::working_folder);
         let start = if wanted.is_read() { start.join("") } else { start.join(format!("{stem}.{ending}")) };
-        self.file_dialog.ask((), &self.wake, move |(), _, _| {
+        self.file_dialog.ask_job((), &self.wake, move |(), _, _| {
             let endings = if wanted == Wanted::Measured { &ENDINGS[..] } else { &[ending][..] };
             let mut dialog = rfd::FileDialog::new().add_filter(kind, endings);
             if let Some(folder) = folder.filter(|folder| files::is_folder(folder)) {
