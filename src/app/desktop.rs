@@ -6,10 +6,10 @@ use std::sync::Arc;
 
 use eframe::egui;
 
+use super::begin;
 use super::session::CannotRun;
 use super::ui::settings::Settings;
 use super::window::Window;
-use super::begin;
 
 /// Why no window can be opened.
 #[derive(Debug, thiserror::Error)]

@@ -1,7 +1,11 @@
 //! Background questions: a question that can be compared, and its answer, which a thread computes in parts.
 //!
 //! The newest answer stays until it is replaced. A question that is replaced is cancelled, and parts of its
-//! answer that come later are dropped.
+//! answer that come later are dropped. A [`Question`] is data, so that another program can answer it; what
+//! concerns the machine of the user alone is a job, a function.
+
+#[cfg(target_arch = "wasm32")]
+mod workers;
 
 use std::ops::Deref;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -9,8 +13,14 @@ use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+
 use crate::system::clock::WallClock;
 use crate::system::threads::{Pool, processors, sleep, spawn};
+
+#[cfg(target_arch = "wasm32")]
+pub use workers::{Workers, set_workers, take_part};
 
 /// A pool of threads for all cores but one; `None` if the system cannot start threads.
 pub fn pool() -> Option<Pool> {
@@ -23,8 +33,42 @@ pub type Wake = Arc<dyn Fn() + Send + Sync>;
 /// Shortest interval between two wakes of the window while a job runs.
 const WAKE_INTERVAL: Duration = Duration::from_millis(40);
 
+/// A question that a thread, or in a web page a worker, answers.
+pub trait Question: Clone + PartialEq + Serialize + DeserializeOwned + Send + 'static {
+    /// The name of the question in a message.
+    const NAME: &'static str;
+    /// A part of its answer.
+    type Part: Serialize + DeserializeOwned + Send + 'static;
+
+    /// Answers it: passes on parts as they come, and returns the last one, if there is one. Ends early once
+    /// `cancel` is set.
+    fn answer(&self, cancel: &AtomicBool, each: Each<'_, Self::Part>) -> Option<Self::Part>;
+}
+
+/// A question or a part of an answer as the text of a message.
+pub fn to_text<T: Serialize>(data: &T) -> Result<String, String> {
+    ron::to_string(data).map_err(|error| error.to_string())
+}
+
+/// The question or the part of an answer in a message.
+pub fn from_text<T: DeserializeOwned>(text: &str) -> Result<T, String> {
+    ron::from_str(text).map_err(|error| error.to_string())
+}
+
+/// A part of a question that does not take part in its comparison.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct Uncompared<T>(pub T);
+
+impl<T> PartialEq for Uncompared<T> {
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
+}
+
 /// A shared value that is compared by its address, not by its content.
-#[derive(Debug)]
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(transparent)]
 pub struct Identity<T>(pub Arc<T>);
 
 impl<T> Clone for Identity<T> {
@@ -57,9 +101,23 @@ struct Job<P> {
     cancel: Arc<AtomicBool>,
     begun: WallClock,
     has_parts: bool,
+    /// The question that a worker answers; its parts end once it is dropped.
+    #[cfg(target_arch = "wasm32")]
+    _asked: Option<workers::Asked>,
 }
 
 impl<P: Send + 'static> Job<P> {
+    fn new(parts: Receiver<P>, cancel: Arc<AtomicBool>) -> Self {
+        Self {
+            parts,
+            cancel,
+            begun: WallClock::start(),
+            has_parts: false,
+            #[cfg(target_arch = "wasm32")]
+            _asked: None,
+        }
+    }
+
     /// Starts `job`. Returns `None` if the system cannot start a thread.
     fn start(
         wake: &Wake,
@@ -67,8 +125,8 @@ impl<P: Send + 'static> Job<P> {
     ) -> Option<Self> {
         let (sender, parts) = channel();
         let cancel = Arc::new(AtomicBool::new(false));
-        let (flag, wake, begun) = (Arc::clone(&cancel), Arc::clone(wake), WallClock::start());
-        let last_wake = Mutex::new(begun);
+        let (flag, wake) = (Arc::clone(&cancel), Arc::clone(wake));
+        let last_wake = Mutex::new(WallClock::start());
         let run = move || {
             let send = |part: P| {
                 // the receiver is gone once the job is dropped
@@ -90,7 +148,7 @@ impl<P: Send + 'static> Job<P> {
                 wake();
             }
         };
-        spawn(run).then_some(Self { parts, cancel, begun, has_parts: false })
+        spawn(run).then(|| Self::new(parts, cancel))
     }
 
     /// The parts that have come since the last call, and whether no more will come.
@@ -147,10 +205,35 @@ impl<Q, P> Default for Background<Q, P> {
     }
 }
 
+impl<Q: Question> Background<Q, Q::Part> {
+    /// Asks a question, and cancels the one before.
+    pub fn ask(&mut self, question: Q, wake: &Wake) {
+        #[cfg(not(target_arch = "wasm32"))]
+        self.ask_job(question, wake, Q::answer);
+        #[cfg(target_arch = "wasm32")]
+        {
+            let job = workers::Asked::new(&question, wake).map(|(asked, parts)| {
+                let mut job = Job::new(parts, Arc::default());
+                job._asked = Some(asked);
+                job
+            });
+            self.replace(question, job);
+        }
+    }
+
+    /// Asks a question unless it is answered or being computed; to be called in every frame in which a view
+    /// shows the answer. Nothing is begun unless the scene stands `still`.
+    pub fn want(&mut self, question: Q, still: bool, wake: &Wake) {
+        if self.needs(&question, still) {
+            self.ask(question, wake);
+        }
+    }
+}
+
 impl<Q: PartialEq, P: Send + 'static> Background<Q, P> {
-    /// Asks a question, and cancels the one before. `job` is given the question, a cancel flag to check and a
-    /// callback for each part; it returns the last part, if there is one.
-    pub fn ask(
+    /// Like [`ask`](Self::ask), for a function that answers. `job` is given the question, a cancel flag to
+    /// check and a callback for each part; it returns the last part, if there is one.
+    pub fn ask_job(
         &mut self,
         question: Q,
         wake: &Wake,
@@ -158,17 +241,13 @@ impl<Q: PartialEq, P: Send + 'static> Background<Q, P> {
     ) where
         Q: Clone + Send + 'static,
     {
-        if self.question.as_ref() != Some(&question) {
-            (self.is_current, self.worked) = (false, Duration::ZERO);
-        }
-        self.question = Some(question.clone());
-        let job = Job::start(wake, move |cancel, each| job(&question, cancel, each));
-        self.work = job.map_or(Work::Paused, Work::Running);
+        let asked = question.clone();
+        let job = Job::start(wake, move |cancel, each| job(&asked, cancel, each));
+        self.replace(question, job);
     }
 
-    /// Asks a question unless it is answered or being computed; to be called in every frame in which a view
-    /// shows the answer. Nothing is begun unless the scene stands `still`. `job` is as in [`ask`](Self::ask).
-    pub fn want(
+    /// Like [`want`](Self::want), for a function that answers as in [`ask_job`](Self::ask_job).
+    pub fn want_job(
         &mut self,
         question: Q,
         still: bool,
@@ -177,10 +256,37 @@ impl<Q: PartialEq, P: Send + 'static> Background<Q, P> {
     ) where
         Q: Clone + Send + 'static,
     {
-        self.is_wanted = true;
-        if still && (self.is_paused() || self.question.as_ref() != Some(&question)) {
-            self.ask(question, wake, job);
+        if self.needs(&question, still) {
+            self.ask_job(question, wake, job);
         }
+    }
+
+    /// Asks a question that an event of the page will answer: `begin` gets what takes the answer, if there is
+    /// one.
+    #[cfg(target_arch = "wasm32")]
+    pub fn ask_page(&mut self, question: Q, wake: &Wake, begin: impl FnOnce(Box<dyn FnOnce(Option<P>)>)) {
+        let ((sender, parts), wake) = (channel(), Arc::clone(wake));
+        self.replace(question, Some(Job::new(parts, Arc::default())));
+        begin(Box::new(move |answer| {
+            // the receiver is gone once the job is dropped
+            answer.map(|answer| sender.send(answer).ok());
+            drop(sender);
+            wake();
+        }));
+    }
+
+    /// Whether a wanted question is to be asked.
+    fn needs(&mut self, question: &Q, still: bool) -> bool {
+        self.is_wanted = true;
+        still && (self.is_paused() || self.question.as_ref() != Some(question))
+    }
+
+    fn replace(&mut self, question: Q, job: Option<Job<P>>) {
+        if self.question.as_ref() != Some(&question) {
+            (self.is_current, self.worked) = (false, Duration::ZERO);
+        }
+        self.question = Some(question);
+        self.work = job.map_or(Work::Paused, Work::Running);
     }
 
     /// Cancels the question and forgets the answer.

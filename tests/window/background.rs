@@ -31,7 +31,7 @@ fn a_question_that_is_replaced_or_dropped_is_cancelled() {
     let mut background = Background::<u32, ()>::default();
     for question in [1, 2] {
         let sender = sender.clone();
-        background.ask(question, &wake(), move |question, cancel, _| {
+        background.ask_job(question, &wake(), move |question, cancel, _| {
             wait_for(cancel);
             sender.send(*question).ok();
             None
@@ -45,11 +45,11 @@ fn a_question_that_is_replaced_or_dropped_is_cancelled() {
 #[test]
 fn an_answer_to_an_older_question_is_not_current() {
     let mut background = Background::default();
-    background.ask(1, &wake(), |_, _, _| Some(10));
+    background.ask_job(1, &wake(), |_, _, _| Some(10));
     assert!(background.wait(LONG));
     assert_eq!(background.answer(), Some(&10));
     let (sender, gate) = channel::<()>();
-    background.ask(2, &wake(), move |_, _, _| gate.recv().ok().map(|()| 20));
+    background.ask_job(2, &wake(), move |_, _, _| gate.recv().ok().map(|()| 20));
     assert_eq!((background.answer(), background.newest()), (None, Some(&10)));
     assert_eq!(background.take(), None);
     sender.send(()).unwrap();
@@ -57,7 +57,7 @@ fn an_answer_to_an_older_question_is_not_current() {
     assert_eq!((background.answer(), background.newest()), (Some(&20), Some(&20)));
     assert_eq!((background.take(), background.take()), (Some(20), None));
     // an answer may have no parts
-    background.ask(3, &wake(), |_, _, _| None);
+    background.ask_job(3, &wake(), |_, _, _| None);
     assert!(!background.wait(LONG) && !background.is_running());
     assert_eq!(background.parts(), (&[][..], true));
 }
@@ -65,21 +65,21 @@ fn an_answer_to_an_older_question_is_not_current() {
 #[test]
 fn a_job_that_panics_leaves_no_answer() {
     let mut background = Background::<(), i32>::default();
-    background.ask((), &wake(), |_, _, _| std::panic::resume_unwind(Box::new("stop")));
+    background.ask_job((), &wake(), |_, _, _| std::panic::resume_unwind(Box::new("stop")));
     assert!(!background.wait(LONG) && !background.is_running());
 }
 
 #[test]
 fn the_previous_parts_stay_until_new_ones_come() {
     let mut background = Background::default();
-    background.want(2, true, &wake(), numbers);
+    background.want_job(2, true, &wake(), numbers);
     background.wait(LONG);
     assert_eq!((background.parts(), background.is_whole()), ((&[0, 1][..], true), true));
-    background.want(3, false, &wake(), |_, _, _| panic!("the scene is being changed"));
+    background.want_job(3, false, &wake(), |_, _, _| panic!("the scene is being changed"));
     assert_eq!(background.question(), Some(&2));
     let gate = Arc::new(AtomicBool::new(false));
     let passed = Arc::clone(&gate);
-    background.want(3, true, &wake(), move |_, cancel, each| {
+    background.want_job(3, true, &wake(), move |_, cancel, each| {
         wait_for(&passed);
         each(7);
         each(8);
@@ -97,7 +97,7 @@ fn the_previous_parts_stay_until_new_ones_come() {
     background.end_frame();
     assert!(background.is_paused());
     let (sender, gate) = channel::<()>();
-    background.want(3, true, &wake(), move |count, cancel, each| {
+    background.want_job(3, true, &wake(), move |count, cancel, each| {
         gate.recv().ok();
         numbers(count, cancel, each)
     });
@@ -112,16 +112,16 @@ fn the_previous_parts_stay_until_new_ones_come() {
 #[test]
 fn a_stopped_question_is_begun_again_once_it_may_be() {
     let mut background = Background::default();
-    background.want(4, true, &wake(), |_, cancel, _| {
+    background.want_job(4, true, &wake(), |_, cancel, _| {
         wait_for(cancel);
         None
     });
     assert!(background.running_for().is_some());
     background.stop();
-    background.want(4, true, &wake(), |_, _, _| panic!("the user has stopped it"));
+    background.want_job(4, true, &wake(), |_, _, _| panic!("the user has stopped it"));
     assert!(background.is_whole() && background.running_for().is_none());
     background.resume();
-    background.want(4, true, &wake(), numbers);
+    background.want_job(4, true, &wake(), numbers);
     background.wait(LONG);
     assert_eq!(background.parts(), (&[0, 1, 2, 3][..], true));
 }

@@ -10,6 +10,7 @@ mod tables;
 pub(crate) use interwell;
 
 use std::cell::{Cell, RefCell};
+use std::sync::atomic::AtomicBool;
 
 use eframe::egui;
 use interwell::app::window::Window;
@@ -125,13 +126,22 @@ pub fn open_link(link: String) {
 /// Takes a part of the answer to a question from a worker; without text there are no more.
 #[wasm_bindgen]
 pub fn answer_part(id: u32, text: Option<String>) {
-    task::take_part(id, text);
+    task::take_part(id, text.as_deref());
+}
+
+thread_local! {
+    /// What takes the parts of the answer in a worker.
+    static EACH: RefCell<Option<js_sys::Function>> = const { RefCell::new(None) };
 }
 
 /// Answers a question in a worker, and passes each part to `each`. Returns what is wrong with the question.
 #[wasm_bindgen]
-pub fn answer(name: &str, question: &str, each: &js_sys::Function) -> Option<String> {
-    session::answer(name, question, &|part| drop(each.call1(&JsValue::NULL, &part.into()))).err()
+pub fn answer(name: &str, question: &str, each: js_sys::Function) -> Option<String> {
+    EACH.set(Some(each));
+    let pass = |part: String| {
+        EACH.with_borrow(|each| each.as_ref().map(|each| each.call1(&JsValue::NULL, &part.into())));
+    };
+    session::asked::answer(name, question, &AtomicBool::new(false), &pass).err()
 }
 
 /// Tables of a built-in scene as CSV, to be compared with those of a desktop.

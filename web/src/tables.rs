@@ -13,7 +13,8 @@ const SAMPLES: f64 = 500.0;
 /// scene; of a question that does not apply to the scene, the reason.
 pub fn tables(preset: &str) -> Result<String, Error> {
     let (simulation, progress) = (Simulation::preset(preset)?, Progress::none().threads(1));
-    let recorded = simulation.record(&Sampling::Every(simulation.scene().run.duration_s / SAMPLES), None, &progress)?;
+    let recorded =
+        simulation.record(&Sampling::Every(simulation.scene().run.duration_s / SAMPLES), None, &progress)?;
     let sweep = match simulation.scene().harmonic() {
         Some(drive) => Sweep::over(drive.amplitude_path(), 0.1..=1.5, CELLS),
         None => Sweep::over("mass_g", 5.0..=25.0, CELLS),

@@ -74,9 +74,9 @@ mod step;
 
 pub use live::{Live, LiveLedger, LiveOutput};
 pub use map::{Jacobian, Miss, Multiplier, Passage, StroboscopicMap};
-pub use model::Model;
 pub use model::excitation::{ChirpPart, ExcitationParts, NoisePart, STANDARD_GRAVITY, TonePart};
 pub use model::scales::Scales;
 pub use model::stops::{StopAt, StopPair};
 pub use model::transducer::{CircuitState, Output};
+pub use model::{Beginning, Model};
 pub use result::*;

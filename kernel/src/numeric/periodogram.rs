@@ -2,6 +2,8 @@
 
 use std::f64::consts::PI;
 
+use serde::{Deserialize, Serialize};
+
 use realfft::RealFftPlanner;
 use realfft::num_complex::Complex;
 
@@ -9,7 +11,7 @@ use super::elementary;
 use super::sum::CompensatedSum;
 
 /// How values are weighted before they are transformed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Taper {
     /// Equal weights. A component with a whole number of periods is one line; any other leaks into all lines.
     None,

@@ -1,5 +1,6 @@
 //! Scene with its source text, so that every message about it names file and line.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use super::axis::{Axis, MAX_AXES, MAX_AXIS_VALUES, repeated, unknown};
@@ -423,4 +424,16 @@ pub fn is_scene_file(path: &Path) -> bool {
     let named = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("ron"));
     files::is_file(path)
         && (named || read_text(path, MAX_SCENE_BYTES).is_ok_and(|text| text::parse(&text).is_ok()))
+}
+
+/// The texts of the files that a scene names, by their paths in it, as far as they can be read.
+pub fn named_texts(scene: &Scene, files: &Files) -> BTreeMap<String, String> {
+    let mut scene = scene.clone();
+    let paths = named_paths(&mut scene).into_iter();
+    paths.filter_map(|path| Some((path.clone(), files.read(path).ok()?))).collect()
+}
+
+/// Reads the records that a scene names. One that cannot be read is missing.
+pub fn read_records(scene: &mut Scene, files: &Files) {
+    record::attach(&mut scene.excitation, "excitation", files);
 }

@@ -1,9 +1,11 @@
 //! Error types of scenes.
 
+use serde::{Deserialize, Serialize};
+
 use super::scanner::Place;
 
 /// One thing that is wrong with a scene.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Fault {
     /// Dotted path of the field, without variant names: `stops.travel_limit_mm`.
     pub field: String,

@@ -5,6 +5,8 @@
 
 use std::path::Path;
 
+use serde::{Deserialize, Serialize};
+
 use super::columns::{ColumnsError, Separators, Sheet};
 use super::error::clip;
 use super::files::{ReadError, read_text};
@@ -36,7 +38,7 @@ pub struct ColumnOptions {
 }
 
 /// Values of one column.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Channel {
     /// What was measured.
     pub quantity: Quantity,

@@ -65,7 +65,7 @@ pub(crate) use check::is_sound;
 pub use check::{Checked, check, corners};
 pub use columns::{Columns, ColumnsError, MAX_ROWS, read_columns};
 pub use data::*;
-pub use document::{Document, Source, is_scene_file, named_paths};
+pub use document::{Document, Source, is_scene_file, named_paths, named_texts, read_records};
 pub use error::{ArgumentError, Fault, Origin, PlacedFault, SceneError};
 pub use field_table::{
     Control, FIELDS, FieldInfo, MAX_COEFFICIENTS, Range, Scale, TOLERANCES, field_info, without_indices,

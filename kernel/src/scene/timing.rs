@@ -1,12 +1,14 @@
 //! Sampling of a record: its usual step, the scatter of the steps, and its gaps.
 
+use serde::{Deserialize, Serialize};
+
 use crate::numeric::short;
 
 /// Smallest length of a gap, in usual steps.
 const GAP: f64 = 5.0;
 
 /// Sampling of a record, with times in s.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Timing {
     /// Number of samples.
     pub samples: usize,

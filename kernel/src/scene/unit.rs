@@ -1,10 +1,12 @@
 //! Units in the names of measured columns, and their conversion to SI.
 
+use serde::{Deserialize, Serialize};
+
 /// Standard gravity in m/s^2.
 pub const STANDARD_GRAVITY: f64 = 9.80665;
 
 /// Physical quantity of a measured column.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Quantity {
     /// Time, s.
     Time,

@@ -19,8 +19,13 @@ pub fn processors() -> usize {
 /// default of 2 MB. The system provides memory only for the part that is used.
 const STACK: usize = 16 << 20;
 
-/// Runs `work` on a new thread. Returns false if the thread cannot be started.
+/// Runs `work` on a new thread; in a web page on this one, before it returns. Returns false if the thread
+/// cannot be started.
 pub fn spawn(work: impl FnOnce() + Send + 'static) -> bool {
+    if cfg!(target_arch = "wasm32") {
+        work();
+        return true;
+    }
     std::thread::Builder::new().name("study".into()).stack_size(STACK).spawn(work).is_ok()
 }
 

@@ -4,15 +4,20 @@
 //! change. The results in the view Accuracy are for the scene from its start; they are computed while that
 //! view is open.
 
-use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
-use crate::app::task::{Background, Identity, Wake};
-use crate::dynamics::Model;
+use serde::{Deserialize, Serialize};
+
+use crate::app::task::{Background, Each, Question, Wake};
+use crate::dynamics::{Model, Summary};
 use crate::study::accuracy::methods::Scheme;
 use crate::study::accuracy::scene::{
     Course, StepSize, Tolerances, Trust, Unfit, lasting, moment, small_length, step_size, tolerances, trust,
 };
+use crate::study::settled;
+
+use super::prepared::SharedModel;
 
 /// Initial fixed step in s: a frame of a screen, the usual choice of games.
 const FRAME: f64 = 1.0 / 60.0;
@@ -20,12 +25,21 @@ const FRAME: f64 = 1.0 / 60.0;
 /// Length of the next comparison, as a multiple of the time since the run began.
 const SPAN_FACTOR: f64 = 2.0;
 
-/// A run of the motion, from a live time on.
-#[derive(Debug, Clone, PartialEq)]
+/// A run of the motion, from a live time on; as a question, what it settles to.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct LiveRun {
-    pub model: Identity<Model>,
+    pub model: SharedModel,
     /// The live time in s at which it begins.
     pub from: f64,
+}
+
+impl Question for LiveRun {
+    const NAME: &'static str = "settled";
+    type Part = Summary;
+
+    fn answer(&self, cancel: &AtomicBool, _: Each<Summary>) -> Option<Summary> {
+        settled(&self.model, cancel)
+    }
 }
 
 pub struct Accuracy {
@@ -36,25 +50,59 @@ pub struct Accuracy {
     pub scheme: Scheme,
     /// Its step in s.
     pub step: f64,
-    tolerances: Background<Identity<Model>, Tolerances>,
+    tolerances: Background<TolerancesQuestion, Tolerances>,
     stepped: Background<StepQuestion, Result<StepSize, Unfit>>,
     /// Whether the user has stopped the computations.
     stopped: bool,
 }
 
 /// A run, and the time in s for which the error of its path is computed.
-#[derive(Debug, Clone, PartialEq)]
-struct PathQuestion {
-    run: LiveRun,
-    duration: f64,
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(super) struct PathQuestion {
+    pub run: LiveRun,
+    pub duration: f64,
+}
+
+impl Question for PathQuestion {
+    const NAME: &'static str = "trust";
+    type Part = Trust;
+
+    fn answer(&self, cancel: &AtomicBool, _: Each<Trust>) -> Option<Trust> {
+        trust(&lasting(&self.run.model, self.duration), cancel)
+    }
+}
+
+/// A model whose runs at several tolerances are compared.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(super) struct TolerancesQuestion(pub SharedModel);
+
+impl Question for TolerancesQuestion {
+    const NAME: &'static str = "tolerances";
+    type Part = Tolerances;
+
+    fn answer(&self, cancel: &AtomicBool, _: Each<Tolerances>) -> Option<Tolerances> {
+        tolerances(&self.0, cancel)
+    }
 }
 
 /// A model, and a method of fixed step with its step in s.
-#[derive(Debug, Clone, PartialEq)]
-struct StepQuestion {
-    model: Identity<Model>,
-    scheme: Scheme,
-    step: f64,
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(super) struct StepQuestion {
+    pub model: SharedModel,
+    pub scheme: Scheme,
+    pub step: f64,
+}
+
+impl Question for StepQuestion {
+    const NAME: &'static str = "step size";
+    type Part = Result<StepSize, Unfit>;
+
+    fn answer(&self, cancel: &AtomicBool, _: Each<Self::Part>) -> Option<Self::Part> {
+        match step_size(&self.model, self.scheme, self.step, cancel) {
+            Err(Unfit::Cancelled) => None,
+            answer => Some(answer),
+        }
+    }
 }
 
 /// The error of the path, or the time up to which the path is reliable, in a few words.
@@ -145,9 +193,7 @@ impl Accuracy {
             _ => return,
         };
         let question = PathQuestion { run: run.clone(), duration };
-        self.trust.ask(question, wake, |PathQuestion { run, duration }, cancel, _| {
-            trust(&lasting(&run.model, *duration), cancel)
-        });
+        self.trust.ask(question, wake);
     }
 
     /// The live time in s up to which the path is reliable; `None` if that is not known.
@@ -167,16 +213,10 @@ impl Accuracy {
 
     /// Asks for the cost of digits and steps in `model`; to be called by a view in every frame. Unless the
     /// scene is `still` the answers for an earlier one stay.
-    pub(super) fn want(&mut self, model: &Arc<Model>, still: bool, wake: &Wake) {
-        let model = Identity(Arc::clone(model));
-        self.tolerances.want(model.clone(), still, wake, |model, cancel, _| tolerances(model, cancel));
-        let question = StepQuestion { model, scheme: self.scheme, step: self.step };
-        self.stepped.want(question, still, wake, |StepQuestion { model, scheme, step }, cancel, _| {
-            match step_size(model, *scheme, *step, cancel) {
-                Err(Unfit::Cancelled) => None,
-                answer => Some(answer),
-            }
-        });
+    pub(super) fn want(&mut self, model: &SharedModel, still: bool, wake: &Wake) {
+        self.tolerances.want(TolerancesQuestion(model.clone()), still, wake);
+        let question = StepQuestion { model: model.clone(), scheme: self.scheme, step: self.step };
+        self.stepped.want(question, still, wake);
     }
 
     pub fn end_frame(&mut self) {
@@ -192,7 +232,7 @@ impl Accuracy {
 
     /// The cost of each digit, and whether it is that in `model`.
     pub fn tolerances(&self, model: &Model) -> Option<(&Tolerances, bool)> {
-        let same = std::ptr::eq(&**self.tolerances.question()?, model);
+        let same = std::ptr::eq(&*self.tolerances.question()?.0, model);
         Some((self.tolerances.newest()?, same && self.tolerances.answer().is_some()))
     }
 

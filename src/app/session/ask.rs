@@ -1,9 +1,12 @@
 //! Background questions about the open scene: settled motion, thresholds, accuracy.
 
+use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-use crate::app::task::Identity;
+use serde::{Deserialize, Serialize};
+
+use crate::app::task::{Each, Question, Uncompared};
 use crate::app::words::status;
 use crate::mechanics::Mechanism;
 use crate::scene::{Scene, Start};
@@ -11,6 +14,7 @@ use crate::study::{self, Task, Thresholds};
 
 use super::Session;
 use super::accuracy::LiveRun;
+use super::prepared::{Prepared, SceneWithFiles};
 
 /// Number of thresholds that are kept.
 const KEPT: usize = 64;
@@ -38,34 +42,78 @@ fn thresholds(scene: &Scene, mechanism: &Arc<Mechanism>, task: &Task) -> Option<
     })
 }
 
+/// The thresholds of an unshaken scene.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ThresholdsQuestion(pub Prepared);
+
+impl Question for ThresholdsQuestion {
+    const NAME: &'static str = "thresholds";
+    type Part = Thresholds;
+
+    fn answer(&self, cancel: &AtomicBool, _: Each<Thresholds>) -> Option<Thresholds> {
+        thresholds(&self.0.of, &self.0.mechanism, &Task { tick: &|| (), cancel })
+    }
+}
+
+/// The travel limit with which the mass of a scene would cross the barrier.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct StopsQuestion {
+    pub of: Prepared,
+    /// That of all stops.
+    pub restitution: Uncompared<f64>,
+}
+
+impl Question for StopsQuestion {
+    const NAME: &'static str = "stops that cross";
+    type Part = Option<f64>;
+
+    fn answer(&self, cancel: &AtomicBool, _: Each<Option<f64>>) -> Option<Option<f64>> {
+        let (Self { of, restitution }, task) = (self, Task { tick: &|| (), cancel });
+        study::stops_that_cross(&of.of, &of.mechanism, restitution.0, &task).ok()
+    }
+}
+
 impl Session {
+    /// A scene with the mechanism of the open one.
+    pub(super) fn prepared(&self, scene: Scene) -> Prepared {
+        let (of, mechanism) = (self.with_files(scene), Arc::clone(&self.mechanism));
+        Prepared { of, mechanism, tolerance: self.tolerance }
+    }
+
+    /// A scene with the files of the open one.
+    pub(super) fn with_files(&self, scene: Scene) -> SceneWithFiles {
+        SceneWithFiles { scene, files: self.editor.document().files.clone() }
+    }
+
     pub(super) fn ask_settled(&mut self) {
         let (now, from_here) = (self.player.watch().time(), self.player.watch().from_here());
         // a ramp that was changed under way cannot be run again from there, so its error is unknown
         let is_known = now == 0.0 || from_here.is_some();
         let from = if from_here.is_some() { now } else { 0.0 };
-        let model = Identity(Arc::new(from_here.unwrap_or_else(|| (*self.model).clone())));
-        let run = LiveRun { model, from };
+        let run = LiveRun { model: self.model.or(from_here), from };
         self.accuracy.begin(is_known.then(|| run.clone()));
-        self.settled.ask(run, &self.wake, |run, cancel, _| study::settled(&run.model, cancel));
+        self.settled.ask(run, &self.wake);
     }
 
     pub(super) fn ask_thresholds(&mut self) {
         if !self.can_search() {
             return;
         }
-        let mechanism = Arc::clone(&self.mechanism);
-        self.thresholds.want(unshaken(&self.built), true, &self.wake, move |scene, cancel, _| {
-            thresholds(scene, &mechanism, &Task { tick: &|| (), cancel })
-        });
+        let question = ThresholdsQuestion(self.prepared(unshaken(&self.built)));
+        self.thresholds.want(question, true, &self.wake);
     }
 
     /// Drops what it would take to cross. The thresholds stay if only the amplitude was changed.
     pub(super) fn forget_ways(&mut self) {
-        if self.fault.is_some() || self.thresholds.question() != Some(&unshaken(&self.built)) {
+        if self.fault.is_some() || !self.has_thresholds_of(&unshaken(&self.built)) {
             self.thresholds.clear();
         }
         self.stops_that_cross.clear();
+    }
+
+    /// Whether the thresholds asked for are those of this unshaken scene.
+    pub(super) fn has_thresholds_of(&self, scene: &Scene) -> bool {
+        self.thresholds.question().is_some_and(|asked| asked.0.of.scene == *scene)
     }
 
     /// What it would take to cross the barrier, in words; the first call starts the search.
@@ -79,10 +127,10 @@ impl Session {
         }
         let known = [&self.built.stops, &self.remembered_stops];
         let restitution = known.into_iter().find_map(|stops| stops.restitutions()[1]).unwrap_or(1.0);
-        let (mechanism, still) = (Arc::clone(&self.mechanism), !self.editor.in_gesture());
-        self.stops_that_cross.want(self.built.clone(), still, &self.wake, move |scene, cancel, _| {
-            study::stops_that_cross(scene, &mechanism, restitution, &Task { tick: &|| (), cancel }).ok()
-        });
+        let still = !self.editor.in_gesture();
+        let question =
+            StopsQuestion { of: self.prepared(self.built.clone()), restitution: Uncompared(restitution) };
+        self.stops_that_cross.want(question, still, &self.wake);
         match (self.settled.answer(), self.thresholds.answer(), self.stops_that_cross.answer()) {
             (Some(settled), Some(thresholds), Some(stops)) => {
                 status::ways(self.scene(), settled, thresholds, *stops)

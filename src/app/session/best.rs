@@ -1,13 +1,14 @@
 //! Background search for the best stops of the open scene, with a coarse scan first.
 
-use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
-use crate::app::task::{Background, Wake, pool};
+use serde::{Deserialize, Serialize};
+
+use crate::app::task::{Background, Each, Question, pool};
 use crate::app::words::best_stops::{looking, sentence};
 use crate::app::words::fields::info;
-use crate::scene::{FieldPath, Files, Scene, Stops, SweepAxis};
+use crate::scene::{FieldPath, Stops, SweepAxis};
 use crate::study::{
     BestDesign, BestQuestion, DesignRange, Environment, INTERVALS, NoBest, Optimum, RMS_VELOCITY,
     SummaryField, Task, best,
@@ -15,11 +16,15 @@ use crate::study::{
 
 use super::Session;
 use super::map::{LOAD_POWER, ground};
+use super::prepared::SceneWithFiles;
 use super::sliders::reach;
 
 pub const LIMIT: &str = "stops.travel_limit_mm";
 
-enum Part {
+#[derive(Debug, Serialize, Deserialize)]
+pub(super) enum Part {
+    /// A run has been made.
+    Run,
     /// The optimum of the coarse scan.
     Preview(Optimum),
     /// The answer, or why there is none.
@@ -27,21 +32,42 @@ enum Part {
 }
 
 /// A search: the scene, from rest with its least travel limit, and the range of travel limits.
-#[derive(Debug, Clone, PartialEq)]
-struct Search {
-    scene: Scene,
-    range: DesignRange,
-    column: &'static str,
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(super) struct Search {
+    scene: SceneWithFiles,
+    pub range: DesignRange,
+    maximise: &'static SummaryField,
     /// Length of a run in s under a drive that does not repeat.
     duration_s: Option<f64>,
+}
+
+impl Question for Search {
+    const NAME: &'static str = "best stops";
+    type Part = Part;
+
+    fn answer(&self, cancel: &AtomicBool, each: Each<Part>) -> Option<Part> {
+        let SceneWithFiles { scene, files } = self.scene.clone();
+        let question = BestQuestion {
+            over: vec![self.range.clone()],
+            maximise: self.maximise,
+            subject_to: Vec::new(),
+            environments: vec![Environment { name: String::new(), weight: 1.0, scene, files }],
+            vary: Vec::new(),
+            seed: 1,
+            until_settled: None,
+        };
+        let task = Task { tick: &|| each(Part::Run), cancel };
+        match best(&question, &pool()?, &task, &mut |optimum| each(Part::Preview(optimum.clone()))) {
+            Err(NoBest::Cancelled) => None,
+            found => Some(Part::Whole(found)),
+        }
+    }
 }
 
 /// The search for the best stops, and its result. Both are dropped when the scene changes.
 #[derive(Default)]
 pub struct BestStops {
     search: Background<Search, Part>,
-    /// Number of runs that the search has made.
-    runs: Arc<AtomicU64>,
     /// Why there can be no search.
     refusal: Option<&'static str>,
     /// Whether the search is not offered, as its result may be the answer of a lesson.
@@ -62,11 +88,19 @@ impl BestStops {
         *self = Self { is_off: self.is_off, ..Self::default() };
     }
 
+    /// Number of runs that the search has made, and the newest of its other parts.
+    fn known(&self) -> (u64, Option<&Part>) {
+        let (parts, is_current) = self.search.parts();
+        let parts = if is_current { parts } else { &[] };
+        let is_run = |part: &&Part| matches!(part, Part::Run);
+        (parts.iter().filter(is_run).count() as u64, parts.iter().rfind(|part| !is_run(part)))
+    }
+
     /// The best travel limit in mm so far, at first that of the coarse scan; `None` if no limit stands out.
     pub fn limit_mm(&self) -> Option<f64> {
-        match self.search.answer()? {
+        match self.known().1? {
             Part::Whole(Ok(design)) => (!design.flat).then(|| design.optimum.at[0]),
-            Part::Whole(Err(_)) => None,
+            Part::Whole(Err(_)) | Part::Run => None,
             Part::Preview(best) => (best.value != 0.0).then(|| best.at[0]),
         }
     }
@@ -77,37 +111,13 @@ impl BestStops {
             return why.to_owned();
         }
         let Some(search) = self.search.question() else { return String::new() };
-        let runs = self.runs.load(Ordering::Relaxed);
-        match self.search.answer() {
-            Some(Part::Whole(answer)) => sentence(answer, search.column, &search.range, search.duration_s),
+        let (column, (runs, newest)) = (search.maximise.name, self.known());
+        match newest {
+            Some(Part::Whole(answer)) => sentence(answer, column, &search.range, search.duration_s),
             _ if !self.is_running() => "The search for the best stops ended without an answer.".to_owned(),
-            Some(Part::Preview(best)) => looking(runs, Some(best), search.column),
-            None => looking(runs, None, search.column),
+            Some(Part::Preview(best)) => looking(runs, Some(best), column),
+            None | Some(Part::Run) => looking(runs, None, column),
         }
-    }
-
-    fn start(&mut self, search: Search, files: Files, wake: &Wake) {
-        let runs = Arc::clone(&self.runs);
-        self.search.ask(search, wake, move |Search { scene, range, column, .. }, cancel, each| {
-            let environment = Environment { name: String::new(), weight: 1.0, scene: scene.clone(), files };
-            let question = BestQuestion {
-                over: vec![range.clone()],
-                maximise: SummaryField::find(column)?,
-                subject_to: Vec::new(),
-                environments: vec![environment],
-                vary: Vec::new(),
-                seed: 1,
-                until_settled: None,
-            };
-            let tick = || {
-                runs.fetch_add(1, Ordering::Relaxed);
-            };
-            let task = Task { tick: &tick, cancel };
-            match best(&question, &pool()?, &task, &mut |optimum| each(Part::Preview(optimum.clone()))) {
-                Err(NoBest::Cancelled) => None,
-                found => Some(Part::Whole(found)),
-            }
-        });
     }
 }
 
@@ -123,11 +133,10 @@ impl Session {
             Ok(search) => search,
             Err(why) => return self.best.refusal = Some(why),
         };
-        let files = self.editor.document().files.clone();
-        self.best.start(search, files, &self.wake);
+        self.best.search.ask(search, &self.wake);
     }
 
-    fn best_search(&self) -> Result<Search, &'static str> {
+    pub(super) fn best_search(&self) -> Result<Search, &'static str> {
         if self.fault().is_some() {
             return Err("The best stops are searched for once the scene can be run.");
         }
@@ -144,8 +153,9 @@ impl Session {
         }
         let range = DesignRange::new(LIMIT, (reach.low, reach.high), INTERVALS[0]);
         let duration_s = (!self.model().repeats()).then_some(scene.run.duration_s);
-        let column = if self.model().has_transducer() { LOAD_POWER } else { RMS_VELOCITY.name };
-        Ok(Search { scene, range, column, duration_s })
+        let power = SummaryField::find(LOAD_POWER).filter(|_| self.model().has_transducer());
+        let maximise = power.unwrap_or(&RMS_VELOCITY);
+        Ok(Search { scene: self.with_files(scene), range, maximise, duration_s })
     }
 
     /// Receives results, and drops them once the scene has changed; to be called once a frame.

@@ -1,7 +1,5 @@
 //! Changes of the scene: gestures, undo, and single numbers by drags, key presses or typing.
 
-use std::sync::Arc;
-
 use crate::app::words::fields::{in_words, name_and_unit};
 use crate::app::words::numbers::rounded;
 use crate::dynamics::STANDARD_GRAVITY;
@@ -12,6 +10,7 @@ use super::Session;
 use super::build::{fault_message, first_stops, solve};
 use super::editor::Editor;
 use super::player::opening_speed;
+use super::prepared::SharedModel;
 
 /// Error of the force of flexures during a gesture: the curve is solved within a frame, and its error is too
 /// small to see. At the end of the gesture the flexures are solved with [`FLEXURE_TOLERANCE`].
@@ -43,6 +42,7 @@ impl Session {
         match solve(&document, GESTURE_TOLERANCE) {
             Ok((mechanism, _)) => {
                 (self.mechanism, self.mechanism_of, self.is_coarse) = (mechanism, wanted.clone(), true);
+                self.tolerance = GESTURE_TOLERANCE;
                 self.refused = None;
                 self.edit(|scene| scene.mechanism = wanted)
             }
@@ -73,7 +73,8 @@ impl Session {
             return;
         }
         let Ok((mechanism, model)) = solve(&self.editor.runnable(), FLEXURE_TOLERANCE) else { return };
-        (self.mechanism, self.model) = (mechanism, Arc::new(model));
+        (self.mechanism, self.tolerance) = (mechanism, FLEXURE_TOLERANCE);
+        self.model = SharedModel::new(model, self.prepared(self.built.clone()));
         self.player.change(&self.model);
         self.continued = true;
         self.ask_settled();

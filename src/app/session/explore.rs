@@ -4,12 +4,14 @@
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
+use serde::{Deserialize, Serialize};
+
 use crate::app::session::Session;
 use crate::app::session::map::{ground, is_amplitude};
-use crate::app::task::{Background, Identity, pool};
+use crate::app::session::prepared::{Prepared, SharedModel};
+use crate::app::task::{Background, Each, Question, Uncompared, pool};
 use crate::app::words::numbers::decimal;
 use crate::dynamics::Model;
-use crate::mechanics::Mechanism;
 use crate::output::{Chart, basins_chart, suited_unit};
 use crate::scene::{Axis, FieldPath, Scene, Start, SweepAxis};
 use crate::study::{
@@ -40,10 +42,22 @@ impl Explore {
 }
 
 /// A model, and the signal of its motion to analyse.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SpectrumQuestion {
-    model: Identity<Model>,
-    signal: Signal,
+    pub(super) model: SharedModel,
+    pub(super) signal: Signal,
+}
+
+impl Question for SpectrumQuestion {
+    const NAME: &'static str = "spectrum";
+    type Part = Result<Spectrum, String>;
+
+    fn answer(&self, cancel: &AtomicBool, _: Each<Self::Part>) -> Option<Self::Part> {
+        let until_settled = longest_wait(&self.model);
+        let options = SpectrumOptions { signal: self.signal, taper: None, rate_hz: None, until_settled };
+        let found = spectrum(&self.model, &options, &Task { tick: &|| (), cancel });
+        Some(found.map_err(|error| error.to_string()))
+    }
 }
 
 pub struct Spectra {
@@ -61,15 +75,9 @@ impl Default for Spectra {
 impl Session {
     /// Asks for the spectrum of the present scene; to be called in every frame that shows it.
     pub fn want_spectrum(&mut self) {
-        let (model, signal) = (Identity(Arc::clone(&self.model)), self.explore.spectra.signal);
+        let (model, signal) = (self.model.clone(), self.explore.spectra.signal);
         let (question, still) = (SpectrumQuestion { model, signal }, self.stands_still());
-        self.explore.spectra.found.want(question, still, &self.wake, |question, cancel, _| {
-            let until_settled = longest_wait(&question.model);
-            let options =
-                SpectrumOptions { signal: question.signal, taper: None, rate_hz: None, until_settled };
-            let found = spectrum(&question.model, &options, &Task { tick: &|| (), cancel });
-            Some(found.map_err(|error| error.to_string()))
-        });
+        self.explore.spectra.found.want(question, still, &self.wake);
     }
 }
 
@@ -93,11 +101,34 @@ pub enum WalkQuantity {
 }
 
 /// A scene, apart from its value of the field, and the axis over the field.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct WalkQuestion {
     /// The scene, from rest, with the first value of the axis.
     pub scene: Scene,
     pub axis: SweepAxis,
+    /// The scene, from rest, with its own value of the field.
+    ground: Uncompared<Prepared>,
+    /// The values of the axis.
+    values: Uncompared<Vec<f64>>,
+}
+
+impl Question for WalkQuestion {
+    const NAME: &'static str = "walks";
+    /// A run, with the stride of its walk.
+    type Part = (usize, Visit);
+
+    fn answer(&self, cancel: &AtomicBool, each: Each<Self::Part>) -> Option<Self::Part> {
+        let (pool, task, Prepared { of, mechanism, .. }) =
+            (pool()?, Task { tick: &|| (), cancel }, &self.ground.0);
+        let family = Family::new(of, &of.files, mechanism, &self.axis.field);
+        for stride in [COARSE, 1] {
+            let values: Vec<f64> = self.values.0.iter().step_by(stride).copied().collect();
+            if !up_and_down(&family, &values, &pool, &task, &|visit| each((stride, visit))) {
+                break;
+            }
+        }
+        None
+    }
 }
 
 #[derive(Default)]
@@ -126,27 +157,16 @@ impl Session {
     /// Asks for the walks of the present scene; to be called in every frame that shows them.
     pub fn want_walks(&mut self) {
         let still = self.stands_still();
-        let (ground, values, question) = match self.walk_question() {
-            Ok(walk) => walk,
+        let question = match self.walk_question() {
+            Ok(question) => question,
             Err(problem) => return self.explore.walks.problem = Some(problem),
         };
         self.explore.walks.problem = None;
-        let (mechanism, files) = (Arc::clone(&self.mechanism), self.editor.document().files.clone());
-        self.explore.walks.found.want(question, still, &self.wake, move |question, cancel, each| {
-            let (pool, task) = (pool()?, Task { tick: &|| (), cancel });
-            let family = Family::new(&ground, &files, &mechanism, &question.axis.field);
-            for stride in [COARSE, 1] {
-                let values: Vec<f64> = values.iter().step_by(stride).copied().collect();
-                if !up_and_down(&family, &values, &pool, &task, &|visit| each((stride, visit))) {
-                    break;
-                }
-            }
-            None
-        });
+        self.explore.walks.found.want(question, still, &self.wake);
     }
 
-    /// The scene from rest, the values of its field, and the question; or why there are no walks.
-    fn walk_question(&self) -> Result<(Scene, Vec<f64>, WalkQuestion), String> {
+    /// The question of the walks, or why there are none.
+    pub(super) fn walk_question(&self) -> Result<WalkQuestion, String> {
         let axis = self.walk_axis().ok_or("This scene has no field to walk over.")?;
         let ground = ground(self.scene(), self.remembered_stops(), std::slice::from_ref(&axis));
         let values = Axis::from_scene(&axis, &ground).map(|axis| axis.values);
@@ -159,7 +179,8 @@ impl Session {
         let mut scene = ground.clone();
         let is_set = FieldPath::new(&axis.field).set(&mut scene, axis.from);
         debug_assert!(is_set, "the axis is over a field of the scene");
-        Ok((ground, values, WalkQuestion { scene, axis }))
+        let (ground, values) = (Uncompared(self.prepared(ground)), Uncompared(values));
+        Ok(WalkQuestion { scene, axis, ground, values })
     }
 
     /// Sets the field of the walks to a value, as part of a gesture.
@@ -175,17 +196,28 @@ impl Session {
 pub const STARTS: u64 = 81;
 
 /// A scene, apart from its start, and the ranges of the starts.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct BasinsQuestion {
-    pub scene: Scene,
+    pub of: Prepared,
     /// Least and greatest displacement in mm.
     pub x_mm: (f64, f64),
     /// Least and greatest velocity in m/s.
     pub v: (f64, f64),
+    /// Number of starts along each axis.
+    pub(super) starts: u64,
+}
+
+impl Question for BasinsQuestion {
+    const NAME: &'static str = "basins";
+    type Part = Result<Level, String>;
+
+    fn answer(&self, cancel: &AtomicBool, each: Each<Self::Part>) -> Option<Self::Part> {
+        find_basins(self, cancel, &|level| each(Ok(level))).err().map(Err)
+    }
 }
 
 /// What is known of the basins after one level of starts has been run.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Level {
     /// The attractors, and the attractor that each start goes to.
     pub answer: Answer,
@@ -208,11 +240,8 @@ impl Session {
     pub fn want_basins(&mut self, (low, high): (f64, f64), v: (f64, f64)) {
         let still = self.stands_still();
         let scene = ground(self.scene(), self.remembered_stops(), &[]);
-        let question = BasinsQuestion { scene, x_mm: (low * 1e3, high * 1e3), v };
-        let mechanism = Arc::clone(&self.mechanism);
-        self.explore.basins.want(question, still, &self.wake, move |question, cancel, each| {
-            find_basins(question, mechanism, cancel, &|level| each(Ok(level))).err().map(Err)
-        });
+        let (of, x_mm) = (self.prepared(scene), (low * 1e3, high * 1e3));
+        self.explore.basins.want(BasinsQuestion { of, x_mm, v, starts: STARTS }, still, &self.wake);
     }
 
     /// Starts the scene at a displacement in m and a velocity in m/s, from now on, as one undo step.
@@ -227,19 +256,15 @@ impl Session {
     }
 }
 
-fn find_basins(
-    question: &BasinsQuestion,
-    mechanism: Arc<Mechanism>,
-    cancel: &AtomicBool,
-    each: &dyn Fn(Level),
-) -> Result<(), String> {
-    let range = |(from, to): (f64, f64)| EvenRange { from, to, count: STARTS };
+fn find_basins(question: &BasinsQuestion, cancel: &AtomicBool, each: &dyn Fn(Level)) -> Result<(), String> {
+    let range = |(from, to): (f64, f64)| EvenRange { from, to, count: question.starts };
     let starts = Starts::grid(&range(question.x_mm), &range(question.v)).map_err(|why| why.to_string())?;
     let message = |error: NoBasins| match error {
         NoBasins::Faults(faults) => faults.first().map_or(String::new(), |fault| fault.problem.clone()),
         other => other.to_string(),
     };
-    let mut basins = Basins::new(&question.scene, mechanism, starts).map_err(message)?;
+    let mut basins =
+        Basins::new(&question.of.of, Arc::clone(&question.of.mechanism), starts).map_err(message)?;
     let per_speed = suited_unit("m/s", [question.v.0, question.v.1].into_iter()).0;
     let task = Task { tick: &|| (), cancel };
     let Some(pool) = pool() else { return Ok(()) };

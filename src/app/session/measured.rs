@@ -4,23 +4,26 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use crate::app::task::{Background, Identity};
+use serde::{Deserialize, Serialize};
+
+use crate::app::task::{Background, Each, Identity, Question};
 use crate::app::words::capital;
-use crate::dynamics::Model;
 use crate::numeric::{extent, short};
 use crate::output::Argument;
-use crate::scene::{Channel, Excitation, Measured, MeasuredText, Quantity, Scene, Timing, Unit, read_record};
+use crate::scene::{Channel, Excitation, Measured, MeasuredText, Quantity, Timing, Unit, read_record};
 use crate::study::{Comparison, ForceComparison, MeasuredMotion, NoComparison, compare, compare_force};
 
 use super::Session;
+use super::prepared::{SceneWithFiles, SharedModel};
 
 /// A measured record with its two chosen columns.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MeasuredRecord {
     /// Its file, and the name of that.
     pub path: PathBuf,
     pub name: String,
-    /// The units of its two columns as their files have them.
+    /// The units of its two columns as their files have them; not a part of a question.
+    #[serde(skip)]
     pub units: [&'static str; 2],
     /// Times in s, or positions in m.
     pub across: Channel,
@@ -84,7 +87,7 @@ pub fn file_name(path: &Path) -> String {
 }
 
 /// A record over computed results, and how it is shifted and stretched in time.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Overlay {
     pub record: Identity<MeasuredRecord>,
     /// Offset in m that is added to displacements or positions.
@@ -136,11 +139,37 @@ impl Overlay {
 }
 
 /// A record, and the scene and model that it is compared with.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MeasuredQuestion {
-    model: Identity<Model>,
-    scene: Scene,
-    over: Overlay,
+    pub(super) model: SharedModel,
+    pub(super) scene: SceneWithFiles,
+    pub(super) over: Overlay,
+}
+
+impl Question for MeasuredQuestion {
+    const NAME: &'static str = "differences";
+    type Part = Result<Differences, String>;
+
+    fn answer(&self, cancel: &AtomicBool, _: Each<Self::Part>) -> Option<Self::Part> {
+        self.differences(Some(self.over.shift), cancel)
+    }
+}
+
+/// The shift with which a record fits the run best.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct FitQuestion(pub(super) MeasuredQuestion);
+
+impl Question for FitQuestion {
+    const NAME: &'static str = "fit";
+    type Part = Result<f64, String>;
+
+    fn answer(&self, cancel: &AtomicBool, _: Each<Self::Part>) -> Option<Self::Part> {
+        let shift = |found| match found {
+            Differences::Motion(comparison) => comparison.shift,
+            Differences::Force(_) => 0.0,
+        };
+        self.0.differences(None, cancel).map(|found| found.map(shift))
+    }
 }
 
 impl MeasuredQuestion {
@@ -165,7 +194,7 @@ impl MeasuredQuestion {
 }
 
 /// The differences between a record and the computed results.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Differences {
     Motion(Box<Comparison>),
     Force(Box<ForceComparison>),
@@ -178,7 +207,7 @@ pub struct MeasuredData {
     /// The differences, or why they are not known.
     pub found: Background<MeasuredQuestion, Result<Differences, String>>,
     /// The shift in s that fits best, or why there is none.
-    fit: Background<MeasuredQuestion, Result<f64, String>>,
+    fit: Background<FitQuestion, Result<f64, String>>,
     pub no_fit: Option<String>,
 }
 
@@ -222,27 +251,19 @@ impl Session {
     /// Asks for the differences of the record from the present scene; called in every frame that shows them.
     pub fn want_differences(&mut self) {
         let (still, Some(question)) = (self.stands_still(), self.measured_question()) else { return };
-        self.measured.found.want(question, still, &self.wake, |question, cancel, _| {
-            question.differences(Some(question.over.shift), cancel)
-        });
+        self.measured.found.want(question, still, &self.wake);
     }
 
     /// Starts the search for the shift with which the record fits the run of the scene best.
     pub fn fit_shift(&mut self) {
         let Some(question) = self.measured_question() else { return };
         self.measured.no_fit = None;
-        self.measured.fit.ask(question, &self.wake, |question, cancel, _| {
-            let shift = |found| match found {
-                Differences::Motion(comparison) => comparison.shift,
-                Differences::Force(_) => 0.0,
-            };
-            question.differences(None, cancel).map(|found| found.map(shift))
-        });
+        self.measured.fit.ask(FitQuestion(question), &self.wake);
     }
 
-    fn measured_question(&self) -> Option<MeasuredQuestion> {
-        let over = self.measured.over.clone()?;
-        Some(MeasuredQuestion { model: Identity(Arc::clone(&self.model)), scene: self.built.clone(), over })
+    pub(super) fn measured_question(&self) -> Option<MeasuredQuestion> {
+        let (over, scene) = (self.measured.over.clone()?, self.with_files(self.built.clone()));
+        Some(MeasuredQuestion { model: self.model.clone(), scene, over })
     }
 
     /// Shakes the base with the acceleration in the file at `path`, as one undo step. Returns warnings about

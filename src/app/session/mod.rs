@@ -4,6 +4,7 @@
 
 pub mod accuracy;
 mod ask;
+pub mod asked;
 pub mod best;
 mod build;
 mod edit;
@@ -14,6 +15,7 @@ pub mod map;
 pub mod measured;
 pub mod pins;
 pub mod player;
+mod prepared;
 pub mod sliders;
 
 use std::sync::Arc;
@@ -27,6 +29,7 @@ use crate::scene::{self, Scene, Stops};
 use crate::study::{self, Thresholds};
 
 use accuracy::{Accuracy, LiveRun};
+use ask::{StopsQuestion, ThresholdsQuestion};
 use best::BestStops;
 pub use build::CannotRun;
 use build::{fault_message, first_stops, solve};
@@ -36,6 +39,7 @@ use map::Mapping;
 use measured::MeasuredData;
 use pins::Pins;
 use player::{Player, opening_speed};
+use prepared::{Prepared, SceneWithFiles, SharedModel};
 
 /// Time after which the user is offered to stop a background computation.
 pub const OFFER_TO_STOP: Duration = Duration::from_secs(2);
@@ -78,15 +82,15 @@ pub struct Card {
 pub struct Session {
     pub editor: Editor,
     /// The model that moves: that of the scene, or of its last version that could be run.
-    model: Arc<Model>,
+    model: SharedModel,
     /// Why the present scene cannot be run.
     fault: Option<String>,
     pub player: Player,
     settled: Background<LiveRun, Summary>,
     /// The thresholds of the scene, whatever the amplitude of its shaking.
-    thresholds: Background<Scene, Thresholds>,
+    thresholds: Background<ThresholdsQuestion, Thresholds>,
     /// The travel limit in mm with which the mass would cross the barrier; computed only on request.
-    stops_that_cross: Background<Scene, Option<f64>>,
+    stops_that_cross: Background<StopsQuestion, Option<f64>>,
     pub accuracy: Accuracy,
     pub map: Mapping,
     pub explore: Explore,
@@ -98,8 +102,10 @@ pub struct Session {
     mechanism: Arc<Mechanism>,
     /// What the mechanism was built from, so that a table is fitted once and not at every move of a slider.
     mechanism_of: scene::Mechanism,
-    /// Whether the mechanism was solved with the coarse tolerance of a gesture.
+    /// Whether the mechanism was solved with the coarse tolerance of a gesture, and is to be solved again.
     is_coarse: bool,
+    /// The tolerance with which the mechanism was solved.
+    tolerance: f64,
     /// Why the last change of the mechanism was refused.
     refused: Option<String>,
     /// Live time in s of the last change.
@@ -128,6 +134,7 @@ impl Session {
         let document = editor.document();
         let (mechanism, model) = solve(document, FLEXURE_TOLERANCE)?;
         let scene = editor.scene().clone();
+        let of = SceneWithFiles { scene: scene.clone(), files: document.files.clone() };
         let mut session = Self {
             editor,
             fault: None,
@@ -143,15 +150,16 @@ impl Session {
             before: None,
             mechanism_of: scene.mechanism.clone(),
             is_coarse: false,
+            tolerance: FLEXURE_TOLERANCE,
             refused: None,
-            mechanism,
+            mechanism: Arc::clone(&mechanism),
             changed_at: 0.0,
             by_hand: false,
             moved_to_stop: false,
             opened: OpenedScales::of(&model),
             continued: false,
             remembered_stops: first_stops(&scene, &model),
-            model: Arc::new(model),
+            model: SharedModel::new(model, Prepared { of, mechanism, tolerance: FLEXURE_TOLERANCE }),
             presses: None,
             keeps_remedy: false,
             best: BestStops::default(),
@@ -221,7 +229,7 @@ impl Session {
         match self.build() {
             Ok(model) => {
                 self.fault = None;
-                self.model = Arc::new(model);
+                self.model = SharedModel::new(model, self.prepared(self.built.clone()));
                 self.map.trail.note(&self.built);
                 self.continue_motion();
             }
@@ -274,6 +282,7 @@ impl Session {
         document.check()?;
         if document.scene.mechanism != self.mechanism_of {
             self.mechanism = build::mechanism(document, FLEXURE_TOLERANCE)?;
+            self.tolerance = FLEXURE_TOLERANCE;
             self.mechanism_of = document.scene.mechanism.clone();
         }
         build::model(document, &self.mechanism)
@@ -305,7 +314,7 @@ impl Session {
     /// The model at the time that is shown, which may be in the past.
     pub fn shown(&self) -> &Arc<Model> {
         let player = &self.player;
-        if player.is_past() { player.watch().model_at(player.time()) } else { &self.model }
+        if player.is_past() { player.watch().model_at(player.time()) } else { &self.model.model.0 }
     }
 
     /// Why the present scene cannot be run; the motion is then that of its last version that could.

@@ -1,18 +1,19 @@
 //! Pinned motions: each continues with its own scene, at the same live time and drive phase as the session's.
 
-use std::sync::Arc;
 use std::time::Duration;
 
-use crate::app::task::{Background, Identity, Wake};
-use crate::dynamics::{Model, Outcome, Sample, Summary};
+use crate::app::task::{Background, Wake};
+use crate::dynamics::{Outcome, Sample, Summary};
 use crate::scene::{Scene, Start, Stops};
-use crate::study::{self, Thresholds, Watch};
+use crate::study::{Thresholds, Watch};
 use crate::system::clock::WallClock;
 
 use super::Session;
+use super::accuracy::LiveRun;
 use super::ask::unshaken;
 use super::build::{self, CannotRun, fault_message};
 use super::editor::keep_start_inside;
+use super::prepared::SharedModel;
 
 /// Distance in mm of the twin's start from that of the mass.
 const TWIN_OFFSET_MM: f64 = 1e-3;
@@ -41,14 +42,14 @@ pub struct Pin {
     letter: char,
     kind: PinKind,
     scene: Scene,
-    model: Arc<Model>,
+    model: SharedModel,
     watch: Watch,
     /// Live time in s from which on it is computed separately.
     since: f64,
     /// What it settles to, if that was known when it was pinned.
     known: Option<Summary>,
     /// What it settles to, if it had to be asked.
-    settled: Background<Identity<Model>, Summary>,
+    settled: Background<LiveRun, Summary>,
     /// Its thresholds, if they were searched for the open scene.
     thresholds: Option<Thresholds>,
 }
@@ -100,10 +101,9 @@ impl Pin {
     }
 
     fn ask(&mut self, wake: &Wake) {
-        let model = self.watch.from_here().unwrap_or_else(|| (*self.model).clone());
         self.known = None;
-        let model = Identity(Arc::new(model));
-        self.settled.ask(model, wake, |model, cancel, _| study::settled(model, cancel));
+        let run = LiveRun { model: self.model.or(self.watch.from_here()), from: self.watch.time() };
+        self.settled.ask(run, wake);
     }
 
     fn is_behind(&self, t: f64) -> bool {
@@ -190,19 +190,19 @@ impl Session {
             return Err(format!("No motion of this scene can be pinned: {fault}"));
         }
         let (mut scene, mut watch) = (self.scene().clone(), self.player.watch().clone());
-        let mut model = Arc::clone(&self.model);
+        let mut model = self.model.clone();
         match kind {
             PinKind::Motion => {}
             PinKind::OtherStops => {
                 let off = scene.stops == Stops::None;
                 scene.stops = if off { self.remembered_stops() } else { Stops::None };
                 keep_start_inside(&mut scene);
-                model = Arc::new(self.model_of(&scene)?);
+                model = self.model_of(&scene)?;
                 watch.change(&model);
             }
             PinKind::Twin => {
                 scene.start = self.twin_start();
-                model = Arc::new(self.model_of(&scene)?);
+                model = self.model_of(&scene)?;
                 self.restart();
                 watch = Watch::new(&model);
             }
@@ -230,7 +230,7 @@ impl Session {
             return;
         };
         for pin in self.pins.all.iter_mut().filter(|pin| pin.thresholds.is_none()) {
-            pin.thresholds = (unshaken(&pin.scene) == *asked).then_some(*found);
+            pin.thresholds = (unshaken(&pin.scene) == *asked.0.of).then_some(*found);
         }
     }
 
@@ -253,12 +253,13 @@ impl Session {
     }
 
     /// The model of a scene with the mechanism of the open one, or why there is none.
-    fn model_of(&self, scene: &Scene) -> Result<Model, String> {
+    fn model_of(&self, scene: &Scene) -> Result<SharedModel, String> {
         let mut document = self.editor.runnable();
         // the sweep axes do not matter for a motion
         document.scene = Scene { sweep: Vec::new(), ..scene.clone() };
         let checked = document.check().map_err(CannotRun::from);
         let model = checked.and_then(|_| build::model(&document, &self.mechanism));
-        model.map_err(|error| fault_message(&error, scene))
+        let model = model.map_err(|error| fault_message(&error, scene))?;
+        Ok(SharedModel::new(model, self.prepared(scene.clone())))
     }
 }

@@ -374,7 +374,7 @@ impl Window {
             }
             (Action::Save, Ok(order)) => {
                 self.figures.problem = None;
-                self.figures.job.ask((), &self.wake, move |(), cancel, _| {
+                self.figures.job.ask_job((), &self.wake, move |(), cancel, _| {
                     order.save(cancel).map_err(|error| error.to_string()).transpose()
                 });
             }

@@ -12,18 +12,15 @@ use crate::app::session::measured::MeasuredRecord;
 use crate::app::ui::style::STATUS;
 use crate::app::views::View;
 use crate::scene::{Quantity, is_link};
-use crate::system::clock::WallClock;
 use crate::system::files;
 
 use super::Window;
+use super::choice::Choice;
 use super::leave::{self, Answer, Next};
 use super::lessons;
 use super::measured_dialog::{ENDINGS, MeasuredAnswer, MeasuredDialog, is_measured};
 use super::messages::{CANNOT_OPEN, Messages};
 use super::wanted::{Chosen, NO_DIALOG, PathAnswer, PathDialog, Wanted};
-
-/// Time in ms below which a dialog that is closed again has not been visible.
-const UNSEEN: u128 = 300;
 
 impl Window {
     /// Opens another scene or lesson. If it cannot be opened, the present one stays and an alert says why.
@@ -273,27 +270,10 @@ impl Window {
         // the suggested path if the desktop has no dialog
         let start = folder.clone().unwrap_or_else(files::working_folder);
         let start = if wanted.is_read() { start.join("") } else { start.join(format!("{stem}.{ending}")) };
-        #[cfg(not(target_arch = "wasm32"))]
-        self.file_dialog.ask((), &self.wake, move |(), _, _| {
-            let endings = if wanted == Wanted::Measured { &ENDINGS[..] } else { &[ending][..] };
-            let mut dialog = rfd::FileDialog::new().add_filter(kind, endings);
-            if let Some(folder) = folder.filter(|folder| files::is_folder(folder)) {
-                dialog = dialog.set_directory(folder);
-            }
-            let since = WallClock::start();
-            let chosen = if wanted.is_read() {
-                dialog.pick_file()
-            } else {
-                dialog.set_file_name(format!("{stem}.{ending}")).save_file()
-            };
-            let Some(mut path) = chosen else {
-                return (since.elapsed().as_millis() < UNSEEN).then_some(Chosen::NoDialog(wanted, start));
-            };
-            if !wanted.is_read() && path.extension().is_none() {
-                path.set_extension(ending);
-            }
-            Some(Chosen::File(wanted, path))
-        });
+        let endings = if wanted == Wanted::Measured { &ENDINGS[..] } else { &[ending][..] };
+        let endings = endings.iter().map(|ending| (*ending).to_owned()).collect();
+        let choice = Choice { wanted, kind, endings, name: format!("{stem}.{ending}"), folder, start };
+        choice.ask(&mut self.file_dialog, &self.wake);
     }
 
     pub fn open_measured(&mut self, path: &Path) {

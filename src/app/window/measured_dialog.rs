@@ -53,7 +53,7 @@ impl MeasuredDialog {
         let name = file_name(path);
         let mut text = Background::default();
         let file = path.to_owned();
-        text.ask((), wake, move |(), _, _| {
+        text.ask_job((), wake, move |(), _, _| {
             let read = MeasuredText::read(&file).map(Arc::new);
             Some(read.map_err(|problem| sentence(&format!("the file {problem}"))))
         });
@@ -97,8 +97,9 @@ impl MeasuredDialog {
             return self.record.clear();
         };
         let (text, path) = (Arc::clone(text), self.path.clone());
-        self.record
-            .want(wanted, true, wake, move |wanted, _, _| Some(MeasuredRecord::of(&path, &text, *wanted)));
+        self.record.want_job(wanted, true, wake, move |wanted, _, _| {
+            Some(MeasuredRecord::of(&path, &text, *wanted))
+        });
     }
 
     pub(super) fn ui(&mut self, ui: &Ui, wake: &Wake) -> Option<MeasuredAnswer> {

@@ -33,6 +33,7 @@ const MARGIN: egui::Margin = egui::Margin { left: GAP as i8, right: GAP as i8, t
 const GUIDE: f32 = 29.0;
 
 mod card;
+mod choice;
 mod command;
 mod figure;
 mod files;

@@ -65,7 +65,7 @@ impl Window {
         if let Some(fault) = self.session.fault() {
             return self.messages.alert("The run was not written", fault);
         }
-        self.run.ask((), &self.wake, move |(), cancel, _| {
+        self.run.ask_job((), &self.wake, move |(), cancel, _| {
             let text = export::run_csv(&scene, &model, cancel).map_err(|error| error.to_string());
             text.transpose().map(|text| text.and_then(|text| write_text(&path, &text)))
         });

@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use serde::{Deserialize, Serialize};
+
 use super::bisection::multiple;
 use super::settled::followed;
 use super::thresholds::{Answers, Search};
@@ -19,7 +21,7 @@ fn third_digit(value: f64) -> f64 {
 }
 
 /// Threshold amplitudes in g of motions from rest at the frequency of the scene.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Thresholds {
     /// Smallest amplitude that releases the mass from the stop on which it rests, in closed form.
     pub frees_at: Option<f64>,

@@ -1,6 +1,8 @@
 //! Fields of a summary: the keys of `simulate`'s JSON, the columns of a sweep, the quantities of maps.
 
 use Read::{Count, Flag, Number, Word};
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::Values;
 use crate::dynamics::{First, Firsts, Outcome, Place, Regime, STANDARD_GRAVITY, Summary};
@@ -45,6 +47,25 @@ pub struct SummaryField {
     pub needs_ledger: bool,
     /// Its place in JSON.
     pub in_json: InJson,
+}
+
+impl PartialEq for SummaryField {
+    fn eq(&self, other: &Self) -> bool {
+        self.name == other.name
+    }
+}
+
+/// By its name.
+impl Serialize for SummaryField {
+    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        to.serialize_str(self.name)
+    }
+}
+
+impl<'de> Deserialize<'de> for &'static SummaryField {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        SummaryField::named(&String::deserialize(from)?).map_err(D::Error::custom)
+    }
 }
 
 const fn field(name: &'static str, read: Read, label: &'static str, about: &'static str) -> SummaryField {

@@ -1,5 +1,7 @@
 //! Cells of a map, and the lines at which motions begin to cross.
 
+use serde::{Deserialize, Serialize};
+
 use super::grid::name_of;
 use super::{Grid, Table, Values};
 use crate::dynamics::Regime;
@@ -81,7 +83,7 @@ fn axis<'a>(grid: &'a Grid, field: &str) -> Option<&'a Axis> {
 }
 
 /// The values of one axis of a map in ascending order, each once, with the edges of their cells.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Edges {
     /// The values.
     pub values: Vec<f64>,

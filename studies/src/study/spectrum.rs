@@ -4,6 +4,8 @@
 //! forcing periods and, if the motion repeats, of its periods; its spectrum then consists of exact lines and
 //! needs no window function. All other motions are weighted by the window function of von Hann.
 
+use serde::{Deserialize, Serialize};
+
 use super::simulate::MAX_SAMPLES;
 use super::{Table, Task, Values};
 use crate::dynamics::{Model, Outcome, Request, Sample};
@@ -47,7 +49,7 @@ pub struct SpectrumOptions {
 }
 
 /// A spectrum, and what it was made from. SI.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Spectrum {
     /// `frequency_hz,amplitude,psd`, one-sided, from 0 to half the rate, with one row per line.
     pub table: Table,

@@ -12,7 +12,7 @@ use crate::dynamics::{Model, Outcome, Request, Run, Summary};
 use crate::scene::{Fault, Scene};
 
 /// Result of one cell.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[expect(clippy::large_enum_variant, reason = "nearly all cells are run")]
 pub enum Cell {
     /// It has not been run.

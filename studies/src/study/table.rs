@@ -2,19 +2,40 @@
 //!
 //! Every study returns this type, and every writer and plot reads it.
 
+use std::collections::BTreeSet;
+use std::sync::{Mutex, PoisonError};
+
+use serde::{Deserialize, Deserializer, Serialize};
+
 use crate::scene::unit_ending;
 
 /// Values of one column, all of one type.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Values {
     /// Real numbers. NaN and plus infinity are missing values; minus infinity is the logarithm of nothing.
     Numbers(Vec<f64>),
     /// Whole numbers; `None` is a missing value.
     Counts(Vec<Option<u64>>),
     /// Words from a fixed list; an empty one is a missing value.
+    #[serde(deserialize_with = "words")]
     Words(Vec<&'static str>),
     /// Names given by a user, without commas, quotes or line breaks; an empty one is a missing value.
     Names(Vec<String>),
+}
+
+/// Each word, which some other run of the program has written, as one of this run, where it is kept.
+pub(crate) fn words<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<&'static str>, D::Error> {
+    static KNOWN: Mutex<BTreeSet<&'static str>> = Mutex::new(BTreeSet::new());
+    let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
+    let mut word = |text: String| match known.get(text.as_str()) {
+        Some(word) => *word,
+        None => {
+            let word: &'static str = text.leak();
+            known.insert(word);
+            word
+        }
+    };
+    Ok(Vec::<String>::deserialize(from)?.into_iter().map(&mut word).collect())
 }
 
 impl Values {
@@ -65,7 +86,7 @@ collected! {
 }
 
 /// One column: what it is called and what it holds.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Column {
     /// Name with the unit in it, as in the header of a CSV file: `rms_velocity_m_per_s`.
     pub name: String,
@@ -112,7 +133,7 @@ impl Column {
 /// assert_eq!(table.column("x_m").unwrap().unit(), "m");
 /// assert!(table.words("x_m").is_empty());
 /// ```
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Table {
     columns: Vec<Column>,
 }

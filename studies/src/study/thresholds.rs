@@ -9,6 +9,8 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
+use serde::{Deserialize, Serialize};
+
 use super::amplitudes::frees_at;
 use super::bisection::{Trial, between, next_between};
 use super::grid_study::Cells;
@@ -34,7 +36,7 @@ pub struct Scan {
 }
 
 /// A threshold.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Found {
     /// The smallest value with the motion; `None` if no value of the scan has it.
     pub value: Option<f64>,

@@ -3,6 +3,8 @@
 
 use std::sync::Arc;
 
+use serde::{Deserialize, Serialize};
+
 use super::Task;
 use crate::dynamics::{MapState, Model, Request, Run, Summary};
 use crate::mechanics::{BuildError, Mechanism};
@@ -169,7 +171,7 @@ pub(super) fn choice_fault(scene: &Scene, field: &str, problem: String) -> Fault
 const MAX_STROBES: usize = 60;
 
 /// A run of a walk.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Visit {
     /// The direction of its walk.
     pub direction: Direction,

@@ -15,6 +15,7 @@ use crate::mechanics::{Hertz, Mechanism};
 use crate::numeric::elementary;
 use crate::scene::{self, Damping, Fault, Scene, Start};
 use excitation::{ExcitationParts, Rhythm};
+pub use read::Beginning;
 use scales::{Scales, scales};
 use start::{fault, start_state};
 use stops::{StopAt, StopPair};

@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use serde::{Deserialize, Serialize};
+
 use super::Model;
 use super::excitation::ExcitationParts;
 use super::scales::{MIN_IMPACT, Scales};
@@ -11,6 +13,15 @@ use crate::dynamics::result::{MapState, Sample};
 use crate::mechanics::{Hertz, Mechanism};
 use crate::numeric::{DoubleDouble, Number, Scalar};
 use crate::scene;
+
+/// Where a run of a model begins. A model that continues a live run has this and all else from its scene.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Beginning {
+    start: MapState,
+    motionless: bool,
+    /// Phase of each tone, and of the drive, in turns.
+    phases: (Vec<f64>, f64),
+}
 
 /// Defines, for each of these fields, a method of [`Model`] that returns it.
 macro_rules! accessors {
@@ -181,6 +192,24 @@ impl Model {
     pub fn with_start(&self, start: impl Into<MapState>) -> Self {
         let MapState { x, v, electrical } = start.into();
         Self { start: (x, v), start_electrical: electrical, motionless: false, ..self.clone() }
+    }
+
+    /// Where its runs begin.
+    pub fn beginning(&self) -> Beginning {
+        let start = MapState { x: self.start.0, v: self.start.1, electrical: self.start_electrical };
+        let phases = self.excitation.tones.iter().map(|tone| tone.phase).collect();
+        Beginning { start, motionless: self.motionless, phases: (phases, self.start_phase) }
+    }
+
+    /// The model of the same scene whose runs begin as those of another one.
+    #[must_use]
+    pub fn begun_at(&self, beginning: &Beginning) -> Self {
+        let Beginning { start, motionless, phases } = beginning;
+        let mut model = Self { motionless: *motionless, start_phase: phases.1, ..self.with_start(*start) };
+        for (tone, phase) in model.excitation.tones.iter_mut().zip(&phases.0) {
+            tone.phase = *phase;
+        }
+        model
     }
 
     /// The same model without stops.

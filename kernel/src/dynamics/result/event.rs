@@ -1,5 +1,7 @@
 //! Samples and events of a run.
 
+use serde::{Deserialize, Serialize};
+
 /// Whether the mass moves freely or is on a stop.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Phase {
@@ -132,7 +134,7 @@ pub struct SectionPoint {
 }
 
 /// A state from which a motion can go on.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct MapState {
     /// Displacement in m.
     pub x: f64,

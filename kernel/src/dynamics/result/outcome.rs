@@ -1,7 +1,9 @@
 //! Classification of a run: the regime, the side of the barrier, and how the run ended.
 
+use serde::{Deserialize, Serialize};
+
 /// Regime of the motion over the settled window.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Regime {
     /// The mass never left the stop or the equilibrium.
     Rest,
@@ -32,7 +34,7 @@ impl Regime {
 }
 
 /// How a run ended.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum Outcome {
     /// It reached its duration.
     Done,
@@ -105,7 +107,7 @@ impl Outcome {
 }
 
 /// The side of the barrier on which a motion is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Place {
     /// Never to the right of it.
     Left,

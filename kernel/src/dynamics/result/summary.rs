@@ -1,9 +1,11 @@
 //! Statistics and energy ledger of a run.
 
+use serde::{Deserialize, Serialize};
+
 use super::outcome::{Outcome, Place, Regime};
 
 /// Energy balance over the whole run, each term integrated separately.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Ledger {
     /// Work of the base on the mass in J.
@@ -25,7 +27,7 @@ pub struct Ledger {
 }
 
 /// Output of a transducer over the settled window; each value is `None` if the run ended before it.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Harvest {
     /// Mean power into the load in W.
@@ -39,7 +41,7 @@ pub struct Harvest {
 }
 
 /// The first occurrence of an event.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct First {
     /// Time in s.
@@ -50,7 +52,7 @@ pub struct First {
 
 /// First events of a run under a drive that changes: an amplitude ramp, a chirp, noise, a record, tones
 /// without a common period.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Firsts {
     /// The mass left a stop on which it rested.
@@ -63,7 +65,7 @@ pub struct Firsts {
 }
 
 /// Statistics of a run; those of the settled window come first.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Summary {
     /// Displacement at the end in m.

@@ -1,6 +1,6 @@
 //! Conditions on a scene and on the result of its run.
 
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use crate::scene::data::Start;
 
@@ -13,7 +13,7 @@ use crate::scene::data::Start;
 /// fields `walk.up_crosses_from`, `walk.down_crosses_to` and `walk.gap`, the first less the second.
 ///
 /// A comparison with a bound fails if the field has no value.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Condition {
     /// The field equals this word or number.
     Is(String, String),

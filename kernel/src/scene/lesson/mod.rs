@@ -9,7 +9,7 @@ mod check;
 mod condition;
 mod document;
 
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use super::data::SweepAxis;
 
@@ -26,7 +26,7 @@ pub const MAX_STEP_LENGTH: usize = 240;
 pub const MAX_OPTION_LENGTH: usize = 80;
 
 /// A lesson in the form of its file.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Lesson {
     /// Version of the format: [`LESSON_FORMAT`].
@@ -77,7 +77,7 @@ impl Lesson {
 }
 
 /// A view that a lesson shows.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum LessonView {
     /// The mechanism as a drawing.
     Mechanism,
@@ -108,7 +108,7 @@ pub enum LessonView {
 }
 
 /// One step of a lesson.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum Step {
     /// Shows a text.
@@ -143,7 +143,7 @@ pub enum Step {
 }
 
 /// An option of a prediction.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Choice {
     /// The text, which continues the question.

@@ -4,19 +4,23 @@
 //! results of a prediction are covered until an option is chosen; meanwhile runs find the option that holds.
 //! A task is judged by a full run of the scene once the scene has stood still.
 
+mod judged;
 mod progress;
 
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
-use crate::app::task::{Background, Wake};
+use serde::{Deserialize, Serialize};
+
+use crate::app::task::{Background, Uncompared, Wake};
 use crate::app::words::lesson::bold_words;
 use crate::scene::lesson::{Choice, Condition, LESSONS, Lesson, LessonDocument, Step};
 use crate::scene::{Document, Scene, Source, Start, arguments};
-use crate::study::{Lack, Subject, Task, Unjudged, goal_lack, options_that_hold};
+use crate::study::Lack;
 
 use super::Session;
+use judged::Judged;
+pub(super) use judged::{GoalQuestion, OptionsQuestion};
 
 pub use progress::{Answer, Progress, Records, answers_text};
 
@@ -40,7 +44,7 @@ pub enum Turn {
     Show(Box<Document>, bool),
 }
 
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum TaskState {
     /// The user is changing the scene, or has just changed it.
     Moving,
@@ -53,7 +57,7 @@ pub enum TaskState {
 }
 
 /// Which option of a prediction holds.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Outcome {
     Unknown,
     Holds(usize),
@@ -74,9 +78,9 @@ pub struct OpenLesson {
     /// Whether it goes on from where it was left, and nobody has said that it shall.
     begun_before: bool,
     /// Which option of the prediction in the step of this number holds.
-    options: Background<usize, Outcome>,
+    options: Background<OptionsQuestion, Outcome>,
     /// What a run of the scene says about the task.
-    goal: Background<Scene, TaskState>,
+    goal: Background<GoalQuestion, TaskState>,
     /// The time in s since which the scene of the goal has stood still.
     still_since: f64,
     wake: Wake,
@@ -299,13 +303,8 @@ impl OpenLesson {
         let (begin, end) = (document.begin(number), document.end(number));
         match self.step() {
             Step::Predict { .. } => {
-                let lesson = Arc::clone(&document);
-                self.options.ask(number, &self.wake, move |number, cancel, _| {
-                    judge(&lesson, *number, lesson.end(*number), cancel, |step, subject, before| {
-                        options_that_hold(step, &subject, before).map(|options| single_option(&options))
-                    })
-                    .map(|outcome| outcome.unwrap_or_else(Outcome::Unjudged))
-                });
+                let judged = Uncompared(Judged::new(&document, number, end));
+                self.options.ask(OptionsQuestion { number, judged }, &self.wake);
                 match self.answer().shown {
                     true => Turn::Show(Box::new(end.clone()), true),
                     false => Turn::Show(Box::new(begin.clone()), false),
@@ -361,18 +360,15 @@ impl OpenLesson {
             return None;
         }
         let scene = session.scene();
-        if self.goal.question() != Some(scene) {
+        if self.goal.question().is_none_or(|asked| asked.scene != *scene) {
             (self.still_since, self.tries.1) = (now, false);
-            let (document, number) = (Arc::clone(&self.document), self.progress.step);
-            let (edited, mechanism) = (session.editor.runnable(), Arc::clone(session.model().mechanism()));
+            let edited = session.editor.runnable();
             let built = session.mechanism_of == edited.scene.mechanism;
-            self.goal.ask(scene.clone(), &self.wake, move |_, cancel, _| {
-                judge(&document, number, &edited, cancel, |step, subject, before| {
-                    let subject = if built { subject.with_mechanism(mechanism) } else { subject };
-                    Ok(goal_lack(step, &subject, before)?.map_or(TaskState::Met, TaskState::NotYet))
-                })
-                .map(|state| state.unwrap_or_else(TaskState::Unjudged))
-            });
+            let mechanism = built.then(|| Arc::clone(session.model().mechanism()));
+            let mut judged = Judged::new(&self.document, self.progress.step, &edited);
+            judged.mechanism = mechanism;
+            let judged = Uncompared(judged);
+            self.goal.ask(GoalQuestion { scene: scene.clone(), judged }, &self.wake);
             return Some(STILL);
         }
         // the scene with which the task begins is no try
@@ -466,31 +462,5 @@ impl OpenLesson {
     pub fn wait(&mut self, timeout: Duration) {
         self.options.wait(timeout);
         self.goal.wait(timeout);
-    }
-}
-
-fn single_option(options: &[bool]) -> Outcome {
-    let mut right = options.iter().enumerate().filter(|(_, holds)| **holds).map(|(number, _)| number);
-    match (right.next(), right.next()) {
-        (Some(option), None) => Outcome::Holds(option),
-        _ => Outcome::Unclear,
-    }
-}
-
-/// The `verdict` on a scene in a step of a lesson, or why there is none; `None` if cancelled.
-fn judge<T>(
-    document: &LessonDocument,
-    number: usize,
-    judged: &Document,
-    cancel: &AtomicBool,
-    verdict: impl FnOnce(&Step, Subject<'_>, &Subject<'_>) -> Result<T, Unjudged>,
-) -> Option<Result<T, String>> {
-    let (lesson, begin) = (&document.lesson, document.begin(number));
-    let task = Task { tick: &|| (), cancel };
-    let before = Subject::new(&begin.scene, &begin.files, lesson, &task);
-    let subject = Subject::new(&judged.scene, &judged.files, lesson, &task);
-    match verdict(&lesson.steps[number], subject, &before) {
-        Err(Unjudged::Cancelled) => None,
-        verdict => Some(verdict.map_err(|error| error.to_string())),
     }
 }

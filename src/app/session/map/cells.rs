@@ -10,11 +10,10 @@ use crate::numeric::short;
 use crate::output::{Chart, Cut, NoPicture, Overlay, Ranges, SweepPicture, View, csv, sweep_chart};
 use crate::scene::{FieldPath, Scene, SceneError};
 use crate::study::{
-    Cell, Edges, Grid, Levels, STRIDES, SummaryField, Sweep, SweepOptions, Table, first_crossing,
-    release_line,
+    Cell, Edges, Grid, Levels, STRIDES, SummaryField, Sweep, Table, first_crossing, release_line,
 };
 
-use super::{Question, over};
+use super::{MapQuestion, over};
 
 const MAX_CELLS: u64 = 200_000;
 
@@ -26,7 +25,7 @@ pub(super) fn too_many(cells: u64) -> Option<String> {
 
 /// A map as far as it is known.
 pub struct Map {
-    pub question: Question,
+    pub question: MapQuestion,
     /// The edges of the cells across and up.
     pub edges: [Edges; 2],
     /// The release in closed form, and the first crossing cells as far as they are known.
@@ -45,9 +44,13 @@ pub struct Map {
 
 impl Map {
     /// The map of a question before its first cell, or why there is none. `mechanism` is that of the session.
-    pub(super) fn new(question: &Question, editor: &Editor, mechanism: &Mechanism) -> Result<Self, String> {
+    pub(super) fn new(
+        question: &MapQuestion,
+        editor: &Editor,
+        mechanism: &Mechanism,
+    ) -> Result<Self, String> {
         let mut document = editor.document().clone();
-        document.scene = question.scene.clone();
+        document.scene = question.scene.scene.clone();
         let message = |error: SceneError| in_words(&error.to_string(), &question.scene);
         document.check().map_err(message)?;
         let arguments = question.axes.each_ref().map(over);
@@ -62,14 +65,11 @@ impl Map {
         let release =
             (!grid.changes_mechanism()).then(|| release_line(&question.scene, mechanism, &grid)).flatten();
         let (levels, overlay) = (Levels::of(&grid), Overlay { release, first_crossing: None });
-        let columns = question.ledger.and_then(SummaryField::find).into_iter().collect();
-        let options = SweepOptions { columns, ..SweepOptions::default() };
-        let sweep = Arc::new(Sweep::new(&document.scene, &document.files, grid).with(options));
         Ok(Self {
             question: question.clone(),
             edges,
             overlay,
-            sweep,
+            sweep: Arc::new(question.sweep(grid)),
             levels,
             cells,
             known: 0,

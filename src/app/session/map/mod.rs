@@ -8,13 +8,17 @@ mod cells;
 
 use std::collections::VecDeque;
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
+use serde::{Deserialize, Serialize};
+
 use crate::app::session::Session;
-use crate::app::task::{Background, pool};
+use crate::app::session::prepared::SceneWithFiles;
+use crate::app::task::{Background, Each, Question, Uncompared, pool};
 use crate::app::words::fields::{in_words, name_and_unit};
 use crate::scene::{Axis, FieldPath, Scene, Stops, SweepAxis};
-use crate::study::{Cell, RMS_VELOCITY, STANDARD_COLUMNS, SummaryField, Task};
+use crate::study::{Cell, Grid, RMS_VELOCITY, STANDARD_COLUMNS, SummaryField, Sweep, SweepOptions, Task};
 
 pub use crate::numeric::short;
 pub use axes::{ground, is_amplitude, label, over, part};
@@ -29,14 +33,55 @@ const MAX_SCENES: usize = 400;
 pub const LOAD_POWER: &str = "mean_load_power_w";
 
 /// The question that a map answers: a scene, apart from the fields of the axes, and the axes.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Question {
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct MapQuestion {
     /// The scene, with the first value of each axis.
-    pub scene: Scene,
+    pub scene: SceneWithFiles,
     /// Across and up.
     pub axes: [SweepAxis; 2],
     /// The column for which the runs keep an energy ledger, if they do.
-    pub ledger: Option<&'static str>,
+    pub ledger: Option<&'static SummaryField>,
+}
+
+impl MapQuestion {
+    /// The sweep that makes the map, over a grid of its axes.
+    fn sweep(&self, grid: Grid) -> Sweep {
+        let options = SweepOptions { columns: self.ledger.into_iter().collect(), ..SweepOptions::default() };
+        Sweep::new(&self.scene, &self.scene.files, grid).with(options)
+    }
+}
+
+/// The cells of a map.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct CellsQuestion {
+    map: MapQuestion,
+    /// The indices of the cells that are not known, level by level.
+    missing: Uncompared<Vec<Vec<u64>>>,
+    /// The sweep, where it has been prepared.
+    #[serde(skip)]
+    sweep: Uncompared<Option<Arc<Sweep>>>,
+}
+
+impl Question for CellsQuestion {
+    const NAME: &'static str = "cells";
+    /// The index of a cell, and the cell.
+    type Part = (u64, Cell);
+
+    fn answer(&self, cancel: &AtomicBool, each: Each<Self::Part>) -> Option<Self::Part> {
+        let Self { map, missing, sweep } = self;
+        let parsed = || {
+            let axes = map.axes.iter().map(|axis| Axis::parse(&over(axis), &map.scene));
+            let grid = Grid::new(axes.collect::<Result<_, _>>().ok()?).ok()?;
+            Some(Arc::new(map.sweep(grid)))
+        };
+        let (sweep, pool, task) = (sweep.0.clone().or_else(parsed)?, pool()?, Task { tick: &|| (), cancel });
+        for cells in &missing.0 {
+            if !sweep.run_cells(&pool, &task, cells, &|index, cell| each((index, cell))) {
+                break;
+            }
+        }
+        None
+    }
 }
 
 #[derive(Default)]
@@ -56,10 +101,10 @@ pub struct Mapping {
     /// The previous map, shown until the new one has a result everywhere.
     previous: Option<Map>,
     /// The cells of the map that have come and are not in it yet.
-    cells: Background<Question, (u64, Cell)>,
+    cells: Background<CellsQuestion, (u64, Cell)>,
     version: u64,
     /// A question that waits for a pause in the gesture, and the time in s since which it has not changed.
-    waiting: Option<(Question, f64)>,
+    waiting: Option<(MapQuestion, f64)>,
     problem: Option<String>,
 }
 
@@ -121,7 +166,7 @@ impl Mapping {
     /// The columns of the map's table; `None` if they are the standard ones.
     pub fn columns(&self) -> Option<Vec<&'static str>> {
         let ledger = self.map.as_ref().and_then(|map| map.question.ledger);
-        let wanted = ledger.into_iter().chain([self.quantity().name]);
+        let wanted = ledger.into_iter().chain([self.quantity()]).map(|field| field.name);
         let mut extra: Vec<&str> = wanted.filter(|name| !STANDARD_COLUMNS.contains(name)).collect();
         extra.dedup();
         (!extra.is_empty()).then(|| STANDARD_COLUMNS.into_iter().chain(extra).collect())
@@ -220,7 +265,7 @@ impl Session {
         }
         let Some(question) = self.map_question(axes) else { return false };
         self.map.cells.mark_wanted();
-        if self.map.cells.question() == Some(&question) {
+        if self.map.cells.question().is_some_and(|asked| asked.map == question) {
             (self.map.waiting, self.map.problem) = (None, None);
             self.run_cells();
             return false;
@@ -257,35 +302,29 @@ impl Session {
     }
 
     /// The question of the map over these axes; `None` if the first value of one cannot be set.
-    fn map_question(&self, axes: [SweepAxis; 2]) -> Option<Question> {
+    fn map_question(&self, axes: [SweepAxis; 2]) -> Option<MapQuestion> {
         let mut scene = ground(self.scene(), self.remembered_stops(), &axes);
         if !axes.iter().all(|axis| FieldPath::new(&axis.field).set(&mut scene, axis.from)) {
             return None;
         }
+        let scene = self.with_files(scene);
         let same = self.map.map().filter(|map| map.question.scene == scene && map.question.axes == axes);
         // runs with an energy ledger have all columns of runs without one
         let quantity = self.map.quantity();
-        let needed = || quantity.needs_ledger.then_some(quantity.name);
+        let needed = || quantity.needs_ledger.then_some(quantity);
         let ledger = same.and_then(|map| map.question.ledger).or_else(needed);
-        Some(Question { scene, axes, ledger })
+        Some(MapQuestion { scene, axes, ledger })
     }
 
     /// Runs the missing cells of the map, unless they are running or were stopped.
     fn run_cells(&mut self) {
         let Mapping { map: Some(map), cells, .. } = &mut self.map else { return };
-        if map.is_whole() || cells.question() == Some(&map.question) && !cells.is_paused() {
+        let is_asked = cells.question().is_some_and(|asked| asked.map == map.question);
+        if map.is_whole() || is_asked && !cells.is_paused() {
             return;
         }
-        let (sweep, levels) = (Arc::clone(&map.sweep), map.missing());
-        cells.ask(map.question.clone(), &self.wake, move |_, cancel, each| {
-            let (pool, task) = (pool()?, Task { tick: &|| (), cancel });
-            for cells in levels {
-                if !sweep.run_cells(&pool, &task, &cells, &|index, cell| each((index, cell))) {
-                    break;
-                }
-            }
-            None
-        });
+        let (missing, sweep) = (Uncompared(map.missing()), Uncompared(Some(Arc::clone(&map.sweep))));
+        cells.ask(CellsQuestion { map: map.question.clone(), missing, sweep }, &self.wake);
     }
 
     /// Why a map cannot have these axes: the index of the faulty axis, its faulty part, and a sentence.

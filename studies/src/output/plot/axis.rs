@@ -1,10 +1,12 @@
 //! Axes with their ticks and labels.
 
+use serde::{Deserialize, Serialize};
+
 use crate::numeric::round::{ONE_TWO_FIVE, decade, round_up};
 use crate::numeric::{elementary, extent};
 
 /// A range of values with its ticks.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PlotAxis {
     /// Value at the left or lower end.
     pub low: f64,
@@ -20,7 +22,7 @@ pub struct PlotAxis {
 }
 
 /// How ticks are placed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 enum Scale {
     /// At steps of 1, 2 or 5 times a power of ten.
     Linear,

@@ -1,5 +1,7 @@
 //! Grid of cells, each with a value, and the colours of values.
 
+use serde::{Deserialize, Serialize};
+
 use super::axis::PlotAxis;
 use super::figure::{Area, Figure, Text};
 use super::font;
@@ -8,7 +10,7 @@ use super::style::{self, Ink, Theme, viridis};
 use crate::study::Edges;
 
 /// A cell of a map.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum Cell {
     /// Nothing is drawn.
     Blank,
@@ -28,7 +30,7 @@ impl Cell {
 }
 
 /// How values are coloured.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Colours {
     /// Along this axis.
     Scale(PlotAxis),
@@ -90,7 +92,7 @@ impl Colours {
 }
 
 /// A grid of cells.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Cells {
     /// The values to the right.
     pub across: Edges,

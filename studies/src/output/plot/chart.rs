@@ -4,6 +4,8 @@
 //! The [`Role`] of a layer determines its colour, width, dash and marker. The legend contains the layers that
 //! have a name.
 
+use serde::{Deserialize, Serialize};
+
 use super::axis::PlotAxis;
 use super::cells::{Cells, Colours};
 use super::figure::Point;
@@ -12,7 +14,7 @@ use crate::mechanics::{Equilibrium, Landscape};
 use crate::study::Table;
 
 /// A picture as data.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Chart {
     /// The columns of panels, side by side; on a narrow canvas they are stacked.
     pub columns: Vec<Column>,
@@ -23,7 +25,7 @@ pub struct Chart {
 }
 
 /// Panels one above the other. Neighbours with the same horizontal axis share its numbers.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Column {
     /// Its width relative to the other columns.
     pub width: f64,
@@ -32,7 +34,7 @@ pub struct Column {
 }
 
 /// Layers over two axes.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Panel {
     /// Its heading; empty for none.
     pub heading: String,
@@ -51,7 +53,7 @@ pub struct Panel {
 }
 
 /// A line of text, with the marker of a role before it.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Note {
     /// What it says.
     pub words: String,
@@ -60,7 +62,7 @@ pub struct Note {
 }
 
 /// Marks of one role.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Layer {
     /// What is drawn, in the units of the axes.
     pub marks: Marks,
@@ -71,7 +73,7 @@ pub struct Layer {
 }
 
 /// A side of a panel or of a wall.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Side {
     /// To the left.
     Left,
@@ -84,7 +86,7 @@ pub enum Side {
 }
 
 /// What a layer draws. Points that are not finite are left out and interrupt a line.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Marks {
     /// A line through points in any order.
     Path(Vec<Point>),
@@ -92,7 +94,9 @@ pub enum Marks {
     Trace(Vec<Point>),
     /// A marker at each point.
     Points(Vec<Point>),
-    /// Markers of regimes by their words; close markers on a line are left out.
+    /// Markers of regimes by their words; close markers on a line are left out. No picture with them is ever
+    /// written as data.
+    #[serde(skip)]
     Regimes(Vec<(Point, &'static str)>, bool),
     /// Small markers, whose size decreases with their number.
     Cloud(Vec<Point>),

@@ -1,10 +1,12 @@
 //! Roles of what is drawn, and the look of each: colour, width, dash and marker.
 
+use serde::{Deserialize, Serialize};
+
 use super::mark::Marker;
 use super::style::{self, Ink, Theme};
 
 /// What a layer stands for.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum Role {
     /// The computed motion, and what follows from it.
     Motion,

@@ -1,6 +1,8 @@
 //! Result of a map of basins: the attractors, numbered in the order of the first start that goes to each, and
 //! the rows.
 
+use serde::{Deserialize, Serialize};
+
 use super::Basins;
 use super::rounds::{Fate, Kind, Way};
 use super::stroboscopic::final_state;
@@ -18,7 +20,7 @@ const WINDOW: u32 = 24;
 const MIN_DIFFERENCE: f64 = 0.02;
 
 /// A share with its 95 % confidence interval (Wilson 1927).
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Shares {
     /// The share.
     pub share: f64,
@@ -40,7 +42,7 @@ impl Shares {
 }
 
 /// One attractor.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Attractor {
     /// The regime of the motion.
     pub regime: Regime,
@@ -80,7 +82,7 @@ impl Attractor {
 }
 
 /// Results of a map of basins so far.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Answer {
     /// The attractors in the order of their numbers, which begin at 1.
     pub attractors: Vec<Attractor>,

@@ -10,6 +10,8 @@ mod search;
 mod varied;
 mod words;
 
+use serde::{Deserialize, Serialize};
+
 use super::{SummaryField, Table, Task};
 use crate::scene::{Fault, Files, Scene, column_names};
 use crate::system::threads::Pool;
@@ -18,7 +20,7 @@ pub use varied::SAMPLES;
 pub use words::{names, place, quantity};
 
 /// A field of the design with its range, in the unit of the field.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct DesignRange {
     /// Dotted path of the field.
     pub field: String,
@@ -106,7 +108,7 @@ pub const MOST_FIELDS: usize = 4;
 pub const INTERVALS: [usize; MOST_FIELDS] = [256, 32, 12, 8];
 
 /// A design and its results.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Optimum {
     /// The fields' values.
     pub at: Vec<f64>,
@@ -117,7 +119,7 @@ pub struct Optimum {
 }
 
 /// A design that was tried.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Tried {
     /// The fields' values.
     pub at: Vec<f64>,
@@ -129,7 +131,7 @@ pub struct Tried {
 }
 
 /// The value under variation. NaN if a sample has no value.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Spread {
     /// The worst of the samples.
     pub worst: f64,
@@ -138,7 +140,7 @@ pub struct Spread {
 }
 
 /// The best design.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct BestDesign {
     /// The place.
     pub optimum: Optimum,
@@ -161,7 +163,7 @@ pub struct BestDesign {
 }
 
 /// Why there is no best design.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum NoBest {
     /// It was cancelled.
     Cancelled,

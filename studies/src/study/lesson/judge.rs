@@ -1,5 +1,7 @@
 //! Evaluation of the conditions of lessons.
 
+use serde::{Deserialize, Serialize};
+
 use super::Subject;
 use crate::dynamics::Summary;
 use crate::numeric::extent;
@@ -30,7 +32,7 @@ impl Unjudged {
 }
 
 /// A condition that does not hold, with the value of the field that it names.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Lack {
     /// The condition; for an `All`, the first part that does not hold.
     pub asked: Condition,
@@ -171,7 +173,7 @@ fn mean(values: &[f64]) -> (f64, f64) {
 }
 
 /// Value of a field.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Value {
     /// A number.
     Number(f64),

@@ -5,6 +5,8 @@ mod numbers;
 use std::ops::Range;
 use std::sync::atomic::AtomicBool;
 
+use serde::{Deserialize, Serialize};
+
 use super::Table;
 use crate::dynamics::{Model, Outcome, Request, Sample};
 use crate::mechanics::Mechanism;
@@ -28,7 +30,7 @@ pub struct MeasuredMotion<'a> {
 }
 
 /// Comparison of a measured motion with the computed one.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Comparison {
     /// `quantity,unit,measured,computed,difference,difference_percent`.
     pub table: Table,
@@ -184,7 +186,7 @@ fn between(times: &[f64], values: &[f64], t: f64) -> f64 {
 }
 
 /// Comparison of a measured force with the computed one at the measured positions on the force curve.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ForceComparison {
     /// `quantity,unit,measured,computed,difference,difference_percent`.
     pub table: Table,

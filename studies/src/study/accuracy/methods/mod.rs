@@ -11,6 +11,8 @@ mod fixed;
 use std::f64::consts::TAU;
 use std::sync::atomic::Ordering;
 
+use serde::{Deserialize, Serialize};
+
 pub use dormand_prince::dormand_prince;
 pub use fixed::fixed_step;
 
@@ -33,7 +35,7 @@ words! {
 }
 
 /// Statistics of a run by one of these methods or by the program. SI.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Statistics {
     /// Displacement at the end in m.
     pub final_x: f64,

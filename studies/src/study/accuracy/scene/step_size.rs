@@ -2,6 +2,8 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use serde::{Deserialize, Serialize};
+
 use super::trust::{Beside, finished, times};
 use crate::dynamics::{Event, EventKind, Model, Request, Sample, Side};
 use crate::study::accuracy::methods::{MethodRun, Scheme, Statistics, fixed_step};
@@ -22,7 +24,7 @@ const MAX_STEPS: f64 = 2e7;
 const SINES: f64 = 16.0;
 
 /// Why a scene has no such run.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, thiserror::Error)]
 pub enum Unfit {
     /// Its stops are compliant, and clamp and bounce needs rigid ones.
     #[error("clamp and bounce is for rigid stops, and these give way")]
@@ -36,7 +38,7 @@ pub enum Unfit {
 }
 
 /// A run in fixed steps with clamp and bounce beside the true one, from the scene's start.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct StepSize {
     /// The scheme.
     pub scheme: Scheme,
@@ -170,7 +172,7 @@ const FASTER: f64 = 1.2;
 const LEAST_SPEED: f64 = 0.5;
 
 /// How late arrivals are, in s; early ones are below 0.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Lateness {
     /// The median.
     pub median: f64,

@@ -3,6 +3,8 @@
 
 use std::sync::atomic::AtomicBool;
 
+use serde::{Deserialize, Serialize};
+
 use crate::dynamics::{Model, Outcome, Regime, Request, Run, Sample};
 use crate::numeric::elementary;
 use crate::study::accuracy::methods::Statistics;
@@ -109,7 +111,7 @@ const TIMES: f64 = 5.0;
 const ABOVE_START: f64 = 10.0;
 
 /// How the difference between a run and a more accurate one develops.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum Course {
     /// They stay together.
     Kept,
@@ -145,7 +147,7 @@ impl Course {
 }
 
 /// The error of a run, known by its change against a tighter tolerance.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Trust {
     /// Tolerance of the run, and of the one that it was compared with.
     pub tolerances: (f64, f64),
@@ -241,7 +243,7 @@ fn parted(model: &Model, beside: &Beside, better: &Run, until: f64, next: Option
 pub const TOLERANCES: [f64; 4] = [1e-3, 1e-6, 1e-9, 1e-12];
 
 /// A scene's run at one tolerance.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct AtTolerance {
     /// The tolerance.
     pub tolerance: f64,
@@ -256,7 +258,7 @@ pub struct AtTolerance {
 }
 
 /// A scene's run at several tolerances.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Tolerances {
     /// The runs, the loosest tolerance first; the scene's own tolerance is among them.
     pub runs: Vec<AtTolerance>,

@@ -1,0 +1,169 @@
+//! Scenes, mechanisms and models in questions: shared in this program, and written as what they are built from.
+
+use std::collections::BTreeMap;
+use std::ops::Deref;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use serde::{Deserialize, Serialize};
+
+use crate::app::task::Identity;
+use crate::dynamics::{Beginning, Model};
+use crate::mechanics::Mechanism;
+use crate::scene::{self, Files, Scene, named_texts, read_records};
+
+/// A scene with the files that it names, which is compared by the scene and written with their texts.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(from = "WithTexts", into = "WithTexts")]
+pub struct SceneWithFiles {
+    pub scene: Scene,
+    pub files: Files,
+}
+
+#[derive(Serialize, Deserialize)]
+struct WithTexts {
+    scene: Scene,
+    texts: BTreeMap<String, String>,
+}
+
+impl From<SceneWithFiles> for WithTexts {
+    fn from(SceneWithFiles { scene, files }: SceneWithFiles) -> Self {
+        Self { texts: named_texts(&scene, &files), scene }
+    }
+}
+
+impl From<WithTexts> for SceneWithFiles {
+    fn from(WithTexts { mut scene, texts }: WithTexts) -> Self {
+        let files = Files { folder: None, cached: texts };
+        read_records(&mut scene, &files);
+        Self { scene, files }
+    }
+}
+
+impl PartialEq for SceneWithFiles {
+    fn eq(&self, other: &Self) -> bool {
+        self.scene == other.scene
+    }
+}
+
+impl Deref for SceneWithFiles {
+    type Target = Scene;
+
+    fn deref(&self) -> &Scene {
+        &self.scene
+    }
+}
+
+/// A scene with its mechanism, which is compared by the scene and written with the tolerance of its flexures.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(try_from = "Unsolved", into = "Unsolved")]
+pub struct Prepared {
+    pub of: SceneWithFiles,
+    pub mechanism: Arc<Mechanism>,
+    pub tolerance: f64,
+}
+
+#[derive(Serialize, Deserialize)]
+struct Unsolved {
+    of: SceneWithFiles,
+    tolerance: f64,
+}
+
+impl From<Prepared> for Unsolved {
+    fn from(Prepared { of, tolerance, .. }: Prepared) -> Self {
+        Self { of, tolerance }
+    }
+}
+
+impl TryFrom<Unsolved> for Prepared {
+    type Error = String;
+
+    fn try_from(Unsolved { of, tolerance }: Unsolved) -> Result<Self, String> {
+        let mechanism = solved(&of, tolerance)?;
+        Ok(Self { of, mechanism, tolerance })
+    }
+}
+
+/// Number of mechanisms that a worker keeps.
+const KEPT: usize = 4;
+
+/// What a mechanism was built from, and the mechanism.
+type Kept = (scene::Mechanism, Files, f64, Arc<Mechanism>);
+
+/// The mechanism of a scene that has come as text: that of a question before if it is the same.
+fn solved(of: &SceneWithFiles, tolerance: f64) -> Result<Arc<Mechanism>, String> {
+    static SOLVED: Mutex<Vec<Kept>> = Mutex::new(Vec::new());
+    let mut solved = SOLVED.lock().unwrap_or_else(PoisonError::into_inner);
+    let is_same = |kept: &&Kept| (&kept.0, &kept.1, kept.2) == (&of.scene.mechanism, &of.files, tolerance);
+    if let Some(kept) = solved.iter().find(is_same) {
+        return Ok(Arc::clone(&kept.3));
+    }
+    let built = Mechanism::build_with(&of.mechanism, &of.files, tolerance);
+    let built = Arc::new(built.map_err(|error| error.to_string())?);
+    solved.truncate(KEPT - 1);
+    solved.insert(0, (of.mechanism.clone(), of.files.clone(), tolerance, Arc::clone(&built)));
+    Ok(built)
+}
+
+impl PartialEq for Prepared {
+    fn eq(&self, other: &Self) -> bool {
+        self.of == other.of
+    }
+}
+
+/// The model of a scene, from its start or from a present state, which is compared by its address and written
+/// with the state.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(try_from = "Unbuilt", into = "Unbuilt")]
+pub struct SharedModel {
+    pub model: Identity<Model>,
+    of: Arc<Prepared>,
+}
+
+#[derive(Serialize, Deserialize)]
+struct Unbuilt {
+    of: Arc<Prepared>,
+    beginning: Beginning,
+}
+
+impl SharedModel {
+    pub fn new(model: Model, of: Prepared) -> Self {
+        Self { model: Identity(Arc::new(model)), of: Arc::new(of) }
+    }
+
+    /// The model, or else this one, which continues a motion of it.
+    pub fn or(&self, continued: Option<Model>) -> Self {
+        let model = Identity(Arc::new(continued.unwrap_or_else(|| (**self).clone())));
+        Self { model, of: Arc::clone(&self.of) }
+    }
+}
+
+impl From<SharedModel> for Unbuilt {
+    fn from(SharedModel { model, of }: SharedModel) -> Self {
+        Self { beginning: model.beginning(), of }
+    }
+}
+
+impl TryFrom<Unbuilt> for SharedModel {
+    type Error = String;
+
+    fn try_from(Unbuilt { of, beginning }: Unbuilt) -> Result<Self, String> {
+        let built = Model::build(&of.of, Arc::clone(&of.mechanism));
+        let fault =
+            |faults: Vec<scene::Fault>| faults.first().map_or(String::new(), |fault| fault.problem.clone());
+        Ok(Self { model: Identity(Arc::new(built.map_err(fault)?.begun_at(&beginning))), of })
+    }
+}
+
+impl PartialEq for SharedModel {
+    fn eq(&self, other: &Self) -> bool {
+        self.model == other.model
+    }
+}
+
+impl Deref for SharedModel {
+    type Target = Model;
+
+    fn deref(&self) -> &Model {
+        &self.model
+    }
+}
