@@ -45,13 +45,13 @@ impl Question for LiveRun {
 pub struct Accuracy {
     /// The run that moves; `None` if its error cannot be known.
     run: Option<LiveRun>,
-    trust: Background<PathQuestion, Trust>,
+    pub(super) trust: Background<PathQuestion, Trust>,
     /// The selected method of fixed step.
     pub scheme: Scheme,
     /// Its step in s.
     pub step: f64,
-    tolerances: Background<TolerancesQuestion, Tolerances>,
-    stepped: Background<StepQuestion, Result<StepSize, Unfit>>,
+    pub(super) tolerances: Background<TolerancesQuestion, Tolerances>,
+    pub(super) stepped: Background<StepQuestion, Result<StepSize, Unfit>>,
     /// Whether the user has stopped the computations.
     stopped: bool,
 }
@@ -59,7 +59,7 @@ pub struct Accuracy {
 /// A run, and the time in s for which the error of its path is computed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct PathQuestion {
-    pub run: LiveRun,
+    run: LiveRun,
     pub duration: f64,
 }
 
@@ -74,7 +74,7 @@ impl Question for PathQuestion {
 
 /// A model whose runs at several tolerances are compared.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(super) struct TolerancesQuestion(pub SharedModel);
+pub(super) struct TolerancesQuestion(SharedModel);
 
 impl Question for TolerancesQuestion {
     const NAME: &'static str = "tolerances";
@@ -88,9 +88,9 @@ impl Question for TolerancesQuestion {
 /// A model, and a method of fixed step with its step in s.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct StepQuestion {
-    pub model: SharedModel,
-    pub scheme: Scheme,
-    pub step: f64,
+    model: SharedModel,
+    scheme: Scheme,
+    step: f64,
 }
 
 impl Question for StepQuestion {

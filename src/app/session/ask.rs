@@ -189,7 +189,7 @@ impl Session {
         self.accuracy.descriptions(is_regular).filter(|_| moves)
     }
 
-    fn can_search(&self) -> bool {
+    pub(super) fn can_search(&self) -> bool {
         self.fault.is_none()
             && self.built.harmonic().is_some()
             && study::can_cross(&self.built, &self.mechanism)

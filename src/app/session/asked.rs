@@ -58,3 +58,204 @@ fn answered<Q: Question>(
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use std::sync::{Arc, Mutex};
+
+    use super::*;
+    use crate::app::session::Session;
+    use crate::app::session::editor::Editor;
+    use crate::app::session::lesson::{OpenLesson, Turn};
+    use crate::app::session::measured::MeasuredRecord;
+    use crate::scene::lesson::{LESSONS, LessonDocument};
+    use crate::scene::{Channel, Document, Quantity, SweepAxis};
+    use crate::study::result_fields;
+
+    /// Questions that take longer than a second about these presets; others are asked the same.
+    const SLOW: [(&str, &str); 4] = [
+        ("first-look", BasinsQuestion::NAME),
+        ("first-look", ThresholdsQuestion::NAME),
+        ("paper", Search::NAME),
+        ("paper-table", Search::NAME),
+    ];
+
+    /// A text without the computing times, which differ from run to run.
+    fn without_times(text: &str) -> String {
+        let mut parts = text.split("cpu_s:");
+        let first = parts.next().unwrap_or_default().to_owned();
+        parts.fold(first, |text, part| text + &part[part.find([',', ')']).unwrap()..])
+    }
+
+    /// Compares the answer of a question with that by text. `compares` says whether the question that has
+    /// come as text is equal to it: a model is not, since it has another address.
+    fn compare<Q: Question>(question: Option<&Q>, compares: bool) {
+        let question = question.unwrap_or_else(|| panic!("{} was not asked", Q::NAME));
+        let text = to_text(question).unwrap();
+        let again: Q = from_text(&text).unwrap();
+        assert_eq!(to_text(&again).unwrap(), text, "{}", Q::NAME);
+        assert_eq!(again == *question, compares, "{}", Q::NAME);
+        let cancel = AtomicBool::new(false);
+        let (here, there) = (Mutex::new(Vec::new()), Mutex::new(Vec::new()));
+        let keep = |part: Q::Part| here.lock().unwrap().push(to_text(&part).unwrap());
+        question.answer(&cancel, &keep).into_iter().for_each(keep);
+        answer(Q::NAME, &text, &cancel, &|part| there.lock().unwrap().push(part)).unwrap();
+        let [mut here, mut there] = [here, there].map(|parts| parts.into_inner().unwrap());
+        for part in &there {
+            assert_eq!(to_text(&from_text::<Q::Part>(part).unwrap()).unwrap(), *part, "{}", Q::NAME);
+        }
+        // threads pass on parts in any order
+        for parts in [&mut here, &mut there] {
+            parts.iter_mut().for_each(|part| *part = without_times(part));
+            parts.sort();
+        }
+        assert_eq!(here, there, "{}", Q::NAME);
+        assert!(!here.is_empty(), "{}", Q::NAME);
+    }
+
+    /// A session on a short run of a preset that has been moved to another frequency under way.
+    fn session(preset: &str) -> Session {
+        let mut document = Document::preset(preset).unwrap();
+        for change in ["run.settle_s=0.5", "run.duration_s=1.5"] {
+            document.set(change).unwrap();
+        }
+        let mut session = Session::new(Editor::new(document), Arc::new(|| ())).unwrap();
+        session.player.speed = 1.0;
+        session.player.set_playing(true);
+        (0..4).for_each(|_| session.player.tick(0.09));
+        let field = "excitation.frequency_hz";
+        if let Some(hz) = session.number(field) {
+            session.set_number(field, 1.1 * hz).unwrap();
+            session.end_gesture();
+        }
+        (0..4).for_each(|_| session.player.tick(0.07));
+        session.moved_by_hand();
+        session
+    }
+
+    /// Three values of a field around that of the scene.
+    fn axis(session: &Session, field: &str) -> SweepAxis {
+        let value = session.number(field).unwrap();
+        let values = Vec::new();
+        SweepAxis { field: field.to_owned(), from: value, to: 1.5 * value, step: 0.25 * value, values }
+    }
+
+    fn record(values: Quantity, across: Quantity) -> MeasuredRecord {
+        let channel = |quantity: Quantity, scale: f64, shift: f64| Channel {
+            quantity,
+            column: "column".to_owned(),
+            values: (0..200).map(|i| scale * (f64::from(i) * 0.01 + shift)).collect(),
+        };
+        let (across, values) = (channel(across, 1.0, -0.1), channel(values, 1e-3, 0.0));
+        let (path, name, units) = ("a.csv".into(), "a.csv".to_owned(), ["s", "m"]);
+        let (timing, range) = (None, (0.0, 2e-3));
+        MeasuredRecord { path, name, units, across, values, decimal_commas: false, timing, range }
+    }
+
+    /// All questions about a scene that it can be asked.
+    fn compare_all(preset: &str) {
+        let mut session = session(preset);
+        let is_slow = |name: &str| SLOW.contains(&(preset, name));
+        compare(session.settled.question(), false);
+        session.accuracy.follow(session.player.watch().time(), &session.wake.clone());
+        if session.player.watch().from_here().is_some() {
+            compare(session.accuracy.trust.question(), false);
+        }
+        session.want_accuracy();
+        compare(session.accuracy.tolerances.question(), false);
+        compare(session.accuracy.stepped.question(), false);
+        session.want_spectrum();
+        compare(session.explore.spectra.found.question(), false);
+        session.want_basins((-1e-3, 1e-3), (-0.1, 0.1));
+        let basins = session.explore.basins.question().cloned();
+        if !is_slow(BasinsQuestion::NAME) {
+            compare(basins.map(|basins| BasinsQuestion { starts: 3, ..basins }).as_ref(), true);
+        }
+        for (values, across) in
+            [(Quantity::Displacement, Quantity::Time), (Quantity::Force, Quantity::Displacement)]
+        {
+            session.measured.lay(record(values, across));
+            session.want_differences();
+            compare(session.measured.found.question(), false);
+            session.fit_shift();
+            compare(session.measured.fit.question(), false);
+        }
+        session.ways();
+        if session.can_search() {
+            // the second answer is the first one, which is kept, if scene and mechanism are the same
+            if !is_slow(ThresholdsQuestion::NAME) {
+                compare(session.thresholds.question(), true);
+            }
+            compare(session.stops_that_cross.question(), true);
+        }
+        let fields = session.map_fields();
+        let axes = [0, 1].map(|i| axis(&session, &fields[i]));
+        if session.model().repeats() {
+            session.explore.walks.chosen = Some(axes[0].clone());
+            session.want_walks();
+            compare(session.explore.walks.found.question(), true);
+        }
+        session.map.show(crate::study::SummaryField::find("work_j").unwrap());
+        session.map.choose(Some(axes));
+        session.want_map(0.0);
+        compare(session.map.cells.question(), true);
+        session.find_best_stops();
+        if let Some(search) = session.best.search.question().filter(|_| !is_slow(Search::NAME)) {
+            let mut search = search.clone();
+            search.range.intervals = 4;
+            compare(Some(&search), true);
+        }
+    }
+
+    #[test]
+    fn questions_by_text_have_the_same_answers() {
+        let presets = ["paper", "first-look", "harvester", "random-shaking", "paper-ramp", "bouncing-ball"];
+        // with a table and with a record
+        presets.into_iter().chain(["paper-table", "walking"]).for_each(compare_all);
+    }
+
+    #[test]
+    fn questions_of_lessons_by_text_have_the_same_answers() {
+        let document = LessonDocument::load(LESSONS[0].name, &result_fields()).unwrap();
+        let (mut lesson, scene) = OpenLesson::open(document, None, Arc::new(|| ()));
+        let mut session = Session::new(Editor::new(*scene), Arc::new(|| ())).unwrap();
+        let mut asked = (0, 0);
+        loop {
+            lesson.follow(&session, 0.0);
+            if lesson.options.question().is_some() {
+                compare(lesson.options.question(), true);
+                asked.0 += 1;
+            }
+            if lesson.goal.question().is_some() {
+                compare(lesson.goal.question(), true);
+                asked.1 += 1;
+            }
+            lesson.reveal();
+            if lesson.is_last() {
+                break;
+            }
+            if let Turn::Show(scene, _) = lesson.go_on() {
+                session = Session::new(Editor::new(*scene), Arc::new(|| ())).unwrap();
+            }
+        }
+        assert!(asked.0 > 0 && asked.1 > 0, "{asked:?}");
+    }
+
+    #[test]
+    fn numbers_keep_their_bits() {
+        let numbers = vec![0.1 + 0.2, -0.0, 5e-324, 1.7e308, -1.0 / 3.0, f64::INFINITY, f64::NEG_INFINITY];
+        let again: Vec<f64> = from_text(&to_text(&numbers).unwrap()).unwrap();
+        assert_eq!(
+            again.iter().map(|x| x.to_bits()).collect::<Vec<_>>(),
+            numbers.iter().map(|x| x.to_bits()).collect::<Vec<_>>()
+        );
+        assert!(from_text::<f64>(&to_text(&f64::NAN).unwrap()).unwrap().is_nan());
+    }
+
+    #[test]
+    fn an_unknown_name_or_a_broken_text_is_an_error() {
+        let asked = |name: &str, text: &str| answer(name, text, &AtomicBool::new(false), &|_| ());
+        assert_eq!(asked("weather", "()").unwrap_err(), "no question is called weather");
+        assert!(asked(LiveRun::NAME, "(").is_err());
+    }
+}

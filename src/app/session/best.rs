@@ -67,7 +67,7 @@ impl Question for Search {
 /// The search for the best stops, and its result. Both are dropped when the scene changes.
 #[derive(Default)]
 pub struct BestStops {
-    search: Background<Search, Part>,
+    pub(super) search: Background<Search, Part>,
     /// Why there can be no search.
     refusal: Option<&'static str>,
     /// Whether the search is not offered, as its result may be the answer of a lesson.
@@ -136,7 +136,7 @@ impl Session {
         self.best.search.ask(search, &self.wake);
     }
 
-    pub(super) fn best_search(&self) -> Result<Search, &'static str> {
+    fn best_search(&self) -> Result<Search, &'static str> {
         if self.fault().is_some() {
             return Err("The best stops are searched for once the scene can be run.");
         }

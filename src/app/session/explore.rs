@@ -44,8 +44,8 @@ impl Explore {
 /// A model, and the signal of its motion to analyse.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SpectrumQuestion {
-    pub(super) model: SharedModel,
-    pub(super) signal: Signal,
+    model: SharedModel,
+    signal: Signal,
 }
 
 impl Question for SpectrumQuestion {
@@ -166,7 +166,7 @@ impl Session {
     }
 
     /// The question of the walks, or why there are none.
-    pub(super) fn walk_question(&self) -> Result<WalkQuestion, String> {
+    fn walk_question(&self) -> Result<WalkQuestion, String> {
         let axis = self.walk_axis().ok_or("This scene has no field to walk over.")?;
         let ground = ground(self.scene(), self.remembered_stops(), std::slice::from_ref(&axis));
         let values = Axis::from_scene(&axis, &ground).map(|axis| axis.values);

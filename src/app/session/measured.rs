@@ -141,9 +141,9 @@ impl Overlay {
 /// A record, and the scene and model that it is compared with.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MeasuredQuestion {
-    pub(super) model: SharedModel,
-    pub(super) scene: SceneWithFiles,
-    pub(super) over: Overlay,
+    model: SharedModel,
+    scene: SceneWithFiles,
+    over: Overlay,
 }
 
 impl Question for MeasuredQuestion {
@@ -157,7 +157,7 @@ impl Question for MeasuredQuestion {
 
 /// The shift with which a record fits the run best.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct FitQuestion(pub(super) MeasuredQuestion);
+pub struct FitQuestion(MeasuredQuestion);
 
 impl Question for FitQuestion {
     const NAME: &'static str = "fit";
@@ -207,7 +207,7 @@ pub struct MeasuredData {
     /// The differences, or why they are not known.
     pub found: Background<MeasuredQuestion, Result<Differences, String>>,
     /// The shift in s that fits best, or why there is none.
-    fit: Background<FitQuestion, Result<f64, String>>,
+    pub(super) fit: Background<FitQuestion, Result<f64, String>>,
     pub no_fit: Option<String>,
 }
 
@@ -261,7 +261,7 @@ impl Session {
         self.measured.fit.ask(FitQuestion(question), &self.wake);
     }
 
-    pub(super) fn measured_question(&self) -> Option<MeasuredQuestion> {
+    fn measured_question(&self) -> Option<MeasuredQuestion> {
         let (over, scene) = (self.measured.over.clone()?, self.with_files(self.built.clone()));
         Some(MeasuredQuestion { model: self.model.clone(), scene, over })
     }

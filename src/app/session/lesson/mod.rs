@@ -78,9 +78,9 @@ pub struct OpenLesson {
     /// Whether it goes on from where it was left, and nobody has said that it shall.
     begun_before: bool,
     /// Which option of the prediction in the step of this number holds.
-    options: Background<OptionsQuestion, Outcome>,
+    pub(super) options: Background<OptionsQuestion, Outcome>,
     /// What a run of the scene says about the task.
-    goal: Background<GoalQuestion, TaskState>,
+    pub(super) goal: Background<GoalQuestion, TaskState>,
     /// The time in s since which the scene of the goal has stood still.
     still_since: f64,
     wake: Wake,

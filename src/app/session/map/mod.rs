@@ -101,7 +101,7 @@ pub struct Mapping {
     /// The previous map, shown until the new one has a result everywhere.
     previous: Option<Map>,
     /// The cells of the map that have come and are not in it yet.
-    cells: Background<CellsQuestion, (u64, Cell)>,
+    pub(super) cells: Background<CellsQuestion, (u64, Cell)>,
     version: u64,
     /// A question that waits for a pause in the gesture, and the time in s since which it has not changed.
     waiting: Option<(MapQuestion, f64)>,
