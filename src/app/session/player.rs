@@ -25,8 +25,8 @@ pub const SPEEDS: [(f64, &str); 7] = [
 /// Preferred duration on the screen, in s, of the characteristic time of the motion.
 const PERIOD_ON_SCREEN: f64 = 3.0;
 
-/// Distance from an end of the force curve that a hand keeps, as a share of the curve's width: the energy of the
-/// prototype's flexures grows sixfold over it.
+/// Distance from an end of the force curve that a hand keeps, as a share of the curve's width: the energy of
+/// the prototype's flexures grows sixfold over it.
 const HAND_MARGIN: f64 = 0.02;
 
 /// The speed, at most real time, that suits a motion with this characteristic time in s.
@@ -180,8 +180,8 @@ impl Player {
 
     /// Holds the mass at `x` in m, with the clock stopped.
     ///
-    /// Where no stop keeps it, it stays so far from an end of the force curve that the energy at its place does
-    /// not carry it beyond the other end once it is let go.
+    /// Where no stop keeps it, it stays so far from an end of the force curve that the energy at its place
+    /// does not carry it beyond the other end once it is let go.
     pub fn hold(&mut self, x: f64) {
         (self.past, self.held, self.goal) = (None, true, None);
         let model = self.watch.model_at(self.watch.time());
