@@ -317,20 +317,26 @@ fn fields_of_whole_numbers_are_searched_among_whole_numbers() {
     );
 }
 
-/// A run goes on until its motion repeats: a transient is no result.
+/// A run goes on until its motion repeats: a transient is no result. Which of these motions are long
+/// transients depends on rounding.
 #[test]
 fn a_transient_is_not_what_is_best() {
-    let fields = ["excitation.amplitude_g=1.26", "run.duration_s=12", "run.settle_s=8"];
-    let document = changed("paper-unconstrained", &fields);
-    let best = found_by(&question(&document, ("mass_g", 15.2, 15.3), 1), 2).unwrap().optimum;
-    let mass = format!("mass_g={:?}", best.at[0]);
-    let model = preset("paper-unconstrained", &[&fields[..], &[mass.as_str()]].concat());
-    // 1000 forcing periods beyond the run
-    let until_settled = Some(12.0 + 1000.0 / 3.0);
-    let followed = model.run(&Request { until_settled, ..Request::default() }).summary;
-    let short = model.run(&Request::default()).summary;
-    assert_eq!((short.settled, followed.settled), (Some(false), Some(true)));
-    assert_eq!(Some(best.value), followed.rms_velocity);
+    let mut transients = 0;
+    for hundredths in (118..=134).step_by(2) {
+        let amplitude = format!("excitation.amplitude_g={}", f64::from(hundredths) / 100.0);
+        let fields = [amplitude.as_str(), "run.duration_s=12", "run.settle_s=8"];
+        let document = changed("paper-unconstrained", &fields);
+        let best = found_by(&question(&document, ("mass_g", 15.2, 15.3), 1), 2).unwrap().optimum;
+        let mass = format!("mass_g={:?}", best.at[0]);
+        let model = preset("paper-unconstrained", &[&fields[..], &[mass.as_str()]].concat());
+        // 1000 forcing periods beyond the run
+        let until_settled = Some(12.0 + 1000.0 / 3.0);
+        let followed = model.run(&Request { until_settled, ..Request::default() }).summary;
+        let short = model.run(&Request::default()).summary;
+        transients += u32::from((short.settled, followed.settled) == (Some(false), Some(true)));
+        assert_eq!(Some(best.value), followed.rms_velocity, "{hundredths}");
+    }
+    assert!(transients >= 3, "{transients}");
 }
 
 /// A run that ends early has no value, however fast it was until then.

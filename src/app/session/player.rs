@@ -25,6 +25,10 @@ pub const SPEEDS: [(f64, &str); 7] = [
 /// Preferred duration on the screen, in s, of the characteristic time of the motion.
 const PERIOD_ON_SCREEN: f64 = 3.0;
 
+/// Distance from an end of the force curve that a hand keeps, as a share of the curve's width: the energy of
+/// the prototype's flexures grows sixfold over it.
+const HAND_MARGIN: f64 = 0.02;
+
 /// The speed, at most real time, that suits a motion with this characteristic time in s.
 pub fn fitting_speed(characteristic_time: f64) -> f64 {
     let off = |speed: f64| elementary::ln(characteristic_time / speed / PERIOD_ON_SCREEN).abs();
@@ -175,9 +179,16 @@ impl Player {
     }
 
     /// Holds the mass at `x` in m, with the clock stopped.
+    ///
+    /// Where no stop keeps it, it stays so far from an end of the force curve that the energy at its place
+    /// does not carry it beyond the other end once it is let go.
     pub fn hold(&mut self, x: f64) {
         (self.past, self.held, self.goal) = (None, true, None);
-        self.watch.place(x, 0.0);
+        let model = self.watch.model_at(self.watch.time());
+        let ((low, high), (left, right)) = (model.mechanism().curve.domain(), model.stop_positions());
+        let margin = |stop: Option<f64>| if stop.is_some() { 0.0 } else { HAND_MARGIN * (high - low) };
+        let (low, high) = (low + margin(left), high - margin(right));
+        self.watch.place(if low < high { x.clamp(low, high) } else { x }, 0.0);
     }
 
     /// Places the mass at `x` in m with velocity `v` in m/s; the motion goes on from there.

@@ -45,9 +45,14 @@ fn shown_stops(session: &Session, drawn: Drawn) -> ([Option<f64>; 2], bool) {
     (then, are_equal(then[0], present[0]) && are_equal(then[1], present[1]))
 }
 
-/// The displacement of a stop as text, to the resolution of a drag.
+/// The displacement of a stop in mm, to the resolution of a drag.
+fn limit_number(session: &Session, mm: f64) -> String {
+    shown(mm, decimals(FINE * key_step(session))).replace('-', "\u{2212}")
+}
+
+/// The same with its unit.
 fn limit_words(session: &Session, mm: f64) -> String {
-    format!("{} mm", shown(mm, decimals(FINE * key_step(session)))).replace('-', "\u{2212}")
+    format!("{} mm", limit_number(session, mm))
 }
 
 /// Draws the travel limits over `rect` as lines with their numbers, where the faces of the stops stand the
@@ -59,9 +64,9 @@ pub(super) fn travel_limits(painter: &Painter, context: &ViewContext<'_>, rect: 
         let Some(mm) = mm else { continue };
         let line =
             [rect.top(), rect.bottom()].map(|y| pos2(context.span.screen_from_world(mm / 1e3, rect), y));
-        painter.extend(Shape::dashed_line(&line, Stroke::new(style.width(1.3), style.stop()), 3.0, 3.0));
+        painter.line_segment(line, Stroke::new(style.width(1.3), style.stop()));
         taken.lines.push(line.to_vec());
-        let text = limit_words(context.session, mm);
+        let text = limit_number(context.session, mm);
         let [inner, outer] = [(-4.0, side), (BALL + WALL + 4.0, -side)].map(|(aside, towards)| {
             let align = if towards > 0.0 { Align2::RIGHT_TOP } else { Align2::LEFT_TOP };
             (text.as_str(), line[0] + vec2(side * aside, 4.0), align)
