@@ -6,8 +6,18 @@ use std::path::Path;
 use crate::layers::sources;
 
 /// Folders whose files keep to both limits.
-const FOLDERS: [&str; 8] =
-    ["benches", "examples", "fuzz/fuzz_targets", "fuzz/src", "kernel/src", "src", "studies/src", "tests"];
+const FOLDERS: [&str; 10] = [
+    "benches",
+    "examples",
+    "fuzz/fuzz_targets",
+    "fuzz/src",
+    "kernel/src",
+    "src",
+    "studies/src",
+    "tests",
+    "web/examples",
+    "web/src",
+];
 
 const WIDEST_LINE: usize = 110;
 const LONGEST_FILE: usize = 500;
