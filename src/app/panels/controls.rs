@@ -1,10 +1,11 @@
 //! Controls of the scene: shaking, stops with the search for the best ones and, under More, rarer fields.
 
-use eframe::egui::{self, Color32, Label, Rect, RichText, Ui};
+use eframe::egui::{self, Color32, Label, Rect, RichText, Ui, vec2};
 
 use crate::app::session::Session;
 use crate::app::session::sliders::reach;
 use crate::app::ui::knob::{How, Knob, refuse};
+use crate::app::ui::style::CONTROL;
 use crate::app::ui::widgets::{hover_beside, primary};
 use crate::app::words::fields::{Reach, info, name_and_unit};
 use crate::app::words::numbers::{below, decimals, round_up, shown};
@@ -82,14 +83,37 @@ pub fn beside_ui(ui: &mut Ui, session: &mut Session, width: f32) {
     more_ui(ui, session, width);
 }
 
+/// A button at the right end of a row, which opens further controls.
+fn more_button_ui(ui: &mut Ui, more: &mut bool) {
+    let button = ui.selectable_label(*more, "More").on_hover_text(MORE_HOVER);
+    let escaped = *more && ui.input(|input| input.key_pressed(egui::Key::Escape));
+    if button.clicked() || escaped {
+        *more = !*more;
+    }
+}
+
+/// Shaking and stops in a row each, for a narrow window; More opens further ones below the views.
+pub fn rows_ui(ui: &mut Ui, session: &mut Session, more: &mut bool) {
+    let row = vec2(ui.available_width(), CONTROL);
+    ui.allocate_ui_with_layout(row, egui::Layout::right_to_left(egui::Align::Center), |ui| {
+        more_button_ui(ui, more);
+        ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
+            let width = (ui.available_width() - BESIDE_SLIDER - SWITCH_WIDTH).max(LEAST_SLIDER);
+            shaking_ui(ui, session, width);
+        });
+    });
+    ui.allocate_ui_with_layout(row, egui::Layout::left_to_right(egui::Align::Center), |ui| {
+        stops_switch_ui(ui, session);
+        let names = if matches!(session.scene().stops, Stops::Uneven { .. }) { 2.0 } else { 1.0 };
+        let room = ui.available_width() - (BESIDE_SLIDER + SWITCH_WIDTH) * names;
+        fields_ui(ui, session, &LIMITS, (room / names).max(30.0));
+    });
+}
+
 /// Shaking and stops in one row, for a compact window; More opens a column beside the views.
 pub fn row_ui(ui: &mut Ui, session: &mut Session, more: &mut bool) {
     ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-        let button = ui.selectable_label(*more, "More").on_hover_text(MORE_HOVER);
-        let escaped = *more && ui.input(|input| input.key_pressed(egui::Key::Escape));
-        if button.clicked() || escaped {
-            *more = !*more;
-        }
+        more_button_ui(ui, more);
         ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
             let sides = match session.scene().stops {
                 Stops::Uneven { left_mm, right_mm, .. } => left_mm.iter().chain(&right_mm).count(),

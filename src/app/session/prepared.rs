@@ -1,4 +1,5 @@
-//! Scenes, mechanisms and models in questions: shared in this program, and written as what they are built from.
+//! Scenes, mechanisms and models in questions: shared in this program, and written as what they are built
+//! from.
 
 use std::collections::BTreeMap;
 use std::ops::Deref;

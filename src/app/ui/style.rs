@@ -27,6 +27,8 @@ pub fn projector_zoom(size: egui::Vec2) -> f32 {
 
 /// Width in points below which the window is laid out for a projector: two controls in a row, two views.
 pub const COMPACT_BELOW: f32 = 1000.0;
+/// Width in points below which a window is narrow, as that of a phone.
+pub const NARROW_BELOW: f32 = 560.0;
 
 /// Size in points of a window above which there is room for one more tile.
 pub const LARGE_FROM: egui::Vec2 = egui::Vec2::new(1600.0, 880.0);

@@ -5,7 +5,6 @@ use crate::app::ui::settings::Setting;
 
 use super::Window;
 use super::command::Command;
-use super::layouts::Room;
 use super::wanted::Wanted;
 
 impl Window {
@@ -16,7 +15,7 @@ impl Window {
             return Some("First choose what you expect");
         }
         let (session, in_lesson) = (&self.session, self.lesson().is_some());
-        let is_compact = self.tiling.room() == Room::Compact;
+        let is_compact = self.tiling.room().is_compact();
         let (is_so, why) = match command {
             C::Arrange(_) | C::ArrangeOwn | C::KeepOwn if in_lesson => {
                 (true, "A lesson has its own views: leave the lesson first")

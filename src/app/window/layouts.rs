@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use eframe::egui::{self, Stroke, Ui, Vec2, WidgetText};
 use egui_tiles::{Container, ResizeState, SimplificationOptions, Tabs, Tile, TileId, Tree, UiResponse};
 
-use crate::app::ui::style::{COMPACT_BELOW, GAP, LARGE_FROM};
+use crate::app::ui::style::{COMPACT_BELOW, GAP, LARGE_FROM, NARROW_BELOW};
 use crate::app::views::{View, ViewContext};
 use crate::scene::Layout;
 
@@ -18,6 +18,8 @@ mod trees;
 /// Size class of the window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Room {
+    /// As on a phone: two groups of tabs, one above the other.
+    Narrow,
     /// As on a projector: two groups of tabs.
     Compact,
     /// Four tiles, or six.
@@ -29,13 +31,20 @@ pub enum Room {
 impl Room {
     /// The size class of a window of `size` in points.
     pub fn of(size: Vec2) -> Self {
-        if size.x < COMPACT_BELOW {
+        if size.x < NARROW_BELOW {
+            Self::Narrow
+        } else if size.x < COMPACT_BELOW {
             Self::Compact
         } else if size.x > LARGE_FROM.x && size.y > LARGE_FROM.y {
             Self::Large
         } else {
             Self::Wide
         }
+    }
+
+    /// Whether views share their places as tabs, and the controls are a row.
+    pub fn is_compact(self) -> bool {
+        matches!(self, Self::Narrow | Self::Compact)
     }
 }
 
@@ -56,27 +65,30 @@ pub struct Tiling {
 impl Tiling {
     pub fn new(layout: Layout, room: Room) -> Self {
         let tree = match room {
-            Room::Compact if matches!(layout, Layout::Map | Layout::Explore) => tabs_tree(&views_of(layout)),
-            Room::Compact => compact_tree(&views_of(layout)),
+            Room::Narrow | Room::Compact if matches!(layout, Layout::Map | Layout::Explore) => {
+                tabs_tree(&views_of(layout))
+            }
+            Room::Narrow | Room::Compact => compact_tree(&views_of(layout), room),
             Room::Wide | Room::Large => wide_tree(layout, room == Room::Large),
         };
         Self { tree, room }
     }
 
     pub fn of_lesson(views: &[View], room: Room) -> Self {
-        let tree = if room == Room::Compact { compact_lesson_tree(views) } else { lesson_tree(views) };
+        let tree = if room.is_compact() { compact_lesson_tree(views, room) } else { lesson_tree(views) };
         Self { tree, room }
     }
 
     /// The tiles of the custom arrangement as they were saved; in a compact window, the same views as tabs.
     pub fn custom(saved: &Tree<View>, room: Room) -> Self {
-        let tree = if room == Room::Compact {
+        let tree = if room.is_compact() {
             let view = |(id, tile): (&TileId, &Tile<View>)| match tile {
                 Tile::Pane(view) => saved.is_visible(*id).then_some(*view),
                 Tile::Container(_) => None,
             };
             let shown: Vec<View> = saved.tiles.iter().filter_map(view).collect();
-            compact_tree(&View::ALL.into_iter().filter(|view| shown.contains(view)).collect::<Vec<_>>())
+            let views: Vec<View> = View::ALL.into_iter().filter(|view| shown.contains(view)).collect();
+            compact_tree(&views, room)
         } else {
             saved.clone()
         };
@@ -85,7 +97,7 @@ impl Tiling {
 
     /// The present tiles, to be saved; `None` in a compact window.
     pub fn tree_to_save(&self) -> Option<&Tree<View>> {
-        (self.room != Room::Compact).then_some(&self.tree)
+        (!self.room.is_compact()).then_some(&self.tree)
     }
 
     /// The size class of the window that it was made for.
@@ -118,7 +130,7 @@ impl Tiling {
             }
             None => return,
         }
-        if shown && self.room == Room::Compact {
+        if shown && self.room.is_compact() {
             self.tree.make_active(|_, tile| matches!(tile, Tile::Pane(pane) if *pane == view));
         }
     }
@@ -173,12 +185,12 @@ impl Tiling {
     /// mechanism is among the others.
     fn place_for(&self, view: View) -> Option<TileId> {
         let tiles = &self.tree.tiles;
-        let apart = |view: &View| self.room == Room::Compact && *view == View::Mechanism;
+        let apart = |view: &View| self.room.is_compact() && *view == View::Mechanism;
         let is_along = |view: &View| view.is_along_x() && !apart(view);
         let alike = |other: &&View| is_along(other) == is_along(&view);
         let neighbour = View::ALL.iter().filter(alike).find_map(|other| tiles.find_pane(other))?;
         let mut place = tiles.parent_of(neighbour)?;
-        while self.room != Room::Compact
+        while !self.room.is_compact()
             && let Some(Container::Tabs(_)) = tiles.get_container(place)
         {
             place = tiles.parent_of(place)?;

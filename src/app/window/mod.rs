@@ -107,7 +107,7 @@ impl Window {
         }
         let style = Style::of(&ctx, self.settings.projector);
         let room = Room::of(ctx.content_rect().size());
-        let compact = room == Room::Compact;
+        let compact = room.is_compact();
         if room != self.tiling.room() {
             self.arrange(room);
         }
@@ -217,6 +217,20 @@ impl Window {
 
     /// The controls: in a compact window a row, else a column with the notes. Returns the chosen command.
     fn controls_ui(&mut self, ui: &mut Ui, compact: bool) -> Option<Command> {
+        if compact && self.tiling.room() == Room::Narrow {
+            let rows = panel_frame(12, AROUND_BAR.1);
+            Panel::top("controls rows").frame(rows).show_separator_line(false).show(ui, |ui| {
+                controls::rows_ui(ui, &mut self.session, &mut self.more);
+            });
+            if self.more {
+                let below = Panel::bottom("more").frame(rows).show_separator_line(false);
+                below.resizable(false).exact_size(MORE).show(ui, |ui| {
+                    let (session, width) = (&mut self.session, ui.available_width() - 100.0);
+                    egui::ScrollArea::vertical().show(ui, |ui| controls::beside_ui(ui, session, width));
+                });
+            }
+            return None;
+        }
         if compact {
             let line = panel_frame(12, AROUND_BAR.1);
             Panel::top("controls row").frame(line).show_separator_line(false).show(ui, |ui| {

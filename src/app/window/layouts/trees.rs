@@ -6,6 +6,8 @@ use egui_tiles::{Container, Linear, LinearDir, TileId, Tiles, Tree};
 use crate::app::views::View;
 use crate::scene::Layout;
 
+use super::Room;
+
 /// Share of the width that the left column has in the layout Look: 590 of 1030 points.
 const LEFT_SHARE: f32 = 590.0 / 1030.0;
 /// Share of the height that the displacement has in the right column: 340 of 584 points.
@@ -127,12 +129,20 @@ pub(super) fn wide_tree(layout: Layout, large: bool) -> Tree<View> {
     }
 }
 
+/// Parts side by side, of two the first with this share; or in a narrow window equal ones, one below another.
+fn parts(parts: Vec<Part>, share: f32, room: Room) -> Part {
+    match room {
+        Room::Narrow => Rows(parts),
+        _ => columns(parts, share),
+    }
+}
+
 /// Two groups of tabs: the views along the displacement, and the mechanism with all others.
-pub(super) fn compact_tree(views: &[View]) -> Tree<View> {
+pub(super) fn compact_tree(views: &[View], room: Room) -> Tree<View> {
     let is_first = |view: &&View| view.is_along_x() && **view != View::Mechanism;
     let (along, others): (Vec<View>, Vec<View>) = views.iter().partition(is_first);
     let groups = [along, others].into_iter().filter(|group| !group.is_empty());
-    tree("compact", columns(groups.map(Tabs).collect(), HALF))
+    tree("compact", parts(groups.map(Tabs).collect(), HALF, room))
 }
 
 /// One view at a time over the whole width.
@@ -181,15 +191,18 @@ fn column(views: &[View]) -> Part {
 
 /// The tiles of a lesson in a compact window: its views side by side; the third and later ones share tabs if
 /// there are more than three. Beside views with legends all others share tabs.
-pub(super) fn compact_lesson_tree(views: &[View]) -> Tree<View> {
+pub(super) fn compact_lesson_tree(views: &[View], room: Room) -> Tree<View> {
     let (wide, others): (Vec<View>, Vec<View>) = views.iter().partition(|view| is_wide(**view));
     let root = match views {
-        _ if !wide.is_empty() && !others.is_empty() => beside(Tabs(wide), Tabs(others), MUCH),
+        _ if !wide.is_empty() && !others.is_empty() => parts(vec![Tabs(wide), Tabs(others)], MUCH, room),
+        [first, rest @ ..] if room == Room::Narrow && rest.len() > 1 => {
+            above(Pane(*first), Tabs(rest.to_vec()), HALF)
+        }
         [one] => Pane(*one),
         [left, middle, rest @ ..] if rest.len() > 1 => {
             Columns(vec![Pane(*left), Pane(*middle), Tabs(rest.to_vec())])
         }
-        _ => columns(views.iter().copied().map(Pane).collect(), HALF),
+        _ => parts(views.iter().copied().map(Pane).collect(), HALF, room),
     };
     tree("compact lesson", root)
 }
