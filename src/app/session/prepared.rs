@@ -130,7 +130,7 @@ impl SharedModel {
         Self { model: Identity(Arc::new(model)), of: Arc::new(of) }
     }
 
-    /// The model, or else this one, which continues a motion of it.
+    /// The model that continues a motion of this one, or this one without it.
     pub fn or(&self, continued: Option<Model>) -> Self {
         let model = Identity(Arc::new(continued.unwrap_or_else(|| (**self).clone())));
         Self { model, of: Arc::clone(&self.of) }
