@@ -1,4 +1,4 @@
-//! Scenes, mechanisms and models in questions: shared in this program, and written as what they are built from.
+//! Scenes, mechanisms and models in questions: shared here, and written as what they are built from.
 
 use std::collections::BTreeMap;
 use std::ops::Deref;
