@@ -51,7 +51,7 @@ fn answered<Q: Question>(
     cancel: &AtomicBool,
     each: &(dyn Fn(String) + Sync),
 ) -> Result<(), String> {
-    // a part that cannot be written is missing, as it would be without an answer
+    // a part that cannot be written is left out
     let send = |part: Q::Part| to_text(&part).map_or((), each);
     if let Some(last) = from_text::<Q>(question)?.answer(cancel, &send) {
         send(last);

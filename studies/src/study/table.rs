@@ -23,8 +23,8 @@ pub enum Values {
     Names(Vec<String>),
 }
 
-/// Each word, which some other run of the program has written, as one of this run, where it is kept.
-pub(crate) fn words<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<&'static str>, D::Error> {
+/// Words that another run of the program has written. Each is kept for the rest of this run, once.
+fn words<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<&'static str>, D::Error> {
     static KNOWN: Mutex<BTreeSet<&'static str>> = Mutex::new(BTreeSet::new());
     let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
     let mut word = |text: String| match known.get(text.as_str()) {
