@@ -107,7 +107,7 @@ async function start() {
   }
   workers.module = await load(new URL("interwell_bg.wasm", import.meta.url));
   await init({ module_or_path: workers.module });
-  await open_window(canvas, asked());
+  await open_window(canvas, location.origin + location.pathname, asked());
   element("start").remove();
   canvas.focus();
   addEventListener("popstate", () => open_link(asked()));

@@ -99,9 +99,15 @@ impl eframe::App for Page {
     }
 }
 
-/// Opens the window in a canvas, on the scene or lesson of a link, which may be empty.
+/// Opens the window in a canvas, on the scene or lesson of a link, which may be empty. `address` is that of
+/// the page without a link.
 #[wasm_bindgen]
-pub async fn open_window(canvas: web_sys::HtmlCanvasElement, link: String) -> Result<(), JsValue> {
+pub async fn open_window(
+    canvas: web_sys::HtmlCanvasElement,
+    address: String,
+    link: String,
+) -> Result<(), JsValue> {
+    page::set_address(address);
     page::set_download(|name, bytes| {
         download(name, bytes);
         Ok(())

@@ -87,6 +87,71 @@ test("a dragged slider is in the address, and the address opens the same scene e
   await other.context.close();
 });
 
+test("a finger drags a slider", async () => {
+  const { context, page } = await open("?scene=paper", { viewport: { width: 1024, height: 768 }, hasTouch: true });
+  await says(page, "cross");
+  const touch = await context.newCDPSession(page);
+  const send = (type, x) => touch.send("Input.dispatchTouchEvent", { type, touchPoints: x ? [{ x, y: 132 }] : [] });
+  await send("touchStart", 83);
+  for (const x of [92, 100, 108]) {
+    await page.waitForTimeout(60);
+    await send("touchMove", x);
+  }
+  await send("touchEnd");
+  await addressHas(page, "?scene=paper#");
+  await context.close();
+});
+
+test("a dropped scene opens, and a key writes it as a download", async () => {
+  const { context, page, problems } = await open();
+  await says(page, "stay");
+  const text = readFileSync(new URL("../../presets/monostable.ron", import.meta.url), "utf8").replace(
+    /title: "[^"]*"/,
+    'title: "Dropped here"',
+  );
+  await page.evaluate((text) => {
+    const dataTransfer = new DataTransfer();
+    dataTransfer.items.add(new File([text], "dropped.ron"));
+    const canvas = document.querySelector("canvas");
+    for (const type of ["dragover", "drop"]) {
+      canvas.dispatchEvent(new DragEvent(type, { dataTransfer, bubbles: true, cancelable: true }));
+    }
+  }, text);
+  await page.waitForFunction(() => document.title.startsWith("Dropped here"), null, { timeout: 30_000 });
+  await page.mouse.click(640, 400);
+  const download = page.waitForEvent("download", { timeout: 30_000 });
+  await page.keyboard.press("Control+s");
+  const saved = await download;
+  assert.equal(saved.suggestedFilename(), "dropped.ron");
+  assert.match(readFileSync(await saved.path(), "utf8"), /Dropped here/);
+  assert.deepEqual(problems, []);
+  await context.close();
+});
+
+test("a map is computed by workers and no frame waits for it", async () => {
+  const { context, page, problems } = await open("?scene=paper");
+  await says(page, "cross");
+  await page.evaluate(() => {
+    window.longest = 0;
+    let last = performance.now();
+    const look = () => {
+      const now = performance.now();
+      window.longest = Math.max(window.longest, now - last);
+      last = now;
+      requestAnimationFrame(look);
+    };
+    requestAnimationFrame(look);
+  });
+  await page.mouse.click(640, 300);
+  await page.keyboard.press("Control+3");
+  await page.waitForTimeout(10_000);
+  const longest = await page.evaluate(() => window.longest);
+  await picture(page, "map");
+  console.log(`the longest frame beside a map: ${longest.toFixed(0)} ms`);
+  assert.deepEqual(problems, []);
+  await context.close();
+});
+
 test("the back button opens the scene before", async () => {
   const { context, page } = await open("?scene=paper");
   await says(page, "cross");

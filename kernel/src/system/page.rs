@@ -12,6 +12,18 @@ static FILES: Mutex<BTreeMap<PathBuf, Vec<u8>>> = Mutex::new(BTreeMap::new());
 
 static DOWNLOAD: OnceLock<Download> = OnceLock::new();
 
+static ADDRESS: OnceLock<String> = OnceLock::new();
+
+/// Sets the address of the page without a link; to be called once.
+pub fn set_address(address: String) {
+    let _ = ADDRESS.set(address);
+}
+
+/// The address of the page without a link.
+pub fn address() -> &'static str {
+    ADDRESS.get().map_or("", String::as_str)
+}
+
 /// Sets how a file that is written reaches the user; to be called once, before anything is written.
 pub fn set_download(download: Download) {
     let _ = DOWNLOAD.set(download);

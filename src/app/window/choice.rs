@@ -75,3 +75,26 @@ impl Choice {
         });
     }
 }
+
+/// Reads files that were dropped on the page, and chooses the scene or lesson among them, or else the first.
+#[cfg(target_arch = "wasm32")]
+pub(super) fn read_dropped(
+    files: Vec<eframe::egui::DroppedFileHandle>,
+    dialog: &mut Background<(), Chosen>,
+    wake: &Wake,
+) {
+    use crate::system::page;
+
+    dialog.ask_page((), wake, move |answer| {
+        wasm_bindgen_futures::spawn_local(async move {
+            let mut paths = Vec::new();
+            for file in files {
+                if let Ok(bytes) = file.bytes_async().await {
+                    paths.push(page::keep(&file.path().to_string_lossy(), bytes));
+                }
+            }
+            let scene = paths.iter().find(|path| path.extension().is_some_and(|ending| ending == "ron"));
+            answer(scene.or(paths.first()).cloned().map(Chosen::Dropped));
+        });
+    });
+}

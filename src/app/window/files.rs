@@ -122,6 +122,8 @@ impl Window {
         if let Some(chosen) = self.file_dialog.take() {
             match chosen {
                 Chosen::File(wanted, path) => self.take_file(ctx, wanted, path),
+                #[cfg(target_arch = "wasm32")]
+                Chosen::Dropped(path) => self.take_dropped(ctx, &path),
                 Chosen::NoDialog(Wanted::Figure, _) => {
                     self.figures.problem = Some(format!("{NO_DIALOG}: type the path."));
                 }
@@ -156,11 +158,15 @@ impl Window {
             ctx.send_viewport_cmd(egui::ViewportCommand::CancelClose);
             self.leave_for(ctx, Next::Quit);
         }
-        let dropped: Vec<PathBuf> =
-            ctx.input(|input| input.raw.dropped_files.iter().map(|file| file.path().to_owned()).collect());
+        let dropped = ctx.input(|input| input.raw.dropped_files.clone());
+        #[cfg(target_arch = "wasm32")]
+        if !dropped.is_empty() {
+            super::choice::read_dropped(dropped, &mut self.file_dialog, &self.wake);
+        }
+        #[cfg(not(target_arch = "wasm32"))]
         match dropped.as_slice() {
             [] => {}
-            [one] => self.take_dropped(ctx, one),
+            [one] => self.take_dropped(ctx, one.path()),
             _ => self.messages.alert(
                 "One file at a time",
                 "Drop a single scene or lesson (.ron), or a file of measured data (.csv), on the window.",

@@ -162,6 +162,8 @@ impl Window {
     fn copy_link(&mut self, ctx: &egui::Context) {
         match self.session.editor.document().link() {
             Ok(link) => {
+                #[cfg(target_arch = "wasm32")]
+                let link = format!("{}{link}", crate::system::page::address());
                 ctx.copy_text(link);
                 self.messages.notify("Copied: a link that opens this scene");
             }

@@ -57,6 +57,9 @@ pub(super) enum Chosen {
     /// The desktop has no dialog; the path that it would have suggested.
     #[cfg_attr(target_arch = "wasm32", expect(dead_code, reason = "a page always has a dialog"))]
     NoDialog(Wanted, PathBuf),
+    /// A file that was dropped on a page, and has been read.
+    #[cfg(target_arch = "wasm32")]
+    Dropped(PathBuf),
 }
 
 /// Beginning of a remark where a path has to be typed.
