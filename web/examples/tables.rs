@@ -1,4 +1,5 @@
-//! Prints tables of built-in scenes as CSV, to be compared with those of the page: `tables PRESET ..`.
+//! Prints tables of built-in scenes as CSV, to be compared with those of the page: `tables PRESET ..`, or
+//! with `map` as the first argument the sweeps that the scenes name.
 
 use interwell_studies as interwell;
 
@@ -6,8 +7,10 @@ use interwell_studies as interwell;
 mod tables;
 
 fn main() {
-    for preset in std::env::args().skip(1) {
-        match tables::tables(&preset) {
+    let mut arguments = std::env::args().skip(1).peekable();
+    let is_map = arguments.next_if_eq("map").is_some();
+    for preset in arguments {
+        match if is_map { tables::map(&preset) } else { tables::tables(&preset) } {
             Ok(text) => print!("{text}"),
             Err(error) => eprintln!("{error}"),
         }

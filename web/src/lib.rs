@@ -155,3 +155,9 @@ pub fn answer(name: &str, question: &str, each: js_sys::Function) -> Option<Stri
 pub fn tables_of(preset: &str) -> String {
     tables::tables(preset).unwrap_or_else(|error| error.to_string())
 }
+
+/// The sweep that a built-in scene names, as CSV.
+#[wasm_bindgen]
+pub fn map_of(preset: &str) -> String {
+    tables::map(preset).unwrap_or_else(|error| error.to_string())
+}

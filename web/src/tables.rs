@@ -30,6 +30,12 @@ pub fn tables(preset: &str) -> Result<String, Error> {
     Ok(answers.map(|(name, answer)| format!("{preset} {name}\n{}", text(answer))).concat())
 }
 
+/// The sweep that a built-in scene names, on one processor.
+pub fn map(preset: &str) -> Result<String, Error> {
+    let table = Sweep::default().run(&Simulation::preset(preset)?, &Progress::none().threads(1))?;
+    Ok(csv(&table))
+}
+
 fn text(answer: Result<Table, Error>) -> String {
     match answer {
         Ok(table) => csv(&table),
