@@ -30,7 +30,8 @@ async function load(address) {
 // Workers that answer questions, one question at a time each. A question that is cancelled ends its worker, which
 // cannot be told while it computes; another one takes its place.
 const workers = { module: null, idle: [], busy: new Map(), waiting: [], next: 1 };
-const most = Math.max(1, (navigator.hardwareConcurrency || 2) - 1);
+// at least two, so that a long study does not keep what the motion settles to waiting
+const most = Math.max(2, (navigator.hardwareConcurrency || 2) - 1);
 
 function hire() {
   const worker = new Worker(new URL("worker.js", import.meta.url), { type: "module" });
