@@ -66,7 +66,7 @@ impl Page {
             Some(_) => String::new(),
             None => session.editor.document().link().unwrap_or_default(),
         };
-        show(&link, &format!("{} - interwell", session.scene().title), &session.sentence().text);
+        show(&link, self.window.title(), &self.window.status());
         self.link = link;
     }
 }

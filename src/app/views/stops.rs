@@ -71,7 +71,7 @@ pub(super) fn travel_limits(painter: &Painter, context: &ViewContext<'_>, rect: 
             let align = if towards > 0.0 { Align2::RIGHT_TOP } else { Align2::LEFT_TOP };
             (text.as_str(), line[0] + vec2(side * aside, 4.0), align)
         });
-        taken.write(painter, rect, (style.small(), style.ink()), [inner, outer]);
+        taken.write(painter, rect, (style.small(), style.ink()), [outer, inner]);
     }
 }
 

@@ -172,6 +172,16 @@ impl Window {
         self.recent.truncate(MOST_RECENT);
     }
 
+    /// The title of the window.
+    pub fn title(&self) -> &str {
+        &self.shown_title
+    }
+
+    /// What the status line says; nothing while a lesson covers the motion.
+    pub fn status(&self) -> String {
+        if self.motion_is_covered() { String::new() } else { self.session.sentence().text }
+    }
+
     /// The zoom to which Ctrl+0 returns.
     pub(super) fn natural_zoom(&self) -> f32 {
         self.zoom.unwrap_or(1.0)
