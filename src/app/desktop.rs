@@ -47,7 +47,7 @@ pub fn run(spec: Option<&str>, refused: impl FnOnce(CannotRun)) -> Result<(), Ap
     let begun = started.clone();
     let start = move |creation: &eframe::CreationContext<'_>| -> Result<Box<dyn eframe::App>, _> {
         begun.now();
-        let window = begin(creation, spec.as_deref())?;
+        let window = begin(creation, spec.as_deref(), false)?;
         Ok(Box::new(window))
     };
     started

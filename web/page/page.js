@@ -48,7 +48,7 @@ function work() {
       work();
     };
     worker.onmessage = ({ data }) => {
-      if (data.part !== undefined) return answer_part(question.id, data.part);
+      if (data.parts !== undefined) return data.parts.forEach((part) => answer_part(question.id, part));
       workers.idle.push(worker);
       end();
       answer_part(question.id);
@@ -108,7 +108,8 @@ async function start() {
   }
   workers.module = await load(new URL("interwell_bg.wasm", import.meta.url));
   await init({ module_or_path: workers.module });
-  await open_window(canvas, location.origin + location.pathname, asked());
+  const dark = matchMedia("(prefers-color-scheme: dark)").matches;
+  await open_window(canvas, location.origin + location.pathname, asked(), dark);
   element("start").remove();
   canvas.focus();
   addEventListener("popstate", () => open_link(asked()));

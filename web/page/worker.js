@@ -10,7 +10,19 @@ onmessage = async ({ data }) => {
     return;
   }
   await ready;
-  const problem = answer(data.name, data.text, (part) => postMessage({ part }));
+  // parts that come fast are sent together
+  let parts = [];
+  let sent = performance.now();
+  const send = () => {
+    postMessage({ parts });
+    parts = [];
+    sent = performance.now();
+  };
+  const problem = answer(data.name, data.text, (part) => {
+    parts.push(part);
+    if (performance.now() - sent > 30) send();
+  });
   if (problem !== undefined) console.error(problem);
+  send();
   postMessage({});
 };

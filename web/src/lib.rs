@@ -100,12 +100,13 @@ impl eframe::App for Page {
 }
 
 /// Opens the window in a canvas, on the scene or lesson of a link, which may be empty. `address` is that of
-/// the page without a link.
+/// the page without a link. The first time it is `dark` or light.
 #[wasm_bindgen]
 pub async fn open_window(
     canvas: web_sys::HtmlCanvasElement,
     address: String,
     link: String,
+    dark: bool,
 ) -> Result<(), JsValue> {
     page::set_address(address);
     page::set_download(|name, bytes| {
@@ -116,7 +117,7 @@ pub async fn open_window(
     let options = eframe::WebOptions { dithering: false, ..eframe::WebOptions::default() };
     let start = move |creation: &eframe::CreationContext<'_>| -> Result<Box<dyn eframe::App>, _> {
         CONTEXT.set(Some(creation.egui_ctx.clone()));
-        let window = begin(creation, Some(link.as_str()).filter(|link| !link.is_empty()))?;
+        let window = begin(creation, Some(link.as_str()).filter(|link| !link.is_empty()), dark)?;
         Ok(Box::new(Page { window, looked_at: f64::NEG_INFINITY, link: String::new() }))
     };
     eframe::WebRunner::new().start(canvas, options, Box::new(start)).await

@@ -59,7 +59,7 @@ async function picture(page, name) {
 
 test("the first scene opens, moves and is judged by a worker", async () => {
   const { context, page, problems } = await open();
-  await says(page, "stay");
+  await says(page, "well");
   assert.match(await page.title(), /interwell$/);
   await addressHas(page, "?scene=first-look");
   await picture(page, "first");
@@ -104,7 +104,7 @@ test("a finger drags a slider", async () => {
 
 test("a dropped scene opens, and a key writes it as a download", async () => {
   const { context, page, problems } = await open();
-  await says(page, "stay");
+  await says(page, "well");
   const text = readFileSync(new URL("../../presets/monostable.ron", import.meta.url), "utf8").replace(
     /title: "[^"]*"/,
     'title: "Dropped here"',
@@ -157,7 +157,7 @@ test("the back button opens the scene before", async () => {
   await says(page, "cross");
   await page.evaluate(() => (location.hash = ""));
   await page.evaluate(() => history.pushState(null, "", "?scene=harvester") ?? dispatchEvent(new PopStateEvent("popstate")));
-  await page.waitForFunction(() => /harvester/i.test(document.title), null, { timeout: 30_000 });
+  await page.waitForFunction(() => /^Power from/.test(document.title), null, { timeout: 30_000 });
   await page.goBack();
   await page.waitForFunction(() => /Prototype/.test(document.title), null, { timeout: 30_000 });
   await context.close();
