@@ -6,10 +6,9 @@ use std::sync::Arc;
 
 use eframe::egui;
 
-use super::begin;
 use super::session::CannotRun;
 use super::ui::settings::Settings;
-use super::window::Window;
+use super::window::{Window, begin};
 
 /// Why no window can be opened.
 #[derive(Debug, thiserror::Error)]
@@ -71,8 +70,10 @@ fn has_display() -> bool {
 
 #[cfg(test)]
 mod tests {
+    use super::*;
+
     #[test]
     fn the_icon_is_a_picture() {
-        assert_eq!((super::icon().width, super::icon().height), (128, 128));
+        assert_eq!((icon().width, icon().height), (128, 128));
     }
 }

@@ -19,29 +19,7 @@ pub mod views;
 pub mod window;
 pub mod words;
 
-use std::sync::Arc;
-
 #[cfg(not(target_arch = "wasm32"))]
 pub use desktop::{AppError, run};
 pub use session::CannotRun;
-use ui::settings::Settings;
-use window::Window;
-
-/// The window on a scene, with what was kept from the last time; the first time it is `dark` or light. If the
-/// scene cannot be run, the window says why and opens on the first preset.
-pub fn begin(
-    creation: &eframe::CreationContext<'_>,
-    spec: Option<&str>,
-    dark: bool,
-) -> Result<Window, CannotRun> {
-    window::prepare(&creation.egui_ctx);
-    let kept = creation.storage.and_then(|storage| eframe::get_value(storage, eframe::APP_KEY));
-    let ctx = creation.egui_ctx.clone();
-    let settings = kept.unwrap_or(Settings { dark, ..Settings::default() });
-    let mut window = Window::start(spec, settings, Arc::new(move || ctx.request_repaint()))?;
-    if let Some(storage) = creation.storage {
-        window.restore(storage);
-    }
-    window.remember_file();
-    Ok(window)
-}
+pub use window::begin;

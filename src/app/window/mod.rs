@@ -2,11 +2,14 @@
 //!
 //! [`Window::ui`] needs no graphics and no display: tests call it directly.
 
+use std::sync::Arc;
+
 use eframe::egui::{self, CentralPanel, Panel, RichText, Ui};
 
 use crate::app::panels::hint::guide_ui;
 use crate::app::panels::status_line::{self, covered_ui, has_column, status_ui};
 use crate::app::panels::{controls, notes, transport};
+use crate::app::session::CannotRun;
 use crate::app::session::lesson::Records;
 use crate::app::ui::settings::Settings;
 use crate::app::ui::style::{self, CONTROL, GAP, Style};
@@ -386,6 +389,25 @@ impl eframe::App for Window {
         // the scene says what is open, not the last start of the program
         false
     }
+}
+
+/// The window on a scene, with what was kept from the last time; the first time it is `dark` or light. If the
+/// scene cannot be run, the window says why and opens on the first preset.
+pub fn begin(
+    creation: &eframe::CreationContext<'_>,
+    spec: Option<&str>,
+    dark: bool,
+) -> Result<Window, CannotRun> {
+    prepare(&creation.egui_ctx);
+    let kept = creation.storage.and_then(|storage| eframe::get_value(storage, eframe::APP_KEY));
+    let settings = kept.unwrap_or(Settings { dark, ..Settings::default() });
+    let ctx = creation.egui_ctx.clone();
+    let mut window = Window::start(spec, settings, Arc::new(move || ctx.request_repaint()))?;
+    if let Some(storage) = creation.storage {
+        window.restore(storage);
+    }
+    window.remember_file();
+    Ok(window)
 }
 
 /// Installs fonts and spacing; to be called once for a context.
