@@ -106,7 +106,7 @@ pub struct WalkQuestion {
     /// The scene, from rest, with the first value of the axis.
     pub scene: Scene,
     pub axis: SweepAxis,
-    /// The scene, from rest, with its own value of the field.
+    /// The scene, from rest, with the value of the field that it has.
     ground: Uncompared<Prepared>,
     /// The values of the axis.
     values: Uncompared<Vec<f64>>,

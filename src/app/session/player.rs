@@ -180,8 +180,8 @@ impl Player {
 
     /// Holds the mass at `x` in m, with the clock stopped.
     ///
-    /// Where no stop keeps it, it stays so far from an end of the force curve that the energy at its place
-    /// does not carry it beyond the other end once it is let go.
+    /// Where no stop keeps it, it stays so far from an end of the force curve that its energy there does not
+    /// carry it beyond the other end of a symmetric curve; strong shaking still may.
     pub fn hold(&mut self, x: f64) {
         (self.past, self.held, self.goal) = (None, true, None);
         let model = self.watch.model_at(self.watch.time());

@@ -1,4 +1,4 @@
-//! Workers of a web page, which answer questions in memories of their own: a question and the parts of its
+//! Workers of a web page, which share no memory with the window: a question and the parts of its
 //! answer travel as text.
 
 use std::cell::RefCell;
