@@ -43,16 +43,40 @@ pub trait Question: Clone + PartialEq + Serialize + DeserializeOwned + Send + 's
     /// Answers it: passes on parts as they come, and returns the last one, if there is one. Ends early once
     /// `cancel` is set.
     fn answer(&self, cancel: &AtomicBool, each: Each<'_, Self::Part>) -> Option<Self::Part>;
+
+    /// Divides it into at most `count` questions whose parts together are its answer.
+    #[cfg(any(test, target_arch = "wasm32"))]
+    fn divide(&self, count: usize) -> Vec<Self> {
+        let _ = count;
+        vec![self.clone()]
+    }
 }
 
-/// A question or a part of an answer as the text of a message.
-pub fn to_text<T: Serialize>(data: &T) -> Result<String, String> {
-    ron::to_string(data).map_err(|error| error.to_string())
+/// A question or a part of an answer as a message.
+#[cfg(any(test, target_arch = "wasm32"))]
+pub fn to_message<T: Serialize>(data: &T) -> Result<Vec<u8>, String> {
+    postcard::to_allocvec(data).map_err(|error| error.to_string())
 }
 
 /// The question or the part of an answer in a message.
-pub fn from_text<T: DeserializeOwned>(text: &str) -> Result<T, String> {
-    ron::from_str(text).map_err(|error| error.to_string())
+#[cfg(any(test, target_arch = "wasm32"))]
+pub fn from_message<T: DeserializeOwned>(message: &[u8]) -> Result<T, String> {
+    postcard::from_bytes(message).map_err(|error| error.to_string())
+}
+
+/// A scene or a part of one in a message: as text, in which fields with their usual values are left out.
+pub mod as_text {
+    use serde::de::{DeserializeOwned, Error as _};
+    use serde::ser::Error as _;
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    pub fn serialize<T: Serialize, S: Serializer>(value: &T, to: S) -> Result<S::Ok, S::Error> {
+        ron::to_string(value).map_err(S::Error::custom)?.serialize(to)
+    }
+
+    pub fn deserialize<'de, T: DeserializeOwned, D: Deserializer<'de>>(from: D) -> Result<T, D::Error> {
+        ron::from_str(&String::deserialize(from)?).map_err(D::Error::custom)
+    }
 }
 
 /// A part of a question that does not take part in its comparison.
@@ -101,9 +125,9 @@ struct Job<P> {
     cancel: Arc<AtomicBool>,
     begun: WallClock,
     has_parts: bool,
-    /// The question that a worker answers; its parts end once it is dropped.
+    /// The questions that workers answer; their parts end once they are dropped.
     #[cfg(target_arch = "wasm32")]
-    _asked: Option<workers::Asked>,
+    _asked: Vec<workers::Asked>,
 }
 
 impl<P: Send + 'static> Job<P> {
@@ -114,7 +138,7 @@ impl<P: Send + 'static> Job<P> {
             begun: WallClock::start(),
             has_parts: false,
             #[cfg(target_arch = "wasm32")]
-            _asked: None,
+            _asked: Vec::new(),
         }
     }
 
@@ -212,9 +236,9 @@ impl<Q: Question> Background<Q, Q::Part> {
         self.ask_job(question, wake, Q::answer);
         #[cfg(target_arch = "wasm32")]
         {
-            let job = workers::Asked::new(&question, wake).map(|(asked, parts)| {
+            let job = workers::ask(&question, wake).map(|(asked, parts)| {
                 let mut job = Job::new(parts, Arc::default());
-                job._asked = Some(asked);
+                job._asked = asked;
                 job
             });
             self.replace(question, job);

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use interwell::numeric::short;
 use interwell::study::{can_cross, inspect};
+use interwell::system::page_address;
 
 use super::shard::line;
 use super::support::{load, mechanism};
@@ -49,7 +50,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
 fn link(spec: &str, common: &Common) -> Result<String, Failure> {
     let (document, _) = load(spec, common, None)?;
     let link = document.link().map_err(|error| Failure::argument(format!("{}: {error}", document.name)))?;
-    Ok(link + "\n")
+    Ok(page_address() + &link + "\n")
 }
 
 fn report(spec: &str, common: &Common) -> Result<String, Failure> {

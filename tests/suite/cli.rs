@@ -206,3 +206,20 @@ fn check_advises_compliant_stops_only_where_the_scene_takes_them() {
     let even = said("--set stops=Uneven(left_mm:1.5,right_mm:1.5,restitution_left:0.36)");
     assert!(even.contains(advice), "{even}");
 }
+
+#[test]
+fn a_link_begins_with_the_address_of_a_page() {
+    for (set, begin) in [
+        (None, "?scene=paper#"),
+        (Some("https://example.org/class/"), "https://example.org/class/?scene=paper#"),
+        (Some("https://example.org/class/?scene=first-look#x"), "https://example.org/class/?scene=paper#"),
+    ] {
+        let mut command = headless("check paper --link --set mass_g=16");
+        command.env_remove("INTERWELL_PAGE").envs(set.map(|address| ("INTERWELL_PAGE", address)));
+        let output = command.output().unwrap();
+        let link = String::from_utf8(output.stdout).unwrap();
+        assert!(link.starts_with(begin), "{link}");
+        let again = headless("check --link").arg(link.trim()).env_remove("INTERWELL_PAGE").output().unwrap();
+        assert!(link.ends_with(&*String::from_utf8(again.stdout).unwrap()), "{link}");
+    }
+}

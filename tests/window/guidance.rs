@@ -57,7 +57,7 @@ fn the_hint_leads_on_and_ends() {
     harness.state_mut().session.wait_settled(LONG);
     harness.run_steps(200);
     harness.get_by_label("Harder shaking made it cross.");
-    harness.get_by_label_contains("Now go back to 0.900 g and switch the stops on");
+    harness.get_by_label_contains("Now go back to 0.90 g and switch the stops on");
     harness.state_mut().session.switch_stops(true);
     harness.state_mut().session.wait_settled(LONG);
     harness.run_steps(120);

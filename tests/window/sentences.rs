@@ -45,7 +45,7 @@ fn shaken() {
 
     // at rest from the first instant on, which needs no future
     let (kind, text) = of("first-look", &[&stops(2.5)]);
-    let expected = "Resting: stays pressed on the right-hand stop; 0.900 g never frees it. Frees at 1.06 g, \
+    let expected = "Resting: stays pressed on the right-hand stop; 0.90 g never frees it. Frees at 1.06 g, \
         crosses from 1.1";
     assert!(kind == Kind::Resting && text.starts_with(expected), "{text}");
 

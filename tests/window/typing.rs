@@ -200,12 +200,12 @@ fn what_takes_long_can_be_stopped_and_a_newer_change_takes_its_place() {
     assert!(harness.state().session.player.time() > time);
     wait_until("it is offered to stop", || {
         harness.run_steps(1);
-        harness.query_by_label_contains("Cancel (").is_some()
+        harness.query_by_label_contains("Stop computing (").is_some()
     });
-    harness.get_by_label_contains("Cancel (").click();
+    harness.get_by_label_contains("Stop computing (").click();
     harness.run_steps(2);
     assert!(harness.state().session.working().is_none());
-    assert!(harness.query_by_label_contains("Cancel (").is_none());
+    assert!(harness.query_by_label_contains("Stop computing (").is_none());
     let text = harness.state().session.sentence().text;
     assert!(text.starts_with("Stopped before it was known"), "{text}");
     harness.state_mut().session.edit_once(|scene| scene.run.duration_s = 1e9);

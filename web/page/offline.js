@@ -1,11 +1,10 @@
-// Keeps the page for use without a network: what was fetched once is taken from the cache, and a new version
-// replaces it as a whole.
+// Keeps the page for use without a network: what was fetched once is taken from the cache. A new version replaces it
+// as a whole, once no page of the version before is open.
 
 const cache = "interwell VERSION";
 const files = ["./", "index.html", "page.js", "worker.js", "interwell.js", "interwell_bg.wasm", "icon.png", "manifest.webmanifest"];
 
 addEventListener("install", (event) => {
-  skipWaiting();
   event.waitUntil(caches.open(cache).then((kept) => kept.addAll(files.map((file) => new Request(file, { cache: "reload" })))));
 });
 
@@ -16,5 +15,6 @@ addEventListener("activate", (event) => {
 
 addEventListener("fetch", (event) => {
   if (event.request.method !== "GET") return;
-  event.respondWith(caches.match(event.request, { ignoreSearch: true }).then((kept) => kept ?? fetch(event.request)));
+  const kept = caches.open(cache).then((files) => files.match(event.request, { ignoreSearch: true }));
+  event.respondWith(kept.then((file) => file ?? fetch(event.request)));
 });

@@ -4,22 +4,26 @@ import init, { answer_part, open_link, open_window } from "./interwell.js";
 
 const element = (id) => document.getElementById(id);
 
+// Whether the scene that is open has a link.
+let hasLink = true;
+
 function fail(sentence) {
   element("says").textContent = sentence;
   element("progress").hidden = true;
 }
 
-// The bytes of the module, with progress. Its compressed size is not that of its bytes, so that the bar is full
-// a little early or late.
+// The bytes of the module, with progress.
 async function load(address) {
   const response = await fetch(address);
   if (!response.ok) throw new Error(`${address}: ${response.status} ${response.statusText}`);
-  const whole = Number(response.headers.get("content-length")) || 10e6;
+  // without the size of the module itself, as where it comes compressed, the bar says only that it loads
+  const isPlain = response.headers.get("content-encoding") === null;
+  const whole = isPlain ? Number(response.headers.get("content-length")) : 0;
   let loaded = 0;
   const counted = new TransformStream({
     transform(part, out) {
       loaded += part.length;
-      element("progress").value = Math.min(1, loaded / whole);
+      if (whole > 0) element("progress").value = loaded / whole;
       out.enqueue(part);
     },
   });
@@ -43,31 +47,28 @@ function work() {
   while (workers.waiting.length > 0 && workers.busy.size < most) {
     const question = workers.waiting.shift();
     const worker = workers.idle.pop() ?? hire();
-    const end = () => {
+    const end = (problem) => {
       workers.busy.delete(question.id);
+      if (problem === undefined) workers.idle.push(worker);
+      else {
+        worker.terminate();
+        failed(problem);
+      }
       work();
-    };
-    worker.onmessage = ({ data }) => {
-      if (data.parts !== undefined) return data.parts.forEach((part) => answer_part(question.id, part));
-      workers.idle.push(worker);
-      end();
       answer_part(question.id);
     };
-    worker.onerror = (event) => {
-      console.error(event.message);
-      worker.terminate();
-      end();
-      answer_part(question.id);
-    };
+    worker.onmessage = ({ data }) => (data.part ? answer_part(question.id, data.part) : end(data.problem));
+    worker.onerror = (event) => end(event.message ?? "a worker did not load");
     workers.busy.set(question.id, worker);
     worker.postMessage(question);
   }
 }
 
 globalThis.interwell = {
-  ask(name, text) {
+  ask(name, question) {
     const id = workers.next++;
-    workers.waiting.push({ id, name, text });
+    // a copy, since the bytes lie in the memory of the module
+    workers.waiting.push({ id, name, question: question.slice() });
     work();
     return id;
   },
@@ -79,6 +80,8 @@ globalThis.interwell = {
     workers.busy.delete(id);
     work();
   },
+  // Into how many questions a long one is divided: one worker is left for what comes meanwhile.
+  share: () => most - 1,
   download(name, bytes) {
     const link = document.createElement("a");
     link.href = URL.createObjectURL(new Blob([bytes]));
@@ -86,17 +89,35 @@ globalThis.interwell = {
     link.click();
     setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
   },
-  // The address, the title and the status follow the scene.
-  show(link, title, status) {
-    if (link !== "" && link !== location.search + location.hash) history.replaceState(null, "", link);
+  // The address, the title and the status follow the scene; a change of it is a step of the history. An empty link
+  // is that of a scene which has none, without a link the address stays.
+  show(link, title, status, isStep) {
+    hasLink = link !== "";
+    if (link !== undefined && link !== asked()) {
+      history[isStep ? "pushState" : "replaceState"](null, "", link || location.pathname);
+    }
     if (document.title !== title) document.title = title;
     if (element("status").textContent !== status) element("status").textContent = status;
   },
 };
 
+// The link in the address, without what others append to it.
 function asked() {
-  return location.search + location.hash;
+  const link = new URLSearchParams(location.search);
+  const kind = ["scene", "lesson"].find((kind) => link.has(kind));
+  return kind === undefined ? "" : `?${kind}=${link.get(kind)}${location.hash}`;
 }
+
+// Says that a part of the program has failed, over the window.
+function failed(problem) {
+  console.error(problem);
+  element("problem").textContent =
+    `A part of the program has failed (${problem}). Reload the page; what has a link in the address opens again.`;
+  element("problem").hidden = false;
+}
+
+// Keys of the window that mean something else to a browser.
+const keys = { plain: ["F1"], control: ["0", "1", "2", "3", "4", "5", "e", "m", "y", "+", "=", "-", "l"] };
 
 async function start() {
   const canvas = element("window");
@@ -112,6 +133,13 @@ async function start() {
   await open_window(canvas, location.origin + location.pathname, asked(), dark);
   element("start").remove();
   canvas.focus();
+  const takes = ({ ctrlKey, metaKey, key }) => keys[ctrlKey || metaKey ? "control" : "plain"].includes(key);
+  addEventListener("keydown", (event) => takes(event) && event.preventDefault(), { capture: true });
+  // an observer of sizes reports so what it makes up for in the next frame
+  addEventListener("error", (event) => event.message.startsWith("ResizeObserver") || failed(event.message));
+  addEventListener("unhandledrejection", (event) => failed(event.reason));
+  // what has a link is in the address
+  addEventListener("beforeunload", (event) => !hasLink && document.title.startsWith("* ") && event.preventDefault());
   addEventListener("popstate", () => open_link(asked()));
   addEventListener("hashchange", () => open_link(asked()));
   if ("serviceWorker" in navigator) {

@@ -9,20 +9,11 @@ onmessage = async ({ data }) => {
     ready = init({ module_or_path: data.module });
     return;
   }
-  await ready;
-  // parts that come fast are sent together
-  let parts = [];
-  let sent = performance.now();
-  const send = () => {
-    postMessage({ parts });
-    parts = [];
-    sent = performance.now();
-  };
-  const problem = answer(data.name, data.text, (part) => {
-    parts.push(part);
-    if (performance.now() - sent > 30) send();
-  });
-  if (problem !== undefined) console.error(problem);
-  send();
-  postMessage({});
+  try {
+    await ready;
+    const problem = answer(data.name, data.question, (part) => postMessage({ part }));
+    postMessage({ problem });
+  } catch (error) {
+    postMessage({ problem: String(error) });
+  }
 };

@@ -13,18 +13,21 @@ use std::cell::{Cell, RefCell};
 use std::sync::atomic::AtomicBool;
 
 use eframe::egui;
-use interwell::app::window::Window;
+use interwell::app::window::{Command, Window};
 use interwell::app::window::leave::Next;
 use interwell::app::{begin, session, task};
+use interwell::scene::linked_lesson;
+use interwell::scene::lesson::LESSONS;
 use interwell::system::page;
 use wasm_bindgen::prelude::*;
 
 #[wasm_bindgen(js_namespace = interwell)]
 extern "C" {
-    fn ask(name: &str, text: &str) -> u32;
+    fn ask(name: &str, question: &[u8]) -> u32;
     fn cancel(id: u32);
     fn download(name: &str, bytes: &[u8]);
-    fn show(link: &str, title: &str, status: &str);
+    fn share() -> usize;
+    fn show(link: Option<&str>, title: &str, status: &str, is_step: bool);
 }
 
 /// Shortest time in s between two looks at the scene for the address and the status.
@@ -34,22 +37,34 @@ thread_local! {
     static CONTEXT: RefCell<Option<egui::Context>> = const { RefCell::new(None) };
     /// A link that the address has become.
     static LINK: Cell<Option<String>> = const { Cell::new(None) };
+    /// What takes the parts of the answer in a worker.
+    static EACH: RefCell<Option<js_sys::Function>> = const { RefCell::new(None) };
 }
 
 /// The window, whose scene the address follows.
 struct Page {
     window: Window,
     looked_at: f64,
-    /// The link of the scene.
+    /// The link of what is open; empty without one.
     link: String,
 }
 
 impl Page {
-    /// Opens what the address has become, unless it is the scene that is open.
+    /// Goes to what the address has become: undoes or redoes changes where that leads there, and opens another
+    /// scene or lesson where not.
     fn follow_address(&mut self, ctx: &egui::Context) {
         let asked = LINK.take().filter(|link| *link != self.link && !link.is_empty());
         if let Some(link) = asked {
-            self.window.leave_for(ctx, Next::Open(link));
+            if linked_lesson(&link).is_none() && self.window.lesson().is_some() {
+                self.window.carry_out(ctx, Command::LeaveLesson);
+            }
+            let session = &mut self.window.session;
+            if session.editor.document().link().as_ref() == Ok(&link) || session.go_to(&link) {
+                self.link = link;
+            } else {
+                self.link.clear();
+                self.window.leave_for(ctx, Next::Open(link));
+            }
         }
     }
 
@@ -60,13 +75,21 @@ impl Page {
             return;
         }
         self.looked_at = now;
-        let session = &self.window.session;
-        // the link of a lesson stays as it was opened
+        let (title, spoken) = (self.window.title(), self.window.spoken());
+        // the address that a message may be about stays
+        if self.window.message().is_some() {
+            return show(None, title, spoken, false);
+        }
         let link = match self.window.lesson() {
+            Some(open) if LESSONS.iter().any(|lesson| lesson.name == open.key()) => {
+                format!("?lesson={}", open.key())
+            }
             Some(_) => String::new(),
-            None => session.editor.document().link().unwrap_or_default(),
+            // a scene with a large file has no link
+            None => self.window.session.editor.document().link().unwrap_or_default(),
         };
-        show(&link, self.window.title(), &self.window.status());
+        // the first scene is no step of the browser's history, nor is what a link opens
+        show(Some(&link), title, spoken, !self.link.is_empty());
         self.link = link;
     }
 }
@@ -113,7 +136,7 @@ pub async fn open_window(
         download(name, bytes);
         Ok(())
     });
-    task::set_workers(task::Workers { ask, cancel });
+    task::set_workers(task::Workers { ask, cancel, share: share() });
     let options = eframe::WebOptions { dithering: false, ..eframe::WebOptions::default() };
     let start = move |creation: &eframe::CreationContext<'_>| -> Result<Box<dyn eframe::App>, _> {
         CONTEXT.set(Some(creation.egui_ctx.clone()));
@@ -130,23 +153,19 @@ pub fn open_link(link: String) {
     CONTEXT.with_borrow(|context| context.as_ref().map(egui::Context::request_repaint));
 }
 
-/// Takes a part of the answer to a question from a worker; without text there are no more.
+/// Takes a part of the answer to a question from a worker; without a message there are no more.
 #[wasm_bindgen]
-pub fn answer_part(id: u32, text: Option<String>) {
-    task::take_part(id, text.as_deref());
-}
-
-thread_local! {
-    /// What takes the parts of the answer in a worker.
-    static EACH: RefCell<Option<js_sys::Function>> = const { RefCell::new(None) };
+pub fn answer_part(id: u32, message: Option<Box<[u8]>>) {
+    task::take_part(id, message.as_deref());
 }
 
 /// Answers a question in a worker, and passes each part to `each`. Returns what is wrong with the question.
 #[wasm_bindgen]
-pub fn answer(name: &str, question: &str, each: js_sys::Function) -> Option<String> {
+pub fn answer(name: &str, question: &[u8], each: js_sys::Function) -> Option<String> {
     EACH.set(Some(each));
-    let pass = |part: String| {
-        EACH.with_borrow(|each| each.as_ref().map(|each| each.call1(&JsValue::NULL, &part.into())));
+    let pass = |part: Vec<u8>| {
+        let part = js_sys::Uint8Array::from(part.as_slice());
+        EACH.with_borrow(|each| each.as_ref().map(|each| each.call1(&JsValue::NULL, &part)));
     };
     session::asked::answer(name, question, &AtomicBool::new(false), &pass).err()
 }

@@ -1,5 +1,6 @@
 // The page in a browser, as a person has it: the address, the status line for screen readers and pictures tell what
-// happens. PLAYWRIGHT is the folder in which playwright-core is installed, BROWSER a Chromium.
+// happens. PLAYWRIGHT is the folder in which playwright-core is installed, BROWSER a Chromium or a Firefox, which draws
+// WebGL2 only on a display (`xvfb-run`).
 
 import assert from "node:assert/strict";
 import { createReadStream, existsSync, mkdirSync, readFileSync } from "node:fs";
@@ -8,7 +9,9 @@ import { extname, join } from "node:path";
 import { after, before, test } from "node:test";
 import { fileURLToPath } from "node:url";
 
-const { chromium } = await import(join(process.env.PLAYWRIGHT, "node_modules/playwright-core/index.mjs"));
+const { chromium, firefox } = await import(join(process.env.PLAYWRIGHT, "node_modules/playwright-core/index.mjs"));
+const executablePath = process.env.BROWSER ?? "/usr/bin/chromium";
+const inFirefox = executablePath.includes("firefox");
 const dist = fileURLToPath(new URL("../dist/", import.meta.url));
 const pictures = process.env.PICTURES;
 const types = { ".html": "text/html", ".js": "text/javascript", ".wasm": "application/wasm", ".png": "image/png" };
@@ -28,7 +31,9 @@ before(async () => {
   await new Promise((ready) => server.listen(0, "127.0.0.1", ready));
   // from a folder of a host
   address = `http://127.0.0.1:${server.address().port}/class/`;
-  browser = await chromium.launch({ executablePath: process.env.BROWSER ?? "/usr/bin/chromium", args: arguments_ });
+  browser = await (inFirefox
+    ? firefox.launch({ executablePath, channel: "moz-firefox", headless: false })
+    : chromium.launch({ executablePath, args: arguments_ }));
   if (pictures) mkdirSync(pictures, { recursive: true });
 });
 
@@ -43,6 +48,11 @@ async function open(link = "", options = {}) {
   const problems = [];
   page.on("pageerror", (error) => problems.push(String(error)));
   page.on("console", (message) => message.type() === "error" && problems.push(message.text()));
+  if (options.processors) {
+    await page.addInitScript((count) => {
+      Object.defineProperty(Navigator.prototype, "hardwareConcurrency", { get: () => count });
+    }, options.processors);
+  }
   await page.goto(address + link);
   await page.waitForSelector("#start", { state: "detached", timeout: 60_000 });
   return { context, page, problems };
@@ -53,12 +63,30 @@ const says = (page, words) =>
   page.waitForFunction((words) => document.querySelector("#status").textContent.includes(words), words, { timeout: 60_000 });
 const addressHas = (page, words) => page.waitForFunction((words) => location.href.includes(words), words, { timeout: 30_000 });
 
-// Drags the slider of the amplitude over these places.
-async function drag(page, [from, ...to]) {
-  await page.mouse.move(from, 133);
+// Drags the slider of the amplitude, at this height, over these places.
+async function drag(page, [from, ...to], y = 133) {
+  await page.mouse.move(from, y);
   await page.mouse.down();
-  for (const x of to) await page.mouse.move(x, 133, { steps: 2 });
+  for (const x of to) await page.mouse.move(x, y, { steps: 2 });
   await page.mouse.up();
+}
+
+// What a key, pressed on the window, writes as a file.
+async function written(page, key) {
+  const download = page.waitForEvent("download", { timeout: 60_000 });
+  await page.keyboard.press(key);
+  return readFileSync(await (await download).path(), "utf8");
+}
+
+async function drop(page, files) {
+  await page.evaluate((files) => {
+    const dataTransfer = new DataTransfer();
+    files.forEach(([name, text]) => dataTransfer.items.add(new File([text], name)));
+    const canvas = document.querySelector("canvas");
+    for (const type of ["dragover", "drop"]) {
+      canvas.dispatchEvent(new DragEvent(type, { dataTransfer, bubbles: true, cancelable: true }));
+    }
+  }, files);
 }
 
 async function picture(page, name) {
@@ -92,7 +120,7 @@ test("a dragged slider is in the address, and the address opens the same scene e
   await other.context.close();
 });
 
-test("a finger drags a slider", async () => {
+test("a finger drags a slider", { skip: inFirefox && "its driver has no touches" }, async () => {
   const { context, page } = await open("?scene=paper", { viewport: { width: 1024, height: 768 }, hasTouch: true });
   await says(page, "cross");
   const touch = await context.newCDPSession(page);
@@ -113,14 +141,7 @@ test("a dropped scene opens, and a key writes it as a download", async () => {
   // without comments, whose loss is asked about
   const preset = readFileSync(new URL("../../presets/monostable.ron", import.meta.url), "utf8");
   const text = preset.replace(/title: "[^"]*"/, 'title: "Dropped here"').replace(/^\s*\/\/.*$/gm, "");
-  await page.evaluate((text) => {
-    const dataTransfer = new DataTransfer();
-    dataTransfer.items.add(new File([text], "dropped.ron"));
-    const canvas = document.querySelector("canvas");
-    for (const type of ["dragover", "drop"]) {
-      canvas.dispatchEvent(new DragEvent(type, { dataTransfer, bubbles: true, cancelable: true }));
-    }
-  }, text);
+  await drop(page, [["dropped.ron", text]]);
   await page.waitForFunction(() => document.title.startsWith("Dropped here"), null, { timeout: 30_000 });
   await drag(page, [104, 98, 92]);
   const download = page.waitForEvent("download", { timeout: 30_000 });
@@ -132,27 +153,75 @@ test("a dropped scene opens, and a key writes it as a download", async () => {
   await context.close();
 });
 
-test("a map is computed by workers and no frame waits for it", async () => {
-  const { context, page, problems } = await open("?scene=paper");
-  await says(page, "cross");
-  await page.evaluate(() => {
-    window.longest = 0;
-    let last = performance.now();
-    const look = () => {
-      const now = performance.now();
-      window.longest = Math.max(window.longest, now - last);
-      last = now;
+test("a map is divided among workers, and frames go on beside it", async () => {
+  const tables = [];
+  for (const processors of [1, 5]) {
+    const { context, page, problems } = await open("?scene=paper", { processors });
+    await says(page, "cross");
+    await page.evaluate(() => {
+      window.longest = window.frames_ = 0;
+      let last = performance.now();
+      const look = () => {
+        const now = performance.now();
+        window.longest = Math.max(window.longest, now - last);
+        window.frames_ += 1;
+        last = now;
+        requestAnimationFrame(look);
+      };
       requestAnimationFrame(look);
-    };
-    requestAnimationFrame(look);
-  });
-  await page.mouse.click(640, 300);
-  await page.keyboard.press("Control+3");
-  await page.waitForTimeout(10_000);
-  const longest = await page.evaluate(() => window.longest);
-  await picture(page, "map");
-  console.log(`the longest frame beside a map: ${longest.toFixed(0)} ms`);
-  assert.deepEqual(problems, []);
+    });
+    await page.mouse.click(640, 300);
+    await page.keyboard.press("Control+3");
+    await page.waitForTimeout(12_000);
+    const [longest, frames] = await page.evaluate(() => [window.longest, window.frames_]);
+    console.log(`${processors} processors: ${frames} frames, the longest ${longest.toFixed(0)} ms`);
+    assert.ok(frames > 20, `${frames} frames`);
+    // two workers at least, and one less than processors
+    if (!inFirefox) assert.equal(page.workers().length, Math.max(2, processors - 1));
+    await picture(page, `map-${processors}`);
+    // Save the map as CSV...
+    await page.mouse.click(22, 17);
+    await page.waitForTimeout(500);
+    await picture(page, `menu-${processors}`);
+    const download = page.waitForEvent("download", { timeout: 30_000 });
+    await page.mouse.click(90, SAVE_THE_MAP);
+    const file = await download;
+    assert.equal(file.suggestedFilename(), "scene-map.csv");
+    tables.push(readFileSync(await file.path(), "utf8"));
+    assert.deepEqual(problems, []);
+    await context.close();
+  }
+  assert.ok(tables[0].split("\n").length > 2000);
+  assert.equal(tables[0], tables[1]);
+});
+
+test("the back button undoes a change, and the button forward redoes it", async () => {
+  const { context, page } = await open("?scene=paper");
+  await says(page, "cross");
+  await addressHas(page, "?scene=paper");
+  const first = page.url();
+  await drag(page, [83, 90, 96]);
+  await addressHas(page, "?scene=paper#");
+  const second = page.url();
+  await drag(page, [96, 102, 108]);
+  await page.waitForFunction((second) => location.href !== second, second);
+  const third = page.url();
+  await page.goBack();
+  await page.waitForTimeout(1_500);
+  assert.equal(page.url(), second);
+  await page.goBack();
+  await page.waitForTimeout(1_500);
+  assert.equal(page.url(), first);
+  // no question whether to save, and nothing is undone any more
+  await page.keyboard.press("Control+z");
+  await page.waitForTimeout(1_500);
+  assert.equal(page.url(), first);
+  await page.goForward();
+  await page.goForward();
+  await page.waitForTimeout(1_500);
+  assert.equal(page.url(), third);
+  await page.keyboard.press("Control+z");
+  await page.waitForFunction((second) => location.href === second, second);
   await context.close();
 });
 
@@ -167,20 +236,89 @@ test("the back button opens the scene before", async () => {
   await context.close();
 });
 
-test("a lesson opens by its link", async () => {
+test("a lesson is done to its end, and that is kept", async () => {
   const { context, page, problems } = await open("?lesson=02-shake-it-over");
-  await page.waitForTimeout(2_000);
+  await page.waitForFunction(() => document.title.startsWith("Shake it over"), null, { timeout: 30_000 });
+  await addressHas(page, "?lesson=02-shake-it-over");
   await picture(page, "lesson");
+  const next = async () => {
+    await page.keyboard.press("PageDown");
+    await page.waitForTimeout(700);
+  };
+  await next();
+  await next();
+  await says(page, "Covered");
+  await page.keyboard.press("c");
+  await says(page, "cross");
+  await picture(page, "lesson-predicted");
+  await next();
+  await next();
+  // the amplitude of the task
+  await drag(page, [178, 200, 230, 253], 182);
+  await says(page, "cross");
+  await page.waitForTimeout(5_000);
+  await picture(page, "lesson-task");
+  for (let step = 0; step < 4; step += 1) await next();
+  await picture(page, "lesson-end");
+  await page.reload();
+  await page.waitForSelector("#start", { state: "detached", timeout: 60_000 });
+  assert.match(await page.evaluate(() => localStorage.getItem("lessons")), /02-shake-it-over.*done:\s*true/s);
   assert.deepEqual(problems, []);
   await context.close();
 });
 
 test("a faulty link is said in the window and harms nothing", async () => {
   const { context, page, problems } = await open("?scene=paper#not-a-link");
-  await page.waitForTimeout(1_500);
+  await says(page, "is broken: copy the whole link");
+  // the link is still there to be mended
+  assert.match(page.url(), /#not-a-link$/);
   await picture(page, "faulty");
   await page.keyboard.press("Escape");
-  await addressHas(page, "?scene=");
+  await says(page, "well");
+  assert.deepEqual(problems, []);
+  await context.close();
+});
+
+test("what others append to a link changes nothing", async () => {
+  const { context, page } = await open("?scene=paper&from=mail");
+  await page.waitForFunction(() => document.title.startsWith("Prototype"), null, { timeout: 30_000 });
+  await says(page, "cross");
+  await context.close();
+});
+
+test("a figure is saved as a download", async () => {
+  const { context, page, problems } = await open("?scene=paper");
+  await says(page, "cross");
+  await page.mouse.move(640, 450);
+  await page.keyboard.press("Control+e");
+  await page.waitForTimeout(1_000);
+  await picture(page, "figure");
+  const figure = await written(page, "Enter");
+  assert.match(figure, /^%PDF/);
+  assert.deepEqual(problems, []);
+  await context.close();
+});
+
+test("an export does not replace the table of the scene", async () => {
+  const { context, page, problems } = await open();
+  await says(page, "well");
+  const table = "x_m,force_n\n" + [...Array(41).keys()].map((i) => {
+    const x = (i - 20) * 4e-4;
+    return `${x},${-40 * x + 816326.5 * x ** 3}`;
+  }).join("\n");
+  const scene = `(title: "Pulled", mass_g: 15.2, mechanism: Table(path: "pull.csv", tolerance: 1e-3),
+    excitation: Sine(frequency_hz: 3, amplitude_g: 0.5), run: (duration_s: 5))`;
+  await drop(page, [["pull.ron", scene], ["pull.csv", table]]);
+  await page.waitForFunction(() => document.title.startsWith("Pulled"), null, { timeout: 30_000 });
+  const words = (await status(page)).slice(0, 30);
+  await page.mouse.click(22, 17);
+  await page.waitForTimeout(500);
+  const download = page.waitForEvent("download", { timeout: 30_000 });
+  await page.mouse.click(90, SAVE_THE_EVENTS);
+  assert.equal((await download).suggestedFilename(), "pull-events.csv");
+  await drag(page, [83, 88, 92]);
+  await drag(page, [92, 88, 83]);
+  await says(page, words);
   assert.deepEqual(problems, []);
   await context.close();
 });
@@ -201,7 +339,7 @@ for (const [name, width, height] of [["phone", 390, 844], ["tablet", 1024, 768],
     test(`${name}, ${colorScheme}`, async () => {
       const options = { viewport: { width, height }, colorScheme, hasTouch: name !== "desk" };
       const { context, page, problems } = await open("?scene=paper", options);
-      await page.waitForTimeout(2_500);
+      await says(page, "cross");
       await picture(page, `${name}-${colorScheme}`);
       assert.deepEqual(problems, []);
       await context.close();

@@ -55,7 +55,7 @@ pub fn powf(base: f64, exponent: f64) -> f64 {
 }
 
 /// `base` to a whole power, by products of its squares; of a negative exponent the reciprocal of that of its
-/// magnitude, so that results below 2^-1024 are 0.
+/// magnitude, so that results of at most 2^-1024 are 0.
 ///
 /// The error in ulp is about half the magnitude of the exponent, the order of the products is fixed. That of
 /// `f64::powi` is left to the compiler where the exponent is a variable.

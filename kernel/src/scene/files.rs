@@ -53,7 +53,7 @@ impl Files {
         match &self.folder {
             _ if Path::new(path).is_absolute() => Some(PathBuf::from(path)),
             Some(folder) => Some(folder.join(path)),
-            None => None,
+            None => files::is_in_page(path).then(|| PathBuf::from(path)),
         }
     }
 

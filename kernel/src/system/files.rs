@@ -37,6 +37,19 @@ pub fn exists(path: &Path) -> bool {
     path.exists()
 }
 
+/// Keeps a file that was written, so that a web page can read it again; elsewhere it is on the disk.
+pub fn keep_written(path: &Path, bytes: &[u8]) {
+    #[cfg(target_arch = "wasm32")]
+    page::keep(&path.to_string_lossy(), bytes.to_vec());
+    #[cfg(not(target_arch = "wasm32"))]
+    let _ = (path, bytes);
+}
+
+/// Whether a web page keeps a file of this name, which is found without a folder; there is none elsewhere.
+pub fn is_in_page(name: &str) -> bool {
+    cfg!(target_arch = "wasm32") && exists(Path::new(name))
+}
+
 /// Whether there is a regular file at `path`.
 pub fn is_file(path: &Path) -> bool {
     #[cfg(target_arch = "wasm32")]

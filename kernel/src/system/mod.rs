@@ -30,3 +30,15 @@ pub mod threads;
 pub use journal::Block;
 pub use part::{Opened, Part, PartError};
 pub use sink::{OpenError, Sink, is_regular, same_target, write_file};
+
+/// The address that stands before a link: in a web page that of the page, elsewhere what the environment
+/// variable `INTERWELL_PAGE` has, up to a `?` or `#`.
+pub fn page_address() -> String {
+    #[cfg(target_arch = "wasm32")]
+    return page::address().to_owned();
+    #[cfg(not(target_arch = "wasm32"))]
+    {
+        let address = std::env::var("INTERWELL_PAGE").unwrap_or_default();
+        address.split(['?', '#']).next().unwrap_or_default().to_owned()
+    }
+}

@@ -47,9 +47,8 @@ pub(super) fn is_kept(path: &Path) -> bool {
     FILES.lock().unwrap_or_else(PoisonError::into_inner).contains_key(path)
 }
 
-/// Keeps a file and hands it to the user.
+/// Hands a file to the user.
 pub(super) fn write(path: &Path, bytes: &[u8]) -> Result<(), String> {
     let name = path.file_name().map_or_else(|| "file".into(), |name| name.to_string_lossy());
-    keep(&path.to_string_lossy(), bytes.to_vec());
     DOWNLOAD.get().map_or(Ok(()), |download| download(&name, bytes))
 }

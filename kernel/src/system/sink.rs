@@ -51,6 +51,9 @@ enum Kind {
     Stdout,
     Direct(File),
     Replace { part: NamedTempFile, target: PathBuf },
+    /// A file that a web page hands to its user.
+    #[cfg(target_arch = "wasm32")]
+    Download(PathBuf),
 }
 
 /// Number of bytes collected before they are written.
@@ -60,6 +63,14 @@ impl Sink {
     /// Opens `path` for writing; `-` and the system's names of standard output are standard output. A regular
     /// file is not changed until [`finish`](Self::finish).
     pub fn open(path: &Path) -> Result<Self, OpenError> {
+        #[cfg(target_arch = "wasm32")]
+        return Ok(Self::new(path.display().to_string(), Kind::Download(path.to_owned()), None));
+        #[cfg(not(target_arch = "wasm32"))]
+        Self::open_on_disk(path)
+    }
+
+    #[cfg_attr(target_arch = "wasm32", expect(dead_code, reason = "a page has no disk"))]
+    fn open_on_disk(path: &Path) -> Result<Self, OpenError> {
         if is_stdout(path) {
             return Ok(Self::new("standard output".into(), Kind::Stdout, stdout_inode()));
         }
@@ -137,6 +148,10 @@ impl Sink {
 
     /// Writes all collected bytes.
     pub fn flush(&mut self) -> io::Result<()> {
+        #[cfg(target_arch = "wasm32")]
+        if matches!(self.kind, Kind::Download(_)) {
+            return Ok(());
+        }
         if self.closed {
             self.buffer.clear();
             return Ok(());
@@ -150,6 +165,8 @@ impl Sink {
             Kind::Direct(file) => file.write_all(bytes),
             // Write to the inner file: errors of the temporary file contain its name.
             Kind::Replace { part, .. } => part.as_file_mut().write_all(bytes),
+            #[cfg(target_arch = "wasm32")]
+            Kind::Download(_) => Ok(()),
         };
         self.buffer.clear();
         match result {
@@ -167,6 +184,8 @@ impl Sink {
         self.flush()?;
         match self.kind {
             Kind::Replace { part, target } => part.persist(target).map(|_| ()).map_err(|error| error.error),
+            #[cfg(target_arch = "wasm32")]
+            Kind::Download(path) => super::page::write(&path, &self.buffer).map_err(io::Error::other),
             _ => Ok(()),
         }
     }
@@ -175,14 +194,6 @@ impl Sink {
 /// Writes a whole file; an existing one is replaced only after all bytes are written. The error
 /// is a sentence.
 pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), String> {
-    #[cfg(target_arch = "wasm32")]
-    return super::page::write(path, bytes);
-    #[cfg(not(target_arch = "wasm32"))]
-    write_whole(path, bytes)
-}
-
-#[cfg(not(target_arch = "wasm32"))]
-fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), String> {
     let mut sink = Sink::open(path).map_err(|error| error.to_string())?;
     let refused = |error: io::Error| format!("cannot write {}: {error}", path.display());
     sink.put_bytes(bytes).map_err(refused)?;

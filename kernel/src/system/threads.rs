@@ -1,6 +1,6 @@
 //! Threads, and the distribution of work among them.
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
@@ -134,9 +134,11 @@ impl Pool {
         let queue = Queue { ahead, ..Queue::new(count, self.count()) };
         let mut delivery = Delivery { queue: &queue, per_task, waiting: BTreeMap::new(), passed: 0, receive };
         let Some(threads) = &self.threads else {
-            let delivery = RefCell::new(delivery);
+            let (delivery, is_over) = (RefCell::new(delivery), Cell::new(false));
             let done = |index, result| {
-                if !delivery.borrow_mut().pass([(index, result)]) {
+                // runs that were under way end later
+                if !is_over.get() && !delivery.borrow_mut().pass([(index, result)]) {
+                    is_over.set(true);
                     queue.stop();
                 }
             };

@@ -6,7 +6,7 @@ use crate::app::session::Session;
 use crate::app::ui::style::{BODY, strong_family};
 use crate::app::ui::widgets::fitting;
 use crate::app::words::numbers::unbroken;
-use crate::app::words::status::grams;
+use crate::app::words::status::as_set;
 use crate::dynamics::EventKind;
 
 /// Distance in mm by which the stops have to be moved before the trade-off counts as tried.
@@ -86,7 +86,7 @@ impl Hint {
     /// Heading and text of the line: what happened, and what to try. Statements about the motion concern what
     /// the present scene settles to; while that is not known, there are none.
     pub fn text(&self, session: &Session) -> (&'static str, String) {
-        let (opened, crosses) = (grams(self.opened_g), session.crosses());
+        let (opened, crosses) = (as_set(self.opened_g), session.crosses());
         let (as_opened, fair) = (self.is_as_opened(session), self.is_fair_comparison(session));
         let wait = "Wait for it, or press X to go there.";
         let outward = "Then move the stops outward: how far does that help?";

@@ -83,7 +83,7 @@ fn stop_ui(ui: &mut Ui, session: &mut Session) {
     }
     let hover = "The background has worked for so long on what this settles to, what it would take to cross \
                  and how accurate the motion is. The motion goes on without it; the next change asks anew.";
-    let text = format!("Cancel ({} s)", worked.as_secs());
+    let text = format!("Stop computing ({} s)", worked.as_secs());
     ui.ctx().request_repaint_after_secs(1.0);
     if ui.button(text).on_hover_text(hover).clicked() {
         session.stop_working();

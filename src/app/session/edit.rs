@@ -95,6 +95,12 @@ impl Session {
         self.move_in_history(Editor::redo)
     }
 
+    /// Goes to the scene of the history that has this link, if there is one.
+    #[cfg(any(test, target_arch = "wasm32"))]
+    pub fn go_to(&mut self, link: &str) -> bool {
+        self.move_in_history(|editor| editor.go_to(link))
+    }
+
     fn move_in_history(&mut self, step: impl FnOnce(&mut Editor) -> bool) -> bool {
         self.end_gesture();
         self.refused = None;

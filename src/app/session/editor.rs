@@ -185,6 +185,24 @@ impl Editor {
         true
     }
 
+    /// Goes to the nearest scene before the present one that has this link, or else after it. Returns whether
+    /// there is one.
+    #[cfg(any(test, target_arch = "wasm32"))]
+    pub fn go_to(&mut self, link: &str) -> bool {
+        self.end_gesture();
+        let has_link = |scene: &Scene| {
+            let mut document = self.document.clone();
+            document.scene.clone_from(scene);
+            document.link().is_ok_and(|its| its == link)
+        };
+        let place = |scenes: &[Scene]| scenes.iter().rev().position(has_link);
+        match (place(&self.undo), place(&self.redo)) {
+            (Some(steps), _) => (0..=steps).all(|_| self.undo()),
+            (None, Some(steps)) => (0..=steps).all(|_| self.redo()),
+            (None, None) => false,
+        }
+    }
+
     /// Goes back to the scene as it was opened or last saved, as one undo step. Returns whether it changed.
     pub fn back_to_start(&mut self) -> bool {
         let saved = self.saved.clone();
@@ -198,7 +216,7 @@ impl Editor {
         let mut document = self.document.clone();
         let copied = copy_files(&mut document.scene, &document.files, path)?;
         document.text = text_of(&runnable(&document))?;
-        write_file(path, document.text.as_bytes())?;
+        write_kept(path, document.text.as_bytes())?;
         (document.name, document.source) = (path.display().to_string(), Source::File(path.to_owned()));
         let before = std::mem::replace(&mut document.files, Files::beside(path));
         let mut now = document.scene.clone();
@@ -237,6 +255,13 @@ pub(in crate::app) fn keep_start_inside(scene: &mut Scene) {
     }
 }
 
+/// Writes a file that is read again.
+fn write_kept(path: &Path, bytes: &[u8]) -> Result<(), String> {
+    write_file(path, bytes)?;
+    system::files::keep_written(path, bytes);
+    Ok(())
+}
+
 /// Copies the table and the records of `scene` into the folder of `target`, and renames them in `scene`
 /// accordingly. An existing file is used if its content is the same, and is never overwritten. Returns the
 /// names of the files written; the error says why one could not be.
@@ -257,7 +282,7 @@ fn copy_files(scene: &mut Scene, files: &Files, target: &Path) -> Result<Vec<Str
         let text = text.map_err(|error| format!("the scene names a file that cannot be read: {error}"))?;
         let name = free_name(path, &text, target)?;
         if !system::files::exists(&target.with_file_name(&name)) {
-            write_file(&target.with_file_name(&name), text.as_bytes())?;
+            write_kept(&target.with_file_name(&name), text.as_bytes())?;
             written.push(name.clone());
         }
         *path = name;
@@ -307,4 +332,33 @@ fn is_same(a: &Path, b: &Path) -> bool {
         system::files::canonical(path)
     };
     whole(a).is_some_and(|a| whole(b) == Some(a))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_link_of_the_history_is_reached_by_undo_and_redo() {
+        let mut editor = Editor::open("paper").unwrap();
+        let link = |editor: &Editor| editor.document().link().unwrap();
+        let mut links = vec![link(&editor)];
+        for mass_g in [11.0, 12.0, 13.0, 14.0] {
+            editor.edit_once(|scene| scene.mass_g = mass_g);
+            links.push(link(&editor));
+        }
+        for place in [1, 3, 0, 4, 2, 2] {
+            let is_other = link(&editor) != links[place];
+            assert_eq!(editor.go_to(&links[place]), is_other);
+            assert_eq!(link(&editor), links[place]);
+            assert_eq!((editor.undo.len(), editor.redo.len()), (place, 4 - place));
+        }
+        assert!(!editor.go_to("?scene=harvester"));
+        assert_eq!(link(&editor), links[2]);
+        // the nearest scene before, and not one that is farther away
+        editor.edit_once(|scene| scene.mass_g = 11.0);
+        editor.edit_once(|scene| scene.mass_g = 20.0);
+        assert!(editor.go_to(&links[1]));
+        assert_eq!((editor.undo.len(), editor.redo.len()), (3, 1));
+    }
 }

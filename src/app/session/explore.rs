@@ -104,7 +104,9 @@ pub enum WalkQuantity {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct WalkQuestion {
     /// The scene, from rest, with the first value of the axis.
+    #[serde(with = "crate::app::task::as_text")]
     pub scene: Scene,
+    #[serde(with = "crate::app::task::as_text")]
     pub axis: SweepAxis,
     /// The scene, from rest, with the value of the field that it has.
     ground: Uncompared<Prepared>,

@@ -4,6 +4,7 @@
 
 pub mod accuracy;
 mod ask;
+#[cfg(any(test, target_arch = "wasm32"))]
 pub mod asked;
 pub mod best;
 mod build;

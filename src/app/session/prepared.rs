@@ -22,6 +22,7 @@ pub struct SceneWithFiles {
 
 #[derive(Serialize, Deserialize)]
 struct WithTexts {
+    #[serde(with = "crate::app::task::as_text")]
     scene: Scene,
     texts: BTreeMap<String, String>,
 }

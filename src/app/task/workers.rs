@@ -1,5 +1,5 @@
 //! Workers of a web page, which share no memory with the window: a question and the parts of its
-//! answer travel as text.
+//! answer travel as messages.
 
 use std::cell::RefCell;
 use std::collections::HashMap;
@@ -7,20 +7,22 @@ use std::sync::Arc;
 use std::sync::OnceLock;
 use std::sync::mpsc::{Receiver, Sender, channel};
 
-use super::{Question, Wake, from_text, to_text};
+use super::{Question, Wake, from_message, to_message};
 
 /// How the page reaches its workers.
 pub struct Workers {
     /// Asks the question of this name; returns its number.
-    pub ask: fn(&str, &str) -> u32,
+    pub ask: fn(&str, &[u8]) -> u32,
     /// Cancels the question of this number.
     pub cancel: fn(u32),
+    /// Number of questions into which a long one is divided.
+    pub share: usize,
 }
 
 static WORKERS: OnceLock<Workers> = OnceLock::new();
 
-/// What takes the text of a part.
-type Take = Box<dyn Fn(&str)>;
+/// What takes a part of an answer.
+type Take = Box<dyn Fn(&[u8])>;
 
 thread_local! {
     /// What takes the parts of the questions under way.
@@ -32,11 +34,11 @@ pub fn set_workers(workers: Workers) {
     let _ = WORKERS.set(workers);
 }
 
-/// Takes a part of an answer from a worker; without text there are no more.
-pub fn take_part(number: u32, text: Option<&str>) {
-    let wake = UNDER_WAY.with_borrow_mut(|under_way| match text {
-        Some(text) => under_way.get(&number).map(|(take, wake)| {
-            take(text);
+/// Takes a part of an answer from a worker; without a message there are no more.
+pub fn take_part(number: u32, message: Option<&[u8]>) {
+    let wake = UNDER_WAY.with_borrow_mut(|under_way| match message {
+        Some(message) => under_way.get(&number).map(|(take, wake)| {
+            take(message);
             Arc::clone(wake)
         }),
         None => under_way.remove(&number).map(|(_, wake)| wake),
@@ -50,23 +52,28 @@ pub fn take_part(number: u32, text: Option<&str>) {
 #[derive(Debug)]
 pub(super) struct Asked(u32);
 
-impl Asked {
-    /// Asks a question. Returns it with the parts of its answer as they come; `None` if it cannot be sent.
-    pub fn new<Q: Question>(question: &Q, wake: &Wake) -> Option<(Self, Receiver<Q::Part>)> {
-        let (workers, text) = (WORKERS.get()?, to_text(question).ok()?);
-        let (sender, parts): (Sender<Q::Part>, _) = channel();
-        let take = move |text: &str| {
-            if let Ok(part) = from_text(text) {
+/// Asks a question of as many workers as it can be divided over. Returns the questions with the parts of
+/// their answers as they come; `None` if one cannot be sent.
+pub(super) fn ask<Q: Question>(question: &Q, wake: &Wake) -> Option<(Vec<Asked>, Receiver<Q::Part>)> {
+    let workers = WORKERS.get()?;
+    let (sender, parts) = channel();
+    let ask = |question: &Q| {
+        let message = to_message(question).ok()?;
+        let sender: Sender<Q::Part> = sender.clone();
+        let take = move |message: &[u8]| {
+            if let Ok(part) = from_message(message) {
                 // the receiver is gone once the question is dropped
                 let _ = sender.send(part);
             }
         };
-        let number = (workers.ask)(Q::NAME, &text);
+        let number = (workers.ask)(Q::NAME, &message);
         UNDER_WAY.with_borrow_mut(|under_way| {
             under_way.insert(number, (Box::new(take), Arc::clone(wake)));
         });
-        Some((Self(number), parts))
-    }
+        Some(Asked(number))
+    };
+    let asked: Option<Vec<Asked>> = question.divide(workers.share).iter().map(ask).collect();
+    Some((asked?, parts))
 }
 
 impl Drop for Asked {

@@ -53,7 +53,7 @@ impl Choice {
 
 #[cfg(target_arch = "wasm32")]
 impl Choice {
-    /// Asks for a file that is read; one that is written is a download, whose place the browser asks for.
+    /// Asks for a file that is read; one that is written is a download.
     pub fn ask(self, dialog: &mut Background<(), Chosen>, wake: &Wake) {
         use crate::system::page;
 
@@ -63,17 +63,25 @@ impl Choice {
         }
         dialog.ask_page((), wake, move |answer| {
             wasm_bindgen_futures::spawn_local(async move {
-                let file = rfd::AsyncFileDialog::new().add_filter(kind, &endings).pick_file().await;
-                let chosen = match file {
-                    Some(file) => {
-                        Some(Chosen::File(wanted, page::keep(&file.file_name(), file.read().await)))
+                let dialog = rfd::AsyncFileDialog::new().add_filter(kind, &endings);
+                let Some(file) = dialog.pick_file().await else { return answer(None) };
+                let name = file.file_name();
+                let buffer = wasm_bindgen_futures::JsFuture::from(file.inner().array_buffer()).await;
+                answer(Some(match buffer {
+                    Ok(buffer) => {
+                        let bytes = js_sys::Uint8Array::new(&buffer).to_vec();
+                        Chosen::File(wanted, page::keep(&name, bytes))
                     }
-                    None => None,
-                };
-                answer(chosen);
+                    Err(_) => Chosen::Refused(unreadable(&name)),
+                }));
             });
         });
     }
+}
+
+#[cfg(target_arch = "wasm32")]
+fn unreadable(name: &str) -> String {
+    format!("The browser cannot read {name}: it may have been moved or changed since. Choose it again.")
 }
 
 /// Reads files that were dropped on the page, and chooses the scene or lesson among them, or else the first.
@@ -89,12 +97,20 @@ pub(super) fn read_dropped(
         wasm_bindgen_futures::spawn_local(async move {
             let mut paths = Vec::new();
             for file in files {
-                if let Ok(bytes) = file.bytes_async().await {
-                    paths.push(page::keep(&file.path().to_string_lossy(), bytes));
+                let name = file.path().to_string_lossy().into_owned();
+                match file.bytes_async().await {
+                    Ok(bytes) => paths.push(page::keep(&name, bytes)),
+                    Err(_) => return answer(Some(Chosen::Refused(unreadable(&name)))),
                 }
             }
-            let scene = paths.iter().find(|path| path.extension().is_some_and(|ending| ending == "ron"));
-            answer(scene.or(paths.first()).cloned().map(Chosen::Dropped));
+            let mut scenes =
+                paths.iter().filter(|path| path.extension().is_some_and(|ending| ending == "ron"));
+            let (scene, another) = (scenes.next(), scenes.next());
+            let chosen = scene.or(paths.first()).cloned().map(Chosen::Dropped);
+            answer(match another {
+                Some(_) => Some(Chosen::Refused("Drop one scene or lesson at a time.".to_owned())),
+                None => chosen,
+            });
         });
     });
 }

@@ -181,7 +181,9 @@ pub(super) static MENUS: [(&str, &[Part]); 6] = [
         Item("Save a picture of the window...", None, C::SaveAs(Wanted::Picture), No),
         Item("Save the map as CSV...", None, C::SaveAs(Wanted::Map), No),
         Item("Copy the map's command line", None, C::CopyMapCommand, No),
+        #[cfg(not(target_arch = "wasm32"))]
         Line,
+        #[cfg(not(target_arch = "wasm32"))]
         Item("Quit", control(Key::Q), C::Quit, As("Scene", "quit")),
     ]),
     ("Edit", &[
@@ -241,6 +243,8 @@ pub(super) static MENUS: [(&str, &[Part]); 6] = [
             Item("Usual size", control(Key::Num0), C::Magnify(0), No),
         ]),
         Row("Views", "Ctrl and +, -, 0", "the whole window larger, smaller, at its usual size"),
+        // a browser has its own
+        #[cfg(not(target_arch = "wasm32"))]
         Item("Full screen", plain(Key::F11), C::FullScreen, As("Views", "full screen")),
     ]),
     ("Motion", &[

@@ -103,8 +103,9 @@ impl Window {
 
     /// Saves to a file; asks first if that is the scene's own file and drops its comments.
     pub fn save_to(&mut self, ctx: &egui::Context, path: &Path) {
-        let is_same = self.session.editor.path() == Some(path);
-        if is_same && self.session.editor.has_comments() {
+        // in a page it replaces nothing, but is a download
+        let replaces = self.session.editor.path() == Some(path) && cfg!(not(target_arch = "wasm32"));
+        if replaces && self.session.editor.has_comments() {
             self.over_comments = Some(path.to_owned());
         } else {
             self.save_over(ctx, path);
@@ -124,6 +125,8 @@ impl Window {
                 Chosen::File(wanted, path) => self.take_file(ctx, wanted, path),
                 #[cfg(target_arch = "wasm32")]
                 Chosen::Dropped(path) => self.take_dropped(ctx, &path),
+                #[cfg(target_arch = "wasm32")]
+                Chosen::Refused(why) => self.messages.alert("Not opened", why),
                 Chosen::NoDialog(Wanted::Figure, _) => {
                     self.figures.problem = Some(format!("{NO_DIALOG}: type the path."));
                 }
@@ -273,12 +276,17 @@ impl Window {
         let stem = path.as_ref().and_then(|path| path.file_stem());
         let stem = stem.map_or_else(|| "scene".to_owned(), |stem| stem.to_string_lossy().into_owned());
         let folder = path.as_ref().and_then(|path| path.parent()).map(Path::to_path_buf);
+        // a table is named after what it holds too, so that each has a name of its own
+        let name = match ending {
+            "csv" => format!("{stem}-{kind}.{ending}"),
+            _ => format!("{stem}.{ending}"),
+        };
         // the suggested path if the desktop has no dialog
         let start = folder.clone().unwrap_or_else(files::working_folder);
-        let start = if wanted.is_read() { start.join("") } else { start.join(format!("{stem}.{ending}")) };
+        let start = if wanted.is_read() { start.join("") } else { start.join(&name) };
         let endings = if wanted == Wanted::Measured { &ENDINGS[..] } else { &[ending][..] };
         let endings = endings.iter().map(|ending| (*ending).to_owned()).collect();
-        let choice = Choice { wanted, kind, endings, name: format!("{stem}.{ending}"), folder, start };
+        let choice = Choice { wanted, kind, endings, name, folder, start };
         choice.ask(&mut self.file_dialog, &self.wake);
     }
 

@@ -48,6 +48,7 @@ impl Window {
             ),
             C::Unpin(letter) => (session.pins.get(*letter).is_none(), "No motion is pinned by this letter"),
             C::CopyMapCommand => (session.map.map().is_none(), "There is no map yet: show the Map first"),
+            C::PasteScene => (cfg!(target_arch = "wasm32"), "A page cannot paste by itself: press Ctrl+V"),
             C::Undo => (!session.editor.can_undo(), "There is nothing to undo"),
             C::Redo => (!session.editor.can_redo(), "There is nothing to redo"),
             C::NextRelease => {

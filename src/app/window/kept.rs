@@ -22,8 +22,11 @@ const NOTES: &str = "notes";
 impl Window {
     /// Restores the saved state except the settings.
     pub fn restore(&mut self, storage: &dyn Storage) {
-        self.recent = get_value(storage, RECENT).unwrap_or_default();
-        self.restore_size(get_value(storage, SIZE));
+        // a page has no files of the last time, and the size that the browser gives it
+        if cfg!(not(target_arch = "wasm32")) {
+            self.recent = get_value(storage, RECENT).unwrap_or_default();
+            self.restore_size(get_value(storage, SIZE));
+        }
         self.custom = get_value(storage, CUSTOM);
         self.set_records(get_value(storage, LESSONS).unwrap_or_default());
         self.restore_notes_place(get_value(storage, NOTES));
@@ -99,7 +102,8 @@ impl WindowSize {
             let fills_screen = view.maximized == Some(true) || view.fullscreen == Some(true);
             (view.inner_rect, view.outer_rect, view.monitor_size, fills_screen)
         });
-        let Some(inner) = inner.map(|rect| rect.size()) else { return };
+        let page = || cfg!(target_arch = "wasm32").then(|| ctx.content_rect());
+        let Some(inner) = inner.or_else(page).map(|rect| rect.size()) else { return };
         if fills_screen || self.wanted.is_none() {
             self.present = Some(inner * zoom);
         }

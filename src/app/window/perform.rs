@@ -11,6 +11,7 @@ use crate::app::session::player::{Goal, SPEEDS};
 use crate::app::views::{Memory, View};
 use crate::dynamics::EventKind;
 use crate::scene::Layout;
+use crate::system::page_address;
 
 use super::Window;
 use super::command::{Command, UNDO};
@@ -50,6 +51,8 @@ impl Window {
         if let Some(why) = self.impossible(&command) {
             return self.messages.notify(why);
         }
+        // what was said of the command before
+        self.messages.notice = None;
         match command {
             Command::OpenPreset(name) => self.leave_for(ctx, Next::Open(name.to_owned())),
             Command::OpenRecent(path) => self.leave_for(ctx, Next::Open(path)),
@@ -162,9 +165,7 @@ impl Window {
     fn copy_link(&mut self, ctx: &egui::Context) {
         match self.session.editor.document().link() {
             Ok(link) => {
-                #[cfg(target_arch = "wasm32")]
-                let link = format!("{}{link}", crate::system::page::address());
-                ctx.copy_text(link);
+                ctx.copy_text(page_address() + &link);
                 self.messages.notify("Copied: a link that opens this scene");
             }
             Err(error) => self.messages.alert("This scene has no link", error.to_string()),

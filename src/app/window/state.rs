@@ -177,10 +177,15 @@ impl Window {
         &self.shown_title
     }
 
-    /// What the status line says; nothing while a lesson covers the motion.
-    pub fn status(&self) -> String {
-        if self.motion_is_covered() { String::new() } else { self.session.sentence().text }
+    /// What a screen reader is told of the window as a whole: a message, or what the status line says.
+    pub fn spoken(&self) -> &str {
+        let sentence = || match self.motion_is_covered() {
+            true => "Covered: what do you expect?",
+            false => self.announcer.spoken().map_or("", |(_, sentence)| sentence),
+        };
+        self.message().or_else(|| self.notice()).unwrap_or_else(sentence)
     }
+
 
     /// The zoom to which Ctrl+0 returns.
     pub(super) fn natural_zoom(&self) -> f32 {

@@ -60,6 +60,9 @@ pub(super) enum Chosen {
     /// A file that was dropped on a page, and has been read.
     #[cfg(target_arch = "wasm32")]
     Dropped(PathBuf),
+    /// Why a file of a page is not opened.
+    #[cfg(target_arch = "wasm32")]
+    Refused(String),
 }
 
 /// Beginning of a remark where a path has to be typed.

@@ -115,7 +115,12 @@ fn significant(value: f64, digits: i32) -> String {
     }
 }
 
-/// An amplitude or a threshold in g: three significant digits.
+/// An amplitude as its slider shows it.
+pub fn as_set(amplitude: f64) -> String {
+    shown(amplitude, 2)
+}
+
+/// A threshold in g: three significant digits.
 pub fn grams(g: f64) -> String {
     significant(g, 3)
 }

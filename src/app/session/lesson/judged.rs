@@ -16,6 +16,7 @@ use crate::study::{Subject, Task, Unjudged, goal_lack, options_that_hold};
 /// A step of a lesson, and the scene that is judged in it.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Judged {
+    #[serde(with = "crate::app::task::as_text")]
     lesson: Lesson,
     number: usize,
     /// The scene with which the step begins.
@@ -75,6 +76,7 @@ impl Question for OptionsQuestion {
 /// What a run of the scene says about a task.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct GoalQuestion {
+    #[serde(with = "crate::app::task::as_text")]
     pub(super) scene: Scene,
     pub(super) judged: Uncompared<Judged>,
 }

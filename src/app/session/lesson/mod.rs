@@ -249,12 +249,17 @@ impl OpenLesson {
         Turn::Show(Box::new(self.document.end(self.progress.step).clone()), true)
     }
 
-    /// Goes on even if a task is not done, but neither past a covered prediction nor past the last step.
+    /// Goes on, but neither past a covered prediction nor past the last step. A task that is not done is shown
+    /// solved, since the step after it speaks of that.
     pub fn go_on(&mut self) -> Turn {
         if self.is_covering() || self.is_last() {
             return Turn::Stay;
         }
-        self.enter(self.progress.step + 1)
+        let is_skipped = !self.may_go_on();
+        match self.enter(self.progress.step + 1) {
+            Turn::Same if is_skipped => Turn::Show(Box::new(self.preceding_scene()), true),
+            turn => turn,
+        }
     }
 
     pub fn go_back(&mut self) -> Turn {
@@ -316,13 +321,12 @@ impl OpenLesson {
     }
 
     /// The scene to show in a step that only tells or explains something: that of the last prediction with
-    /// its answer, or of the last task, solved if it was done.
+    /// its answer, or of the last task, solved.
     fn preceding_scene(&self) -> Document {
         let step = self.progress.step;
         for number in (0..step).rev() {
             match &self.lesson().steps[number] {
                 Step::Say(_) | Step::Explain(_) => {}
-                Step::Do { .. } if !self.is_settled(number) => return self.document.begin(number).clone(),
                 Step::Predict { .. } | Step::Do { .. } => return self.document.end(number).clone(),
             }
         }

@@ -38,6 +38,7 @@ pub struct MapQuestion {
     /// The scene, with the first value of each axis.
     pub scene: SceneWithFiles,
     /// Across and up.
+    #[serde(with = "crate::app::task::as_text")]
     pub axes: [SweepAxis; 2],
     /// The column for which the runs keep an energy ledger, if they do.
     pub ledger: Option<&'static SummaryField>,
@@ -81,6 +82,16 @@ impl Question for CellsQuestion {
             }
         }
         None
+    }
+
+    #[cfg(any(test, target_arch = "wasm32"))]
+    fn divide(&self, count: usize) -> Vec<Self> {
+        let part = |first: usize| {
+            let levels = self.missing.0.iter();
+            let missing = levels.map(|cells| cells.iter().skip(first).step_by(count).copied().collect());
+            Self { missing: Uncompared(missing.collect()), ..self.clone() }
+        };
+        (0..count).map(part).collect()
     }
 }
 

@@ -4,9 +4,9 @@ use crate::dynamics::{First, Firsts, Model, Outcome, Place, Regime, STANDARD_GRA
 use crate::scene::{Excitation, Scene, Stops};
 use crate::study::Thresholds;
 
-use super::super::numbers::{between, grams, length_beside, limit_mm, power, seconds, speed, times};
+use super::super::numbers::{as_set, between, grams, length_beside, limit_mm, power, seconds, speed, times};
 use super::super::wells::wells_between;
-use super::remedy::{amplitude, remedy};
+use super::remedy::{amplitude, in_unit, remedy};
 use super::{Kind, Sentence, ended};
 
 /// Forcing periods of a motion that have to be drawn before it is described in the present tense.
@@ -137,7 +137,7 @@ pub fn driven(facts: &DrivenMotion) -> Sentence {
         }
         Regime::Rest if scene.stops == Stops::None => format!("Resting: {stays} where it is{from}."),
         Regime::Rest => {
-            let push = amplitude(scene).map_or_else(|| "this".to_owned(), |g| format!("{} g", grams(g)));
+            let push = amplitude(scene).map_or_else(|| "this".to_owned(), |g| in_unit(scene, as_set, g));
             let frees = facts.tense("never frees it", "will never free it");
             format!("Resting: {stays} pressed on the {side} stop{from}; {push} {frees}.")
         }

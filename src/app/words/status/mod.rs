@@ -12,7 +12,7 @@ use crate::study::{Standing, ended_remedy, standing};
 
 pub use super::kind::Kind;
 use super::numbers::{energy, length_beside, newtons};
-pub use super::numbers::{grams, mm_beside, seconds, speed};
+pub use super::numbers::{as_set, mm_beside, seconds, speed};
 use super::wells::well_name;
 pub use driven::{DrivenMotion, driven};
 pub use remedy::{threshold, ways};

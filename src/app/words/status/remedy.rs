@@ -1,6 +1,6 @@
 //! Sentences about what it would take to cross, and how much amplitude there is to spare.
 
-use crate::dynamics::{Regime, Summary};
+use crate::dynamics::{Regime, STANDARD_GRAVITY, Summary};
 use crate::scene::{Scene, Stops};
 use crate::study::{Found, Thresholds};
 
@@ -12,13 +12,23 @@ pub(super) fn amplitude(scene: &Scene) -> Option<f64> {
     Some(scene.harmonic()?.amplitude_g().abs())
 }
 
+/// An amplitude in g, written by `form` in the unit of the drive's field, with that unit.
+pub(super) fn in_unit(scene: &Scene, form: fn(f64) -> String, g: f64) -> String {
+    let drive = scene.harmonic();
+    let (of_one, unit) =
+        drive.map_or((1.0, "g"), |drive| (drive.amplitude_of(STANDARD_GRAVITY), drive.unit()));
+    format!("{} {unit}", form(g * of_one))
+}
+
 /// Gaps that end below this multiple of the least amplitude that crosses are not mentioned.
 const NARROW: f64 = 1.03;
 
 /// The clause that says how far gaps reach above the least amplitude that crosses; empty without gaps.
-fn gaps(found: &Thresholds, from: f64) -> String {
+fn gaps(scene: &Scene, found: &Thresholds, from: f64) -> String {
     match found.crossing.without_gap {
-        Some(whole) if whole > NARROW * from => format!(", with gaps up to {} g", grams(whole)),
+        Some(whole) if whole > NARROW * from => {
+            format!(", with gaps up to {}", in_unit(scene, grams, whole))
+        }
         None => ", with gaps above it".to_owned(),
         Some(_) => String::new(),
     }
@@ -42,26 +52,27 @@ pub(super) fn remedy(scene: &Scene, summary: &Summary, found: &Thresholds) -> St
     }
     let crosses = summary.crossings > 0;
     let Some(from) = found.crossing.value else {
-        let limit = grams(found.searched_to);
+        let limit = in_unit(scene, grams, found.searched_to);
         return match crosses {
             true => String::new(),
             false if found.crossing.undecided => {
-                format!("From rest no shaking up to {limit} g was seen to cross.")
+                format!("From rest no shaking up to {limit} was seen to cross.")
             }
-            false => format!("From rest no shaking up to {limit} g crosses."),
+            false => format!("From rest no shaking up to {limit} crosses."),
         };
     };
     let about = about(&found.crossing);
-    let (least, gaps) = (format!("{about}{}", grams(from)), gaps(found, from));
+    let (least, gaps) = (format!("{about}{}", in_unit(scene, grams, from)), gaps(scene, found, from));
+    let apart = |g: f64| in_unit(scene, grams_apart, g);
     let text = match (crosses, g >= from) {
-        (true, true) => format!("{about}{} g to spare: crosses from {least} g{gaps}.", grams_apart(g - from)),
-        (true, false) => format!("From rest it takes {least} g to cross{gaps}."),
-        (false, true) => format!("From rest it crosses from {least} g{gaps}."),
+        (true, true) => format!("{about}{} to spare: crosses from {least}{gaps}.", apart(g - from)),
+        (true, false) => format!("From rest it takes {least} to cross{gaps}."),
+        (false, true) => format!("From rest it crosses from {least}{gaps}."),
         (false, false) => match found.frees_at.filter(|frees| *frees > g) {
-            Some(frees) => format!("Frees at {} g, crosses from {least} g{gaps}.", grams_up(frees)),
-            None => {
-                format!("{about}{} g short of crossing at {least} g{gaps}.", grams_apart(from - g))
+            Some(frees) => {
+                format!("Frees at {}, crosses from {least}{gaps}.", in_unit(scene, grams_up, frees))
             }
+            None => format!("{about}{} short of crossing at {least}{gaps}.", apart(from - g)),
         },
     };
     capital(&text)
@@ -83,15 +94,15 @@ pub fn ways(scene: &Scene, settled: &Summary, thresholds: &Thresholds, stops_mm:
         Regime::Rest | Regime::Intrawell => {
             let more = thresholds.crossing.value.filter(|from| *from > g);
             let about = about(&thresholds.crossing);
-            let more = more.map(|from| format!("with {about}{} g more", grams_apart(from - g)));
+            let more = more.map(|from| format!("with {about}{} more", in_unit(scene, grams_apart, from - g)));
             let make = if thresholds.crossing.undecided { "were seen to make" } else { "make" };
             match (more, stops) {
                 (Some(more), Some(stops)) => format!("Crosses {more}, or {stops}."),
                 (Some(more), None) => format!("Crosses {more}; no stops alone would do it."),
                 (None, Some(stops)) => format!("Crosses {stops}."),
                 (None, None) => format!(
-                    "From rest neither shaking up to {} g nor any stops {make} it cross.",
-                    grams(thresholds.searched_to)
+                    "From rest neither shaking up to {} nor any stops {make} it cross.",
+                    in_unit(scene, grams, thresholds.searched_to)
                 ),
             }
         }
@@ -111,7 +122,7 @@ mod tests {
     use super::*;
     use crate::dynamics::{Model, Request};
     use crate::mechanics::Mechanism;
-    use crate::scene::Document;
+    use crate::scene::{Document, Excitation};
 
     #[test]
     fn what_is_not_known_is_said_to_be_about_or_as_far_as_seen() {
@@ -124,6 +135,18 @@ mod tests {
             let found = Thresholds { frees_at: None, crossing, searched_to: 30.0 };
             [remedy(&scene, &settled, &found), ways(&scene, &settled, &found, None)]
         };
+        // 15.2 g of mass, pushed with as much as the base would
+        let mut pushed = scene.clone();
+        pushed.excitation = Excitation::Force {
+            amplitude_n: 0.9 * 9.80665 * 0.0152,
+            frequency_rad_per_s: 6.0 * std::f64::consts::PI,
+            phase_deg: 0.0,
+        };
+        let crossing = Found { value: Some(1.2), ..Found::default() };
+        let found = Thresholds { frees_at: None, crossing, searched_to: 30.0 };
+        let (short, more) = (remedy(&pushed, &settled, &found), ways(&pushed, &settled, &found, None));
+        assert_eq!(short, "0.045 N short of crossing at 0.179 N, with gaps above it.");
+        assert_eq!(more, "Crosses with 0.045 N more; no stops alone would do it.");
         let short = "0.30 g short of crossing at 1.20 g.";
         let more = "Crosses with 0.30 g more; no stops alone would do it.";
         assert_eq!(said(Some(1.2), false), [short, more]);

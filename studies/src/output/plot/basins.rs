@@ -41,11 +41,11 @@ pub fn basins_chart(basins: &Basins, answer: &Answer) -> Chart {
     let (room, source) = (basins.room(), source_row(basins));
     let is_outside = |x_mm: f64| x_mm / 1e3 < room.0 || x_mm / 1e3 > room.1;
     let found = |row: usize| answer.rows[source(row)].map(|found| found.0 as usize - 1);
-    let names = names(basins, answer);
+    let (names, roles) = (names(basins, answer), roles(answer));
     let missing = "none found";
     match starts.axes() {
         Some((x_mm, v)) => {
-            let kinds = (0..answer.attractors.len()).map(|place| (Role::Kind(place), names[place].clone()));
+            let kinds = roles.iter().copied().zip(names.iter().cloned());
             let cell = |row: usize| match found(row) {
                 Some(place) => Cell::Value(place as f64),
                 None if is_outside(x_mm[row / v.len()]) => Cell::Blank,
@@ -68,7 +68,7 @@ pub fn basins_chart(basins: &Basins, answer: &Answer) -> Chart {
                     clouds[found(row).unwrap_or(names.len())].push((x_mm, v * scale));
                 }
             }
-            let roles = (0..names.len()).map(Role::Kind).chain([Role::Missing]);
+            let roles = roles.iter().copied().chain([Role::Missing]);
             let words = names.iter().map(String::as_str).chain([missing]);
             for ((role, name), cloud) in roles.zip(words).zip(clouds) {
                 if !cloud.is_empty() {
@@ -83,9 +83,9 @@ pub fn basins_chart(basins: &Basins, answer: &Answer) -> Chart {
     }
     let (left, right) = basins.model().stop_positions();
     panel.upright_stops((left.map_or(f64::NAN, |x| x * 1e3), right.map_or(f64::NAN, |x| x * 1e3)));
-    for (place, attractor) in answer.attractors.iter().enumerate() {
+    for (role, attractor) in roles.iter().zip(&answer.attractors) {
         let states = attractor.states.iter().map(|(x, v)| (1e3 * x, v * scale)).collect();
-        panel.draw(Role::Kind(place), Marks::Points(states));
+        panel.draw(*role, Marks::Points(states));
     }
     Chart::stack(vec![panel], about(basins, answer), drawn(basins, answer))
 }
@@ -113,6 +113,14 @@ fn source_row(basins: &Basins) -> impl Fn(usize) -> usize {
     move |row| {
         if basins.is_whole() || done == 0 { row } else { levels.stand_in(row as u64, done - 1) as usize }
     }
+}
+
+/// The roles of the attractors, by what each is: the number of an attractor can change with every start that is
+/// added, its colour does not.
+fn roles(answer: &Answer) -> Vec<Role> {
+    let words = answer.words();
+    let rank = |word: &String| words.iter().filter(|other| *other < word).count();
+    words.iter().map(|word| Role::Kind(rank(word))).collect()
 }
 
 /// The names of the attractors with their shares; if there are many, only those with the largest shares have

@@ -94,10 +94,6 @@ pub enum Marks {
     Trace(Vec<Point>),
     /// A marker at each point.
     Points(Vec<Point>),
-    /// Markers of regimes by their words; close markers on a line are left out. No picture with them is ever
-    /// written as data.
-    #[serde(skip)]
-    Regimes(Vec<(Point, &'static str)>, bool),
     /// Small markers, whose size decreases with their number.
     Cloud(Vec<Point>),
     /// Small markers, each in the colour of its value.
@@ -128,6 +124,10 @@ pub enum Marks {
     Surface(Cells, PlotAxis),
     /// Only an entry of the legend.
     Patch,
+    /// Markers of regimes by their words; close markers on a line are left out. No picture with them is ever
+    /// written as data, so that it is the last: a message counts the others.
+    #[serde(skip)]
+    Regimes(Vec<(Point, &'static str)>, bool),
 }
 
 impl Chart {
