@@ -11,9 +11,7 @@ use interwell::system::threads::Pool;
 
 use super::progress::duration;
 use super::support::{Watch, counted, load, mechanism, numbers, outputs, pool, warn};
-use super::{
-    Common, Failure, Output, Outputs, Picture, PlotOptions, caption, interrupt, refuse, say, with_bar,
-};
+use super::{Common, Failure, Output, Outputs, Picture, PlotOptions, interrupt, refuse, say, with_bar};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -84,9 +82,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let answer = answer(&mut basins, &pool, common).ok_or_else(Failure::interrupted)?;
     write_rows(&mut outputs, &basins, &answer, &pool)?;
     outputs.table(Output::ATTRACTORS, &answer.attractors_table())?;
-    if let Some(picture) = picture {
-        picture.write(&mut outputs, &basins_chart(&basins, &answer), &caption(&document))?;
-    }
+    outputs.draw(picture, &document, |_| Ok(basins_chart(&basins, &answer)))?;
     outputs.manifest(Some(&document), pool.count(), |manifest| Ok(manifest.of_basins(&basins, &answer)))?;
     let watch = outputs.watch;
     outputs.finish()?;

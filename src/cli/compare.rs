@@ -3,7 +3,7 @@
 use clap::Args;
 use interwell::dynamics::Regime;
 use interwell::numeric::short;
-use interwell::output::{ComparisonPicture, comparison_chart};
+use interwell::output::comparison_chart;
 use interwell::questions::{in_environment, needs_a_sine};
 use interwell::scene::{Document, RunSettings, Stops, Transducer};
 use interwell::study::{Alternative, Rated, alternatives, comparison_parts, comparison_table};
@@ -88,8 +88,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         let mut caption = caption(&environment);
         let (count, amplitude, frequency) = (rated.len(), short(amplitude_g), short(frequency_hz));
         caption.title = format!("{count} scenes under a sine of {amplitude} g at {frequency} Hz");
-        let shown = ComparisonPicture { rated: &rated, frequency_hz };
-        picture.write(&mut outputs, &comparison_chart(&shown), &caption)?;
+        picture.write(&mut outputs, &comparison_chart(&rated, frequency_hz), &caption)?;
     }
     let first = documents.first().map(|(_, document)| document);
     outputs.manifest(first, pool.count(), |manifest| Ok(manifest.of_scenes(&documents)))?;

@@ -17,7 +17,7 @@ use interwell::study::{
 
 use super::measured::MeasuredForceOptions;
 use super::support::{inputs, load_with_mechanism, model, number, numbers, range};
-use super::{ChartOptions, Common, Failure, Output, Outputs, Picture, caption, interrupt, refuse, whole};
+use super::{ChartOptions, Common, Failure, Output, Outputs, Picture, interrupt, refuse, whole};
 
 #[derive(Debug, Args)]
 pub struct Arguments {
@@ -155,38 +155,33 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     };
     outputs.table(Output::DATA, &table)?;
     outputs.write(Output::LANDSCAPE, landscape(&mechanism, document.scene.mass_g / 1e3))?;
-    if let Some(picture) = picture {
-        // The picture shows the whole curve, even if few positions were requested.
-        let chart = match &measured {
-            Some(found) => {
-                let over = even_positions(extent(found.positions.iter().copied()), CURVE_PICTURE_POINTS);
-                measured_force_chart(found, &curve(&mechanism, over)?, picture.ranges)
-            }
-            None => {
-                let table = curve(&mechanism, even(CURVE_PICTURE_POINTS))?;
-                let stops = stop_positions(&document.scene);
-                curve_chart(&table, &mechanism, stops, picture.ranges)
-            }
-        };
-        picture.write(&mut outputs, &chart, &caption(&document))?;
-    }
+    // The picture shows the whole curve, even if few positions were requested.
+    let stops = stop_positions(&document.scene);
+    outputs.draw(picture, &document, |ranges| match &measured {
+        Some(found) => {
+            let over = even_positions(extent(found.positions.iter().copied()), CURVE_PICTURE_POINTS);
+            Ok(measured_force_chart(found, &curve(&mechanism, over)?, ranges))
+        }
+        None => {
+            let table = curve(&mechanism, even(CURVE_PICTURE_POINTS))?;
+            Ok(curve_chart(&table, &mechanism, stops, ranges))
+        }
+    })?;
     if outputs.has(Output::SHAPES) {
         let drawn = solved(&mechanism, &positions(SHAPES), &document.name, "--shapes")?;
         outputs.table(Output::SHAPES, &shapes(&drawn))?;
     }
-    if let Some(picture) = shapes_picture {
+    outputs.draw(shapes_picture, &document, |_| {
         let is_named = listed.is_some() || options.points.is_some() || range.is_some();
         let equilibria = || mechanism.landscape.equilibria.iter().map(|equilibrium| equilibrium.x).collect();
         let at = if is_named { positions(SHAPES) } else { equilibria() };
         let drawn = solved(&mechanism, &at, &document.name, "--shapes-plot")?;
-        let chart = shapes_chart(&drawn, &mechanism, stop_positions(&document.scene));
-        picture.write(&mut outputs, &chart, &caption(&document))?;
-    }
+        Ok(shapes_chart(&drawn, &mechanism, stops))
+    })?;
     if let Some((table, model)) = &contacts {
         outputs.table(Output::CONTACT, table)?;
-        if let Some((picture, stop)) = contact_picture.zip(model.compliant()) {
-            let chart = contact_chart(table, &stop, model.mass());
-            picture.write(&mut outputs, &chart, &caption(&document))?;
+        if let Some(stop) = model.compliant() {
+            outputs.draw(contact_picture, &document, |_| Ok(contact_chart(table, &stop, model.mass())))?;
         }
     }
     outputs.finish_rows(&document, 1)

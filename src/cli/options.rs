@@ -289,13 +289,8 @@ pub struct PlotOptions {
 
     /// With a picture: its width on paper in mm, such as 85 for a column; it is laid out for that width, with
     /// text of --font-pt
-    #[arg(
-        long,
-        value_name = "MM",
-        allow_hyphen_values = true,
-        requires = "picture",
-        conflicts_with = "plot_size"
-    )]
+    #[arg(long, value_name = "MM", allow_hyphen_values = true)]
+    #[arg(requires = "picture", conflicts_with = "plot_size")]
     pub plot_width_mm: Option<String>,
 
     /// With --plot-width-mm: its height in mm [default: what its kind needs, about 5/8 of the width]
@@ -303,13 +298,8 @@ pub struct PlotOptions {
     pub plot_height_mm: Option<String>,
 
     /// With --plot-width-mm: the size in points of numbers and legends; labels of axes are a tenth larger
-    #[arg(
-        long,
-        value_name = "PT",
-        allow_hyphen_values = true,
-        requires = "plot_width_mm",
-        default_value = "8"
-    )]
+    #[arg(long, value_name = "PT", allow_hyphen_values = true, default_value = "8")]
+    #[arg(requires = "plot_width_mm")]
     pub font_pt: String,
 
     /// With --plot-width-mm and a PNG: pixels an inch [default: 300]
@@ -332,13 +322,8 @@ pub struct ChartOptions {
     pub plot: PlotOptions,
 
     /// With --plot: range of the axis to the right in its unit; of a run the times in s
-    #[arg(
-        long,
-        value_name = "A:B",
-        visible_alias = "plot-time",
-        allow_hyphen_values = true,
-        requires = "plot"
-    )]
+    #[arg(long, value_name = "A:B", visible_alias = "plot-time", allow_hyphen_values = true)]
+    #[arg(requires = "plot")]
     pub plot_x: Option<String>,
 
     /// With --plot: range of the first axis upward in its unit, such as -2:2 for the displacement of a run in

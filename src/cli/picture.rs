@@ -98,6 +98,17 @@ impl Outputs {
         let Some(picture) = picture else { return Ok(self) };
         self.with(picture.output, Some(picture.path))?.with(Output::PLOT_DATA, picture.data)
     }
+
+    /// Draws a picture of this scene, where it is requested: the chart over the ranges of its axes.
+    pub fn draw(
+        &mut self,
+        picture: Option<Picture>,
+        document: &Document,
+        chart: impl FnOnce(Ranges) -> Result<Chart, Failure>,
+    ) -> Result<(), Failure> {
+        let Some(picture) = picture else { return Ok(()) };
+        picture.write(self, &chart(picture.ranges)?, &caption(document))
+    }
 }
 
 fn sheet(options: &PlotOptions, format: Format) -> Result<Option<Sheet>, Failure> {

@@ -7,7 +7,7 @@ use interwell::questions::{Progress, Spectrum};
 use interwell::study::Signal;
 
 use super::support::{is_positive, load_simulation, number, outputs, waits};
-use super::{ChartOptions, Common, Failure, Output, Picture, caption, interrupt, refuse};
+use super::{ChartOptions, Common, Failure, Output, Picture, interrupt, refuse};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -77,14 +77,8 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let mut outputs = outputs(&options.scene, document, common)?.with_picture(picture)?;
     let found = question.run(&simulation, &Progress::none().stopped_by(interrupt::listen()))?;
     outputs.table(Output::DATA, &found.table)?;
-    if let Some(picture) = picture {
-        let quantity = match options.quantity.as_str() {
-            "psd" => SpectrumQuantity::Density,
-            _ => SpectrumQuantity::Amplitude,
-        };
-        let chart = spectrum_chart(&found, quantity, picture.ranges);
-        picture.write(&mut outputs, &chart, &caption(document))?;
-    }
+    let quantity = SpectrumQuantity::named(&options.quantity).unwrap_or(SpectrumQuantity::Amplitude);
+    outputs.draw(picture, document, |ranges| Ok(spectrum_chart(&found, quantity, ranges)))?;
     outputs.finish_rows(document, 1)?;
     common.say(&format!("{}: {}", document.name, found.describe()));
     Ok(())

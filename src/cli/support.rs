@@ -8,6 +8,7 @@ use interwell::mechanics::Mechanism;
 use interwell::output::{Provenance, is_regular};
 use interwell::questions::{Error, Simulation, check_until_settled};
 use interwell::scene::{Document, SceneError, read_number};
+use interwell::study::Grid;
 use interwell::system::clock::{ProcessClock, WallClock};
 use interwell::system::threads::{Pool, processors};
 
@@ -57,6 +58,19 @@ pub fn load(
     let mut document = read(spec, common)?;
     let warnings = check(&mut document, over)?;
     Ok((document, warnings))
+}
+
+/// Loads the scene with its grid: of the fields of `--over`, or of the scene alone without those, where the
+/// sweep in the scene is ignored.
+pub fn load_over(
+    spec: &str,
+    over: &[String],
+    common: &Common,
+) -> Result<(Document, Vec<String>, Grid), Failure> {
+    let is_one = over.is_empty();
+    let (document, warnings) = load(spec, common, (!is_one).then_some(over))?;
+    let grid = if is_one { Grid::of_one() } else { Grid::new(document.axes(over)?)? };
+    Ok((document, warnings, grid))
 }
 
 /// Checks a document that was read; returns its warnings.
@@ -112,6 +126,18 @@ pub fn mechanism(document: &Document) -> Result<Arc<Mechanism>, Failure> {
 pub fn model(document: &Document, mechanism: &Arc<Mechanism>) -> Result<Model, Failure> {
     let model = Model::build(&document.scene, Arc::clone(mechanism));
     model.map_err(|faults| document.error_from(faults).into())
+}
+
+/// The mechanism of all cells of a grid, `None` if they have different ones; prints the warnings.
+pub fn mechanism_of_all(
+    document: &Document,
+    grid: &Grid,
+    common: &Common,
+    warnings: &[String],
+) -> Result<Option<Arc<Mechanism>>, Failure> {
+    let mechanism = (!grid.changes_mechanism()).then(|| mechanism(document)).transpose()?;
+    warn(document, common, warnings, mechanism.as_deref());
+    Ok(mechanism)
 }
 
 /// Loads the scene and its mechanism and prints the warnings of both.

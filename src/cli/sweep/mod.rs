@@ -4,13 +4,13 @@ mod dry_run;
 mod prepared;
 mod rows;
 
-use interwell::output::{Chart, Made, Overlay, SweepPicture, header, is_regular, rows, sweep_chart};
+use interwell::output::{Chart, Made, Overlay, Ranges, SweepPicture, header, is_regular, rows, sweep_chart};
 use interwell::scene::Document;
 use interwell::study::{SweepOptions, Table, Tally};
 
 use super::grid_job::GridJob;
 use super::support::{counted, inputs, pool};
-use super::{Common, Failure, Output, Outputs, Picture, refuse};
+use super::{Common, Failure, Output, Outputs, refuse};
 pub use prepared::Arguments;
 use prepared::Prepared;
 use rows::{Compared, Rows};
@@ -44,13 +44,15 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         file.end()?;
         common.say(&format!("{}: all {} rows are the same", prepared.data.display(), all.cells));
     }
-    let chart = |rows: &Table, picture: &Picture| prepared.chart(rows, picture);
-    let wall_s = job.finish(chart, |manifest| {
-        let sha256 = rows_out.close()?;
-        let (shard, mechanisms) = (slice.shard(), sweep.mechanisms());
-        let made = Made { plan, shard, sha256: &sha256, mechanisms };
-        Ok(manifest.of_rows(sweep.grid(), &all, Some(made)))
-    })?;
+    let wall_s = job.finish(
+        |rows, ranges| prepared.chart(rows, ranges),
+        |manifest| {
+            let sha256 = rows_out.close()?;
+            let (shard, mechanisms) = (slice.shard(), sweep.mechanisms());
+            let made = Made { plan, shard, sha256: &sha256, mechanisms };
+            Ok(manifest.of_rows(sweep.grid(), &all, Some(made)))
+        },
+    )?;
     // The rows get their name last: until then --resume can continue them.
     rows_out.finish()?;
     // If there are fewer, the reader of a pipe has gone.
@@ -95,7 +97,7 @@ impl Prepared<'_> {
         Ok(())
     }
 
-    fn chart(&self, rows: &Table, picture: &Picture) -> Result<Chart, Failure> {
+    fn chart(&self, rows: &Table, ranges: Ranges) -> Result<Chart, Failure> {
         let (grid, scene) = (self.sweep.grid(), &self.document.scene);
         let &SweepOptions { until_settled, carry, ref draws, .. } = self.sweep.options();
         // The overlay holds for runs from rest only.
@@ -103,8 +105,7 @@ impl Prepared<'_> {
             Some(_) => Overlay::default(),
             None => Overlay::of(scene, self.mechanism.as_deref(), grid, rows),
         };
-        let (quantity, view, ranges) = (self.quantity, self.view.clone(), picture.ranges);
-        let draws = &*draws.about();
+        let (quantity, view, draws) = (self.quantity, self.view.clone(), &*draws.about());
         let shown = SweepPicture { rows, grid, scene, until_settled, quantity, overlay, view, ranges, draws };
         Ok(sweep_chart(&shown)?)
     }

@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::font;
+use super::style::TICK;
 use crate::numeric::round::{ONE_TWO_FIVE, decade, round_up};
 use crate::numeric::{elementary, extent};
 
@@ -187,6 +189,11 @@ impl PlotAxis {
         let powers = powers.filter(|power| power.rem_euclid(every) == 0);
         let ticks = powers.map(|power| (f64::from(power), format!("10{}", superscript(power)))).collect();
         Self { scale: Scale::Decades, ..Self::given(low, high, ticks, label) }
+    }
+
+    /// Width of the widest of its numbers on the canvas.
+    pub(super) fn widest_number(&self) -> f64 {
+        self.ticks.iter().map(|tick| font::width(&tick.1, TICK, false)).fold(0.0, f64::max)
     }
 
     /// Position of `value` between the ends: 0 at the lower, 1 at the upper end.

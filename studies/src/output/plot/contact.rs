@@ -2,7 +2,7 @@
 
 use super::axis::PlotAxis;
 use super::chart::{Chart, Marks, Panel};
-use super::drawn::Drawn;
+use super::drawn::of_rows;
 use super::figure::Point;
 use super::role::Role;
 use crate::mechanics::Hertz;
@@ -27,10 +27,6 @@ pub fn contact_chart(table: &Table, stop: &Hertz, mass: f64) -> Chart {
         panel.layer(Role::UnstableMotion, name, Marks::Verticals(vec![speed]));
     }
     let names = ["speed_m_per_s", "restitution", "rigid_restitution"];
-    let mut drawn = Drawn::new(names, &[]);
-    for row in 0..speeds.len() {
-        drawn.put("contact", &names.map(|name| column(name)[row]), &[]);
-    }
     let about = format!(
         "one contact alone: {} N/m^1.5, loss {} s/m; {} ms at {} m/s",
         short(stop.stiffness),
@@ -38,5 +34,5 @@ pub fn contact_chart(table: &Table, stop: &Hertz, mass: f64) -> Chart {
         short(stop.contact_time(mass, 0.5 * top) * 1e3),
         short(0.5 * top)
     );
-    Chart::stack(vec![panel], about, drawn.table())
+    Chart::stack(vec![panel], about, of_rows("contact", table, &names, |_| true))
 }

@@ -37,9 +37,7 @@ pub fn curve_chart(table: &Table, mechanism: &Mechanism, stops: (f64, f64), rang
     let mut lower = curve_panel((across.clone(), below), landscape, stops_mm, ("", of_potential), energy);
     lower.equilibria(landscape, |equilibrium| curve.potential(equilibrium.x) * potential);
     let mut words = subtitle(landscape);
-    if let Some(wall) = wall(column("x_m"), column("force_n"), &upper, force) {
-        words += &wall;
-    }
+    words.extend(wall(column("x_m"), column("force_n"), &upper, force));
     Chart::stack(vec![upper, lower], words, drawn(table, mechanism, stops, inside))
 }
 
@@ -72,10 +70,8 @@ fn curve_panel(
     panel.upright_stops(stops);
     panel.layers.extend(Layer::curve(name, points, stops, &value));
     let kinks = landscape.kinks.iter().map(|kink| (kink.x * 1e3, value(kink.x * 1e3)));
-    let kinks: Vec<Point> = kinks.filter(|kink| panel.x.contains(kink.0)).collect();
-    if !kinks.is_empty() {
-        panel.layer(Role::Kink, "kink of the force", Marks::Points(kinks));
-    }
+    let kinks = kinks.filter(|kink| panel.x.contains(kink.0)).collect();
+    panel.layer_if_any(Role::Kink, "kink of the force", Marks::Points(kinks));
     panel
 }
 
@@ -99,22 +95,15 @@ fn drawn(table: &Table, mechanism: &Mechanism, stops: (f64, f64), inside: impl F
 }
 
 fn subtitle(landscape: &Landscape) -> String {
-    let mut parts = Vec::new();
-    if let Some(barrier) = landscape.barrier {
-        let wells = (short(barrier.left_well * 1e3), short(barrier.right_well * 1e3));
-        parts.push(format!("wells at {} and {} mm", wells.0.replace('-', "\u{2212}"), wells.1));
-        let (left, right) = (short(barrier.from_left_j * 1e3), short(barrier.from_right_j * 1e3));
-        parts.push(if left == right {
-            format!("barrier of {left} mJ")
-        } else {
-            format!("barrier of {left} mJ from the left, {right} mJ from the right")
-        });
-    } else if landscape.equilibria.is_empty() {
-        parts.push("no equilibrium".to_owned());
-    } else {
-        parts.push("one well".to_owned());
+    let Some(barrier) = landscape.barrier else {
+        return if landscape.equilibria.is_empty() { "no equilibrium" } else { "one well" }.to_owned();
+    };
+    let left = short(barrier.left_well * 1e3).replace('-', "\u{2212}");
+    let wells = format!("wells at {left} and {} mm", short(barrier.right_well * 1e3));
+    match [barrier.from_left_j, barrier.from_right_j].map(|height| short(height * 1e3)) {
+        [left, right] if left == right => format!("{wells}, barrier of {left} mJ"),
+        [left, right] => format!("{wells}, barrier of {left} mJ from the left, {right} mJ from the right"),
     }
-    parts.join(", ")
 }
 
 /// A note on forces beyond the vertical axis at positions in the range: how large they become, and where.

@@ -41,6 +41,21 @@ impl Drawn {
     }
 }
 
+/// One series: these columns of numbers or counts, in the rows that are `shown`.
+pub(super) fn of_rows(
+    series: &'static str,
+    rows: &Table,
+    names: &[&str],
+    shown: impl Fn(usize) -> bool,
+) -> Table {
+    let kept: Vec<usize> = (0..rows.rows()).filter(|row| shown(*row)).collect();
+    let table = Table::new().with("series", Values::Words(vec![series; kept.len()]));
+    names.iter().fold(table, |table, name| {
+        let values = rows.column(name).and_then(as_numbers).unwrap_or_default();
+        table.with(*name, kept.iter().map(|row| values[*row]).collect())
+    })
+}
+
 /// The values of a column of numbers or counts; none of words.
 pub(super) fn as_numbers(column: &Column) -> Option<Vec<f64>> {
     match &column.values {

@@ -3,7 +3,7 @@
 
 use super::axis::PlotAxis;
 use super::cells::Cells;
-use super::chart::{Chart, Layer, Marks, Panel};
+use super::chart::{Chart, Column, Layer, Marks, Panel};
 use super::figure::{Align, Area, Figure, Text};
 use super::font;
 use super::frame::Frame;
@@ -65,6 +65,7 @@ pub struct Slot<'a> {
 }
 
 /// A column of slots, with the width of its frames and the room beside them.
+#[derive(Default)]
 struct Stack<'a> {
     slots: Vec<Slot<'a>>,
     share: f64,
@@ -95,11 +96,10 @@ pub struct Grid<'a> {
 impl<'a> Grid<'a> {
     /// The panels of a chart; on a narrow canvas all in one column.
     pub fn new(chart: &'a Chart, narrow: bool) -> Self {
+        let of_column = |column: &'a Column| (column.width, column.panels.iter().collect());
         let columns: Vec<(f64, Vec<&Panel>)> = match narrow {
             true => vec![(1.0, chart.panels().collect())],
-            false => {
-                chart.columns.iter().map(|column| (column.width, column.panels.iter().collect())).collect()
-            }
+            false => chart.columns.iter().map(of_column).collect(),
         };
         let total: f64 = columns.iter().map(|column| column.0).sum();
         let mut stacks: Vec<Stack> = Vec::new();
@@ -125,14 +125,7 @@ impl<'a> Grid<'a> {
                 }
             };
             let slots = panels.iter().enumerate().map(slot).collect();
-            stacks.push(Stack {
-                slots,
-                share: share / total,
-                left: 0.0,
-                right: 0.0,
-                width: 0.0,
-                unit: USUAL,
-            });
+            stacks.push(Stack { slots, share: share / total, unit: USUAL, ..Stack::default() });
         }
         let aligned = stacks.iter().flat_map(|stack| &stack.slots).any(|slot| !slot.shows_y);
         Self { stacks, aligned, begin: 0.0 }
@@ -206,10 +199,6 @@ impl<'a> Grid<'a> {
     }
 }
 
-fn widest(axis: &PlotAxis) -> f64 {
-    axis.ticks.iter().map(|tick| font::width(&tick.1, style::TICK, false)).fold(0.0, f64::max)
-}
-
 /// Smallest relative size at which a label is kept in one line.
 const ONE_LINE: f64 = 0.85;
 
@@ -251,7 +240,7 @@ impl Stack<'_> {
             let count = (height / TICK_ROOM.0).round().clamp(2.0, 8.0) as usize;
             slot.y = slot.panel.y.with_ticks(count);
             if slot.shows_y && slot.panel.surface().is_none() {
-                numbers = numbers.max(widest(&slot.y).min(most));
+                numbers = numbers.max(slot.y.widest_number().min(most));
             }
             slot.bar = slot.panel.bar.as_ref().map(|axis| axis.with_ticks(count));
             let count = (self.width / TICK_ROOM.1).round().clamp(2.0, 9.0) as usize;
@@ -263,7 +252,7 @@ impl Stack<'_> {
             if let Some(axis) = &slot.bar {
                 slot.bar_label = Label::new(axis, along);
                 let label = slot.bar_label.across(LABEL_WIDTH);
-                let right = BAR.0 + BAR.1 + TO_NUMBERS + widest(axis) + TO_LABEL + label;
+                let right = BAR.0 + BAR.1 + TO_NUMBERS + axis.widest_number() + TO_LABEL + label;
                 self.right = self.right.max(right);
             }
             // half of the first and of the last number may stand beside the frame
@@ -382,9 +371,8 @@ impl Slot<'_> {
         frame.ticks(figure, theme, self.shows_x, self.shows_y.then_some(self.numbers));
         figure.frames.push(frame);
         let centred = |words: &str, at: (f64, f64), size: f64, upright: bool| Text {
-            align: Align::Centre,
             upright,
-            ..Text::new(words, at, size, theme.ink)
+            ..Text::new(words, at, size, theme.ink).aligned(Align::Centre)
         };
         let middle = (0.5 * (area.left + area.right), 0.5 * (area.top + area.bottom));
         for (i, line) in self.x_label.lines.iter().enumerate() {
@@ -401,7 +389,8 @@ impl Slot<'_> {
             let place = Area::new(from, area.top, from + BAR.1, area.bottom);
             colours.bar(figure, place, axis, theme);
             for (i, line) in self.bar_label.lines.iter().enumerate() {
-                let x = place.right + TO_NUMBERS + widest(axis) + TO_LABEL + LABEL_WIDTH * (i as f64 + 0.75);
+                let begin = place.right + TO_NUMBERS + axis.widest_number() + TO_LABEL;
+                let x = begin + LABEL_WIDTH * (i as f64 + 0.75);
                 figure.text(centred(line, (x, middle.1), self.bar_label.size, true));
             }
         }

@@ -80,9 +80,7 @@ fn map_panel(picture: &SweepPicture, (x, y): (&str, &str)) -> (Panel, Lines) {
     let lines = Lines::new(picture, (x, y), &cells);
     let transients = transients(picture.rows, (x, y), &cells);
     let mut panel = cells_panel(picture, (x, y), cells, quantity.bar());
-    if !transients.is_empty() {
-        panel.layer(Role::Transient, "may be a transient", Marks::Cloud(transients));
-    }
+    panel.layer_if_any(Role::Transient, "may be a transient", Marks::Cloud(transients));
     lines.draw(&mut panel);
     (panel, lines)
 }

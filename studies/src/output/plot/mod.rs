@@ -5,7 +5,6 @@
 //! theme, and equal data give equal bytes.
 
 mod accuracy;
-mod arguments;
 mod axis;
 mod basins;
 mod best;
@@ -51,18 +50,17 @@ mod threshold;
 use std::path::Path;
 
 pub use accuracy::accuracy_chart;
-pub use arguments::{Argument, picture_arguments};
 pub use axis::{PlotAxis, Ranges};
 pub use basins::{basins_chart, can_show_starts};
-pub use best::{BestPicture, best_chart};
+pub use best::best_chart;
 pub use branch::{branch_chart, loci_chart};
 pub use cells::{Cell, Cells, Colours};
 pub use chart::{Chart, Column, Layer, Marks, Note, Panel, Side};
-pub use comparison::{ComparisonPicture, comparison_chart};
+pub use comparison::comparison_chart;
 pub use contact::contact_chart;
 pub use curve::{curve_chart, force_panel};
-pub use escape::{EscapePicture, can_show_escapes, escape_chart};
-pub use exponents::{ExponentPicture, can_show_exponents, exponents_chart};
+pub use escape::escape_chart;
+pub use exponents::exponents_chart;
 pub use figure::{Area, Figure, Shape, Text};
 pub use font::{HACK, INTER};
 pub use frame::Frame;
@@ -77,15 +75,15 @@ pub use quantity::{RMS, quantities, suited_unit, words_of};
 pub use record::{identified_chart, measured_force_chart};
 pub use role::{Look, Role};
 pub use run::{RunPanel, run_chart};
-pub use section::{SectionPicture, section_chart};
+pub use section::section_chart;
 pub use shapes::shapes_chart;
 pub use sheet::{Sheet, SheetError, SheetText};
 pub use spectrum::{SpectrumQuantity, spectrum_chart};
 pub use style::{BLACK, Ink, TICK, Theme, is_fine, viridis};
 pub use surface::SurfaceFrame;
-pub use sweep::{MAX_PICTURE_CELLS, NoPicture, can_show, sweep_about, sweep_chart};
+pub use sweep::{MAX_PICTURE_CELLS, NoPicture, can_show, can_show_over_field, sweep_about, sweep_chart};
 pub use swept::{Cut, Overlay, SweepPicture, View};
-pub use threshold::{ThresholdPicture, can_show_thresholds, threshold_chart};
+pub use threshold::{can_show_thresholds, threshold_chart};
 
 /// A kind of file that holds a picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -75,52 +75,47 @@ pub fn identified_chart(
         x.into_iter().enumerate().map(|(i, x)| (x, [0, 1, 2].map(|k| all[k][i]))).collect()
     };
     let first = found.summary.first().copied();
-    let line = |name, series, points, role| Series { name, series, points, role, is_marks: false };
-    let names = [if of == "force" { "x_m" } else { "t_s" }.to_owned(), column_of(quantity)];
-    let k = if of == "force" { 1e3 } else { 1.0 };
-    let record = across.iter().zip(values).map(|(x, y)| (x * k, y * scale)).collect();
-    let picture = match of {
-        "force" => RecordPicture {
-            across: "position (mm)",
-            up,
-            unit,
-            columns: names,
-            scales: [k, scale],
-            record,
-            rises: false,
-            over: vec![line("identified curve", "identified", pairs(&found.rows, scale), Role::Curve)],
-            lower: Lower::Rest("residual", "residual", fitted("x_m", "residual_n", 1e3)),
-        },
+    let series = |is_marks, role, name, series, points| Series { name, series, points, role, is_marks };
+    let (over, lower) = match of {
+        "force" => (
+            vec![series(false, Role::Curve, "identified curve", "identified", pairs(&found.rows, scale))],
+            Lower::Rest("residual", "residual", fitted("x_m", "residual_n", 1e3)),
+        ),
         "damping" => {
             let (from, to) = (column(&found.rows, "from_s"), column(&found.rows, "to_s"));
             let middle = from.iter().zip(&to).map(|(a, b)| 0.5 * (a + b)).collect();
-            let envelope = |name, series, end| line(name, series, fitted("t_s", end, 1.0), Role::Envelope);
-            let over = vec![
-                envelope("identified envelope", "upper_envelope", "upper"),
-                envelope("", "lower_envelope", "lower"),
-            ];
+            let line = |name, of, end| series(false, Role::Envelope, name, of, fitted("t_s", end, 1.0));
+            let upper = line("identified envelope", "upper_envelope", "upper");
             let rows = intervals(middle, "damping_ratio");
-            let lower = Lower::Intervals("damping ratio", "damping_ratio", rows, first);
-            let (columns, scales) = (names, [k, scale]);
-            RecordPicture { across: "time (s)", up, unit, columns, scales, record, rises: true, over, lower }
+            (
+                vec![upper, line("", "lower_envelope", "lower")],
+                Lower::Intervals("damping ratio", "damping_ratio", rows, first),
+            )
         }
         _ => {
-            let marks = |name, series, x, y, role| Series {
-                name,
-                series,
-                points: fitted(x, y, 1.0),
-                role,
-                is_marks: true,
-            };
-            let over = vec![
-                marks("impact", "impact", "t_s", "x_m", Role::Impact),
-                marks("end of a rebound", "rebound", "rebound_t_s", "rebound_x_m", Role::Rebound),
-            ];
+            let (impacts, rebounds) = (fitted("t_s", "x_m", 1.0), fitted("rebound_t_s", "rebound_x_m", 1.0));
             let rows = intervals(column(&found.rows, "t_s"), "restitution");
-            let lower = Lower::Intervals("restitution", "restitution", rows, first);
-            let (columns, scales) = (names, [k, scale]);
-            RecordPicture { across: "time (s)", up, unit, columns, scales, record, rises: true, over, lower }
+            (
+                vec![
+                    series(true, Role::Impact, "impact", "impact", impacts),
+                    series(true, Role::Rebound, "end of a rebound", "rebound", rebounds),
+                ],
+                Lower::Intervals("restitution", "restitution", rows, first),
+            )
         }
+    };
+    let is_force = of == "force";
+    let (label, name, k) = if is_force { ("position (mm)", "x_m", 1e3) } else { ("time (s)", "t_s", 1.0) };
+    let picture = RecordPicture {
+        across: label,
+        up,
+        unit,
+        columns: [name.to_owned(), column_of(quantity)],
+        scales: [k, scale],
+        record: across.iter().zip(values).map(|(x, y)| (x * k, y * scale)).collect(),
+        rises: !is_force,
+        over,
+        lower,
     };
     picture.chart(&summary_words(&found.summary), ranges)
 }
@@ -217,21 +212,19 @@ impl RecordPicture {
     fn chart(&self, words: &str, ranges: Ranges) -> Chart {
         let inside = |point: &&Point| ranges.x.is_none_or(|(a, b)| (a..=b).contains(&point.0));
         let shown = || self.record.iter().filter(inside);
-        let (label, lower) = match &self.lower {
+        let (label, lower, places) = match &self.lower {
             Lower::Rest(label, _, points) => {
                 let label = format!("{label} ({})", self.unit);
-                (label, points.iter().map(|point| point.1).chain([0.0]).collect())
+                (label, points.iter().map(|point| point.1).chain([0.0]).collect(), Vec::new())
             }
             Lower::Intervals(label, _, rows, all) => {
                 let ends = all.iter().flat_map(|number| [number.interval.0, number.interval.1]);
+                let places = rows.iter().map(|row| row.0).collect();
                 let rows = rows.iter().flat_map(|row| row.1);
-                ((*label).to_owned(), rows.chain(ends).collect::<Vec<f64>>())
+                ((*label).to_owned(), rows.chain(ends).collect::<Vec<f64>>(), places)
             }
         };
-        let places = self.record.iter().map(|point| point.0).chain(match &self.lower {
-            Lower::Intervals(_, _, rows, _) => rows.iter().map(|row| row.0).collect(),
-            Lower::Rest(..) => Vec::new(),
-        });
+        let places = self.record.iter().map(|point| point.0).chain(places);
         let across = PlotAxis::around(places, 0.0, self.across).or_given(ranges.x);
         let drawn = self.over.iter().flat_map(|series| &series.points).filter(inside);
         let heights = shown().chain(drawn).map(|point| point.1);

@@ -6,15 +6,16 @@ use super::drawn::Drawn;
 use super::figure::Point;
 use super::role::Role;
 use crate::numeric::{Taper, elementary, short};
-use crate::study::{Signal, Spectrum};
+use crate::study::{Signal, Spectrum, words};
 
-/// The column that is shown.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum SpectrumQuantity {
-    /// Amplitude of the sine at each frequency.
-    Amplitude,
-    /// Power spectral density.
-    Density,
+words! {
+    /// The column that is shown.
+    SpectrumQuantity {
+        /// Amplitude of the sine at each frequency.
+        Amplitude = "amplitude",
+        /// Power spectral density.
+        Density = "psd",
+    }
 }
 
 /// Share of the power below the right edge of the default range.
@@ -29,18 +30,17 @@ const MAX_MARKED: usize = 4;
 /// The picture of a spectrum. `ranges` are those of the frequency in Hz and of the quantity.
 pub fn spectrum_chart(spectrum: &Spectrum, quantity: SpectrumQuantity, ranges: Ranges) -> Chart {
     let column = |name: &str| spectrum.table.numbers(name).unwrap_or_default();
-    let (frequencies, density) = (column("frequency_hz"), column("psd"));
-    let (values, label) = match quantity {
-        SpectrumQuantity::Amplitude => (column("amplitude"), label(spectrum.signal).0),
-        SpectrumQuantity::Density => (density, label(spectrum.signal).1),
+    let (frequencies, values) = (column("frequency_hz"), column(quantity.name()));
+    let (label, decades) = match quantity {
+        SpectrumQuantity::Amplitude => (label(spectrum.signal).0, DECADES),
+        SpectrumQuantity::Density => (label(spectrum.signal).1, 2.0 * DECADES),
     };
-    let across = PlotAxis::between(0.0, shown_to(spectrum, frequencies, density), "frequency (Hz)");
+    let across = PlotAxis::between(0.0, shown_to(spectrum, frequencies, column("psd")), "frequency (Hz)");
     let across = across.or_given(ranges.x);
     let seen = frequencies.iter().zip(values).filter(|line| across.contains(*line.0));
     let seen = seen.map(|pair| *pair.1).filter(|value| *value > 0.0);
     let (least, greatest) =
         seen.fold((f64::INFINITY, 0.0_f64), |(low, high), value| (low.min(value), high.max(value)));
-    let decades = if quantity == SpectrumQuantity::Density { 2.0 * DECADES } else { DECADES };
     let up = match ranges.y {
         Some((low, high)) => PlotAxis::powers(elementary::log10(low), elementary::log10(high), label),
         None => {
@@ -55,17 +55,14 @@ pub fn spectrum_chart(spectrum: &Spectrum, quantity: SpectrumQuantity, ranges: R
         (some, all) if some < all => format!("forcing frequencies, {}, .. Hz", names.join(", ")),
         _ => format!("forcing frequencies, {} Hz", names.join(", ")),
     };
-    if !marked.is_empty() {
-        panel.layer(Role::Drive, words, Marks::Verticals(marked.clone()));
-    }
+    panel.layer_if_any(Role::Drive, words, Marks::Verticals(marked.clone()));
     let floor = panel.y.low - 1.0;
     let height = |value: f64| if value > 0.0 { elementary::log10(value).max(floor) } else { floor };
     let points: Vec<Point> =
         frequencies.iter().zip(values).map(|(frequency, value)| (*frequency, height(*value))).collect();
     let is_lines = spectrum.period.is_some() && spectrum.taper == Taper::None;
     panel.draw(Role::Motion, if is_lines { Marks::Sticks(points) } else { Marks::Trace(points) });
-    let name = if quantity == SpectrumQuantity::Density { "psd" } else { "amplitude" };
-    let mut drawn = Drawn::new(["frequency_hz", name], &[]);
+    let mut drawn = Drawn::new(["frequency_hz", quantity.name()], &[]);
     for (frequency, value) in frequencies.iter().zip(values).filter(|line| panel.x.contains(*line.0)) {
         drawn.put("line", &[*frequency, *value], &[]);
     }

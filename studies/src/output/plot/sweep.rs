@@ -31,12 +31,9 @@ pub enum NoPicture {
          --over FIELD=FROM:TO:STEP, or leave --plot out"
     )]
     SingleThreshold,
-    /// Exponents of a single motion, or over several fields.
-    #[error("--plot shows exponents over one field, not over {0}: name it with --over FIELD=FROM:TO:STEP")]
-    Exponents(usize),
-    /// One escape, or over several fields.
-    #[error("--plot shows escapes over one field, not over {0}: name it with --over FIELD=FROM:TO:STEP")]
-    Escapes(usize),
+    /// Exponents or escapes of a single motion, or over several fields.
+    #[error("--plot shows {0} over one field, not over {1}: name it with --over FIELD=FROM:TO:STEP")]
+    OneField(&'static str, usize),
     /// Finer than a picture.
     #[error(
         "--plot shows at most {MAX_PICTURE_CELLS} cells, not {0}: take longer steps, or sweep without --plot"
@@ -100,6 +97,15 @@ pub fn can_show<'a>(
         1 | 2 if grid.cells() > MAX_PICTURE_CELLS => Err(NoPicture::Cells(grid.cells())),
         1 | 2 => Ok(quantity),
         n => Err(NoPicture::Fields(n)),
+    }
+}
+
+/// Checks that `what` can be shown over the field of this grid.
+pub fn can_show_over_field(grid: &Grid, what: &'static str) -> Result<(), NoPicture> {
+    match grid.axes().len() {
+        1 if grid.cells() > MAX_PICTURE_CELLS => Err(NoPicture::Cells(grid.cells())),
+        1 => Ok(()),
+        n => Err(NoPicture::OneField(what, n)),
     }
 }
 
@@ -215,17 +221,13 @@ fn lines(picture: &SweepPicture, x: &str, series: Option<&str>) -> Chart {
         order.into_iter().map(|row| places[row]).collect()
     };
     let (missing, resting) = (without_value(false), without_value(true));
-    if !resting.is_empty() {
-        panel.layer(Role::Regime(0), "at rest", Marks::Ticks(resting, Side::Bottom));
-    }
-    if !missing.is_empty() {
-        // many full-height lines would hide everything else
-        let marks = match missing.len() <= MAX_LINES {
-            true => Marks::Verticals(missing),
-            false => Marks::Ticks(missing, Side::Bottom),
-        };
-        panel.layer(Role::Missing, quantity.missing(rows), marks);
-    }
+    panel.layer_if_any(Role::Regime(0), "at rest", Marks::Ticks(resting, Side::Bottom));
+    // many full-height lines would hide everything else
+    let marks_missing = match missing.len() <= MAX_LINES {
+        true => Marks::Verticals(missing),
+        false => Marks::Ticks(missing, Side::Bottom),
+    };
+    panel.layer_if_any(Role::Missing, quantity.missing(rows), marks_missing);
     // values between two seeds or two regimes have no meaning
     let joined = !(x == "seed" || x.ends_with(".seed") || quantity.kinds.is_some());
     let mut all = Vec::new();
