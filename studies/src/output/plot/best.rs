@@ -5,7 +5,7 @@ use super::cells::{Cell, Cells, Colours};
 use super::chart::{Chart, Marks, Panel, Side};
 use super::drawn::Drawn;
 use super::figure::Point;
-use super::quantity::suited_unit;
+use super::quantity::{suited_unit, with_unit};
 use super::role::Role;
 use crate::study::{
     BestDesign, BestQuestion, Edges, Optimum, Tried, label_and_unit, names, quantity, scan_places,
@@ -54,10 +54,7 @@ impl<'a> Shown<'a> {
         let (_, unit) = label_and_unit(maximised.name);
         let (scale, unit) = suited_unit(unit, tried.iter().filter_map(|tried| tried.value));
         let mean = if question.environments.len() > 1 { "mean " } else { "" };
-        let label = match unit {
-            "" => format!("{mean}{}", maximised.label),
-            unit => format!("{mean}{} ({unit})", maximised.label),
-        };
+        let label = with_unit(format!("{mean}{}", maximised.label), unit);
         Self { question, design, ranges, tried, scale, label }
     }
 
@@ -70,8 +67,7 @@ impl<'a> Shown<'a> {
     fn field_axis(&self, field: usize, given: Option<(f64, f64)>) -> PlotAxis {
         let range = &self.question.over[field];
         let (words, unit) = label_and_unit(&names(self.question)[field]);
-        let label = if unit.is_empty() { words } else { format!("{words} ({unit})") };
-        PlotAxis::around([range.low, range.high], 0.02, &label).or_given(given)
+        PlotAxis::around([range.low, range.high], 0.02, &with_unit(words, unit)).or_given(given)
     }
 
     /// The axis of the values, from 0 or below.

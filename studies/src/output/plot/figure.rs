@@ -334,18 +334,22 @@ impl Figure {
         self.line(&corners, width, ink, self.canvas);
     }
 
-    /// Hatches `area` with lines that fall to the right, the sign of a missing value.
-    pub fn hatch_missing(&mut self, area: Area, ink: Ink) {
-        self.hatch_along(area, ink, -1.0);
+    /// Fills `area`, and hatches it with lines that rise to the right.
+    pub fn filled(&mut self, area: Area, ink: Ink, hatch: Option<Ink>) {
+        self.rect(area, ink);
+        if let Some(hatch) = hatch {
+            self.hatch(area, hatch, 1.0);
+        }
     }
 
-    /// Hatches `area` with lines that rise to the right.
-    pub fn hatch(&mut self, area: Area, ink: Ink) {
-        self.hatch_along(area, ink, 1.0);
+    /// Fills `area` with the sign of a missing value, lines that fall to the right.
+    pub fn missing(&mut self, area: Area, theme: &Theme) {
+        self.rect(area, theme.paper);
+        self.hatch(area, theme.soft, -1.0);
     }
 
     /// Hatches `area` with lines x + `sign` y = k step, aligned with all other hatchings.
-    fn hatch_along(&mut self, area: Area, ink: Ink, sign: f64) {
+    fn hatch(&mut self, area: Area, ink: Ink, sign: f64) {
         let Some(area @ Area { left, top, right, bottom }) = area.common(self.canvas) else { return };
         let (step, width) = style::HATCH;
         let (low, high) = if sign > 0.0 { (top, bottom) } else { (-bottom, -top) };

@@ -238,10 +238,7 @@ impl Frame {
 
     fn fill(&self, figure: &mut Figure, area: Area, look: &Look) {
         if let Some(area) = area.common(self.area) {
-            figure.rect(area, look.ink);
-            if let Some(hatch) = look.hatch {
-                figure.hatch(area, hatch);
-            }
+            figure.filled(area, look.ink, look.hatch);
         }
     }
 
@@ -401,19 +398,11 @@ impl Frame {
                 };
                 match run[0] {
                     Cell::Value(value) => {
-                        figure.rect(area, grid.colours.ink(value, theme));
-                        if let Some(hatch) = grid.colours.hatch(value, theme) {
-                            figure.hatch(area, hatch);
-                        }
+                        let (ink, hatch) = (grid.colours.ink(value, theme), grid.colours.hatch(value, theme));
+                        figure.filled(area, ink, hatch);
                     }
-                    Cell::Rest => {
-                        figure.rect(area, theme.rest);
-                        figure.hatch(area, theme.rest_hatch);
-                    }
-                    Cell::Missing => {
-                        figure.rect(area, theme.paper);
-                        figure.hatch_missing(area, theme.soft);
-                    }
+                    Cell::Rest => figure.filled(area, theme.rest, Some(theme.rest_hatch)),
+                    Cell::Missing => figure.missing(area, theme),
                     Cell::Blank => {}
                 }
             }

@@ -8,7 +8,7 @@ use super::figure::{Align, Area, Figure, Text};
 use super::font;
 use super::frame::Frame;
 use super::mark::marker;
-use super::page::{NAMELESS, Room, wrapped};
+use super::page::{Lines, NAMELESS, Room, wrapped};
 use super::style::{self, Theme};
 use super::surface;
 
@@ -53,9 +53,9 @@ pub struct Slot<'a> {
     /// Whether the axes show numbers and a label; otherwise they share those of a neighbour.
     shows_x: bool,
     shows_y: bool,
-    x_label: Label,
-    y_label: Label,
-    bar_label: Label,
+    x_label: Lines,
+    y_label: Lines,
+    bar_label: Lines,
     /// Room for the numbers of the vertical axis.
     numbers: f64,
     /// Additional width of its frame compared with the column, if it has no colour bar.
@@ -116,9 +116,9 @@ impl<'a> Grid<'a> {
                     bar: panel.bar.clone(),
                     shows_x: panels.get(i + 1).filter(shares_x).is_none(),
                     shows_y: left.is_none_or(|left| left.panel.y != panel.y),
-                    x_label: Label::default(),
-                    y_label: Label::default(),
-                    bar_label: Label::default(),
+                    x_label: Lines::default(),
+                    y_label: Lines::default(),
+                    bar_label: Lines::default(),
                     numbers: 0.0,
                     more: 0.0,
                     area: Area::new(0.0, 0.0, 0.0, 0.0),
@@ -202,16 +202,10 @@ impl<'a> Grid<'a> {
 /// Smallest relative size at which a label is kept in one line.
 const ONE_LINE: f64 = 0.85;
 
-/// A label in lines no longer than `room`. It is drawn smaller if it then fits in one line, or if a word is
-/// too long.
-#[derive(Default)]
-struct Label {
-    lines: Vec<String>,
-    size: f64,
-}
-
-impl Label {
-    fn new(axis: &PlotAxis, room: f64) -> Self {
+impl Lines {
+    /// The label of an axis in lines no longer than `room`. It is drawn smaller if it then fits in one line,
+    /// or if a word is too long.
+    fn of_axis(axis: &PlotAxis, room: f64) -> Self {
         let fits = |words: &str| (room / font::width(words, style::AXIS, false).max(1.0)).min(1.0);
         let whole = fits(&axis.label);
         let share =
@@ -246,11 +240,11 @@ impl Stack<'_> {
             let count = (self.width / TICK_ROOM.1).round().clamp(2.0, 9.0) as usize;
             slot.x = slot.panel.x.with_ticks(count);
             let along = height + BETWEEN - 6.0;
-            slot.y_label = if slot.shows_y { Label::new(&slot.y, along) } else { Label::default() };
+            slot.y_label = if slot.shows_y { Lines::of_axis(&slot.y, along) } else { Lines::default() };
             let under = self.width.max(USUAL) + 10.0;
-            slot.x_label = if slot.shows_x { Label::new(&slot.x, under) } else { Label::default() };
+            slot.x_label = if slot.shows_x { Lines::of_axis(&slot.x, under) } else { Lines::default() };
             if let Some(axis) = &slot.bar {
-                slot.bar_label = Label::new(axis, along);
+                slot.bar_label = Lines::of_axis(axis, along);
                 let label = slot.bar_label.across(LABEL_WIDTH);
                 let right = BAR.0 + BAR.1 + TO_NUMBERS + axis.widest_number() + TO_LABEL + label;
                 self.right = self.right.max(right);
@@ -289,10 +283,10 @@ impl Stack<'_> {
             slot.more = 0.0;
             slot.numbers = (room.left - TO_NUMBERS - TO_LABEL - LABEL_WIDTH).max(0.0);
             if slot.y_label.lines.len() > 1 || slot.y_label.size < ONE_LINE * style::AXIS {
-                slot.y_label = Label::new(&slot.y.by_unit(), f64::INFINITY);
+                slot.y_label = Lines::of_axis(&slot.y.by_unit(), f64::INFINITY);
             }
             if height < NAMELESS {
-                slot.x_label = Label::default();
+                slot.x_label = Lines::default();
             }
         }
     }

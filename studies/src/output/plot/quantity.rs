@@ -1,6 +1,7 @@
 //! Column of a sweep that a picture shows, in suitable units.
 
 use super::axis::PlotAxis;
+use super::drawn::as_numbers;
 use super::mark::REGIMES;
 use super::role::Role;
 use crate::numeric::extent;
@@ -67,13 +68,11 @@ impl Quantity {
         let column = rows.column(name);
         let words = words_of(name);
         let mut values: Vec<f64> = match column.map(|column| &column.values) {
-            Some(Values::Numbers(values)) => values.clone(),
-            Some(Values::Counts(values)) => values.iter().map(|n| n.map_or(f64::NAN, |n| n as f64)).collect(),
             Some(Values::Words(shown)) => {
                 let place = |word: &&str| words.unwrap_or_default().iter().position(|entry| entry == word);
                 shown.iter().map(|word| place(word).map_or(f64::NAN, |place| place as f64)).collect()
             }
-            Some(Values::Names(_)) | None => Vec::new(),
+            _ => column.and_then(as_numbers).unwrap_or_default(),
         };
         let role = |place: usize, word: &str| match REGIMES.iter().position(|regime| regime.0 == word) {
             Some(regime) if name == "regime" => Role::Regime(regime),
@@ -91,7 +90,7 @@ impl Quantity {
         let (field, end) = end.map_or((SummaryField::find(name), ""), |(field, words)| (Some(field), words));
         let words = field.map_or(words, |field| format!("{}{end}", field.label));
         let (scale, unit) = suited_unit(unit, values.iter().copied());
-        let label = if unit.is_empty() { words } else { format!("{words} ({unit})") };
+        let label = with_unit(words, unit);
         let scaled = |values: &[f64]| values.iter().map(|value| value * scale).collect();
         let end = |end: &str| rows.numbers(&format!("{name}{end}")).map(scaled);
         let band = end("_low").zip(end("_high")).map(|(low, high)| [low, high]);
@@ -143,6 +142,11 @@ impl Quantity {
         let all = self.values.iter().chain(low).chain(high).copied();
         PlotAxis::around(all.chain([0.0]), margin, &self.label)
     }
+}
+
+/// The words of a label with their unit, if there is one.
+pub(super) fn with_unit(words: String, unit: &str) -> String {
+    if unit.is_empty() { words } else { format!("{words} ({unit})") }
 }
 
 /// Why a run that lasted to its end has no value in a column.
