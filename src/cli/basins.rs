@@ -10,7 +10,7 @@ use interwell::study::{Answer, Basins, EvenRange, NoBasins, Starts, StartsError}
 use interwell::system::threads::Pool;
 
 use super::progress::duration;
-use super::support::{Watch, counted, load, mechanism, numbers, outputs, pool, warn};
+use super::support::{Watch, counted, load_with_mechanism, numbers, outputs, pool};
 use super::{Common, Failure, Output, Outputs, Picture, PlotOptions, interrupt, refuse, say, with_bar};
 
 const EXAMPLES: &str = "\
@@ -58,9 +58,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     if picture.is_some() {
         can_show_starts(&starts)?;
     }
-    let (document, warnings) = load(&options.scene, common, None)?;
-    let mechanism = mechanism(&document)?;
-    warn(&document, common, &warnings, Some(&mechanism));
+    let (document, mechanism) = load_with_mechanism(&options.scene, common)?;
     let count = starts.count() as u64;
     let basins = Basins::new(&document.scene, mechanism, starts);
     let mut basins = basins.map_err(|problem| match problem {
@@ -74,7 +72,6 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let mut outputs = outputs(&options.scene, &document, common)?
         .with_picture(picture)?
         .with(Output::ATTRACTORS, options.attractors.as_deref())?;
-
     outputs.watch = Watch::start();
     if !common.quiet {
         forecast(&basins).iter().for_each(|line| say(line));

@@ -74,7 +74,7 @@ pub struct Arguments {
 /// Searches and writes the row.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
-    let (document, warnings) = load(&options.scene, common, None)?;
+    let (document, warnings) = load(&options.scene, common)?;
     let asked = Best {
         over: options.over.clone(),
         maximise: options.maximise.clone(),

@@ -113,16 +113,14 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         Some(listed) => listed.clone(),
         None => even(options.points.unwrap_or(points) as usize),
     };
-    let table = curve(&mechanism, positions(CURVE_POINTS))?;
+    let mut table = curve(&mechanism, positions(CURVE_POINTS))?;
     let of_flexures = [
-        (options.full, "--full"),
-        (options.shapes.is_some(), "--shapes"),
-        (shapes_picture.is_some(), "--shapes-plot"),
+        options.full.then_some("--full"),
+        options.shapes.is_some().then_some("--shapes"),
+        shapes_picture.is_some().then_some("--shapes-plot"),
     ];
-    for (given, option) in of_flexures {
-        if given {
-            flexures_at(&mechanism, &[]).map_err(|error| unknown(&document.name, option, error))?;
-        }
+    for option in of_flexures.into_iter().flatten() {
+        flexures_at(&mechanism, &[]).map_err(|error| unknown(&document.name, option, error))?;
     }
     let contact_output = options.contact.as_ref().map(|_| Output::CONTACT);
     let contact_output = contact_output.or(contact_picture.map(|picture| picture.output));
@@ -143,16 +141,12 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     if let Some(found) = &measured {
         outputs.table(Output::COMPARISON, &found.table)?;
     }
-    let table = if options.full {
+    if options.full {
         let rows = solved(&mechanism, &positions(CURVE_POINTS), &document.name, "--full")?;
         let warning = mechanism.flexures.as_ref().and_then(|flexures| stress_warning(flexures, &rows));
-        if let Some(warning) = warning {
-            common.say(&format!("warning: {}: {warning}", document.name));
-        }
-        full_curve(&mechanism, &rows)?
-    } else {
-        table
-    };
+        warning.iter().for_each(|words| common.say(&format!("warning: {}: {words}", document.name)));
+        table = full_curve(&mechanism, &rows)?;
+    }
     outputs.table(Output::DATA, &table)?;
     outputs.write(Output::LANDSCAPE, landscape(&mechanism, document.scene.mass_g / 1e3))?;
     // The picture shows the whole curve, even if few positions were requested.

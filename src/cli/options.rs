@@ -221,6 +221,9 @@ pub struct Common {
 }
 
 impl Common {
+    /// The names of all of them.
+    pub const ALL: &'static [&'static str] = &["set", "tolerance", "jobs", "out", "quiet"];
+
     pub fn out(&self) -> &Path {
         self.out.as_deref().unwrap_or(Path::new("-"))
     }
@@ -232,25 +235,20 @@ impl Common {
         }
     }
 
-    /// Adds the options given `before` the command to those given after it. The error is the name of an
-    /// option that may be given once and was given in both places.
+    /// Adds the options given `before` the command to those given after it. The error is the name of one
+    /// that may be given once and was given in both places.
     ///
     /// clap's global arguments would drop a `--set` before the command if another one follows the command.
     pub fn put_before(&mut self, before: Self) -> Result<(), &'static str> {
-        fn put<T>(
-            option: &'static str,
-            value: &mut Option<T>,
-            before: Option<T>,
-        ) -> Result<(), &'static str> {
-            if value.is_some() && before.is_some() {
-                return Err(option);
-            }
-            *value = value.take().or(before);
-            Ok(())
+        let mut once = ["out", "tolerance", "jobs"].into_iter();
+        if let Some(twice) =
+            once.find(|name| [&*self, &before].iter().all(|one| one.given(&[*name]).is_some()))
+        {
+            return Err(twice);
         }
-        put("--out", &mut self.out, before.out)?;
-        put("--tolerance", &mut self.tolerance, before.tolerance)?;
-        put("--jobs", &mut self.jobs, before.jobs)?;
+        self.out = self.out.take().or(before.out);
+        self.tolerance = self.tolerance.take().or(before.tolerance);
+        self.jobs = self.jobs.or(before.jobs);
         self.set.splice(0..0, before.set);
         self.quiet |= before.quiet;
         Ok(())

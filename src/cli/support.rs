@@ -48,15 +48,10 @@ pub fn arguments() -> Vec<String> {
 }
 
 /// Loads the scene called `spec`, applies `--set` and `--tolerance`, checks it, and returns it with its
-/// warnings. With the arguments of `--over` its first cell is checked, since the scene's own values of the
-/// swept fields are never run.
-pub fn load(
-    spec: &str,
-    common: &Common,
-    over: Option<&[String]>,
-) -> Result<(Document, Vec<String>), SceneError> {
+/// warnings.
+pub fn load(spec: &str, common: &Common) -> Result<(Document, Vec<String>), SceneError> {
     let mut document = read(spec, common)?;
-    let warnings = check(&mut document, over)?;
+    let warnings = check(&mut document, None)?;
     Ok((document, warnings))
 }
 
@@ -67,13 +62,14 @@ pub fn load_over(
     over: &[String],
     common: &Common,
 ) -> Result<(Document, Vec<String>, Grid), Failure> {
-    let is_one = over.is_empty();
-    let (document, warnings) = load(spec, common, (!is_one).then_some(over))?;
+    let (mut document, is_one) = (read(spec, common)?, over.is_empty());
+    let warnings = check(&mut document, (!is_one).then_some(over))?;
     let grid = if is_one { Grid::of_one() } else { Grid::new(document.axes(over)?)? };
     Ok((document, warnings, grid))
 }
 
-/// Checks a document that was read; returns its warnings.
+/// Checks a document that was read; returns its warnings. With the arguments of `--over` its first cell is
+/// checked, since the scene's own values of the swept fields are never run.
 pub fn check(document: &mut Document, over: Option<&[String]>) -> Result<Vec<String>, SceneError> {
     let moved = document.settle_within();
     let mut first_cell = document.clone();
@@ -142,13 +138,13 @@ pub fn mechanism_of_all(
 
 /// Loads the scene and its mechanism and prints the warnings of both.
 pub fn load_with_mechanism(spec: &str, common: &Common) -> Result<(Document, Arc<Mechanism>), Failure> {
-    let (document, warnings) = load(spec, common, None)?;
+    let (document, warnings) = load(spec, common)?;
     let mechanism = mechanism(&document)?;
     warn(&document, common, &warnings, Some(&mechanism));
     Ok((document, mechanism))
 }
 
-/// Loads the scene and builds its model; prints the warnings of both.
+/// The same as [`load_simulation`], as its parts.
 pub fn load_model(spec: &str, common: &Common) -> Result<(Document, Model), Failure> {
     let simulation = load_simulation(spec, common)?;
     Ok((simulation.document().clone(), simulation.model().clone()))
