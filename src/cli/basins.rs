@@ -51,7 +51,6 @@ pub struct Arguments {
     pub plot: PlotOptions,
 }
 
-/// Follows the starts and writes a row for each.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let picture = Picture::new(&options.plot, common)?;
     let starts = starts(options)?;

@@ -71,7 +71,6 @@ pub struct Arguments {
     pub chart: ChartOptions,
 }
 
-/// Searches and writes the row.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
     let (document, warnings) = load(&options.scene, common)?;

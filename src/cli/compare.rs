@@ -40,7 +40,6 @@ pub struct Arguments {
     pub plot: PlotOptions,
 }
 
-/// Rates the scenes and writes a row for each.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let picture = Picture::new(&options.plot, common)?;
     let environment = options.environment.as_deref().or(options.scenes.first().map(String::as_str));

@@ -49,7 +49,6 @@ pub struct Arguments {
     pub chart: ChartOptions,
 }
 
-/// Runs all cells and writes the table.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
     let (document, warnings, grid) = load_over(&options.scene, &options.over, common)?;

@@ -50,7 +50,6 @@ pub struct Arguments {
     pub chart: ChartOptions,
 }
 
-/// Computes the exponents and writes the table.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
     if !options.over.is_empty() {

@@ -36,7 +36,6 @@ pub struct Arguments {
     pub new: Option<PathBuf>,
 }
 
-/// Lists, prints or checks lessons, or writes the template of a new one.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     if common.jobs.is_some() && !options.check {
         refuse!("--jobs: nothing runs without --check; leave it out");

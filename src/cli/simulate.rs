@@ -60,7 +60,6 @@ pub struct Arguments {
     pub chart: ChartOptions,
 }
 
-/// Runs the scene and writes samples, events and summary.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let picture = Picture::of_chart(&options.chart, "--plot-time", common)?;
     let sampling = match (&options.at, &options.dt) {

@@ -54,7 +54,6 @@ pub struct Arguments {
     pub chart: ChartOptions,
 }
 
-/// Runs the scene and writes the spectrum of its settled motion.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
     if let Some((low, high)) = picture.and_then(|picture| picture.ranges.y).filter(|(low, _)| !(*low > 0.0)) {

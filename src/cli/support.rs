@@ -112,13 +112,11 @@ pub fn outputs(spec: &str, document: &Document, common: &Common) -> Result<Outpu
     Outputs::new(&inputs(spec, document)).with_rows(Some(common.out()))
 }
 
-/// The scene's mechanism.
 pub fn mechanism(document: &Document) -> Result<Arc<Mechanism>, Failure> {
     let built = Mechanism::build(&document.scene.mechanism, &document.files);
     built.map(Arc::new).map_err(|error| Error::unbuilt(document, error).into())
 }
 
-/// The model of a scene with its mechanism.
 pub fn model(document: &Document, mechanism: &Arc<Mechanism>) -> Result<Model, Failure> {
     let model = Model::build(&document.scene, Arc::clone(mechanism));
     model.map_err(|faults| document.error_from(faults).into())

@@ -108,7 +108,6 @@ fn search(options: &Arguments, document: &Document, grid: &Grid) -> Result<(Scan
     Ok((question.scan(document)?, Some(question.chance(document, grid)?)))
 }
 
-/// Searches and writes the table.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
     let (document, warnings, grid) = load_over(&options.scene, &options.over, common)?;

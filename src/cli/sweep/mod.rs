@@ -15,7 +15,6 @@ pub use prepared::Arguments;
 use prepared::Prepared;
 use rows::{Compared, Rows};
 
-/// Runs the grid and writes one row for each cell.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let prepared = Prepared::new(options, common)?;
     let pool = pool(common)?;
@@ -44,15 +43,13 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         file.end()?;
         common.say(&format!("{}: all {} rows are the same", prepared.data.display(), all.cells));
     }
-    let wall_s = job.finish(
-        |rows, ranges| prepared.chart(rows, ranges),
-        |manifest| {
-            let sha256 = rows_out.close()?;
-            let (shard, mechanisms) = (slice.shard(), sweep.mechanisms());
-            let made = Made { plan, shard, sha256: &sha256, mechanisms };
-            Ok(manifest.of_rows(sweep.grid(), &all, Some(made)))
-        },
-    )?;
+    let chart = |rows: &Table, ranges| prepared.chart(rows, ranges);
+    let wall_s = job.finish(chart, |manifest| {
+        let sha256 = rows_out.close()?;
+        let (shard, mechanisms) = (slice.shard(), sweep.mechanisms());
+        let made = Made { plan, shard, sha256: &sha256, mechanisms };
+        Ok(manifest.of_rows(sweep.grid(), &all, Some(made)))
+    })?;
     // The rows get their name last: until then --resume can continue them.
     rows_out.finish()?;
     // If there are fewer, the reader of a pipe has gone.

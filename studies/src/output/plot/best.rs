@@ -11,8 +11,9 @@ use crate::study::{
     BestDesign, BestQuestion, Edges, Optimum, Tried, label_and_unit, names, quantity, scan_places,
 };
 
-/// Words of the legend for designs without a value.
+/// Words of the legend.
 const NO_VALUE: &str = "no value";
+const BROKEN: &str = "a constraint broken";
 
 /// The picture of the search that found a design: over one field the values of all designs that were tried,
 /// over two a map of the scan with the further designs in the colours of their values, over more the values
@@ -205,6 +206,3 @@ impl<'a> Shown<'a> {
         drawn.table()
     }
 }
-
-/// Words of the legend for designs that break a constraint.
-const BROKEN: &str = "a constraint broken";

@@ -53,9 +53,7 @@ struct Entry {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Mark {
     None,
-    /// The threshold of release.
     Release,
-    /// The regime of the motion.
     Regime,
 }
 
@@ -189,7 +187,6 @@ fn bands(rated: &[Rated], frequency_hz: f64) -> Shown {
     Shown { title, mark: Mark::None, unit, best: Best::Most, entries, is_band: true }
 }
 
-/// The panel of a quantity.
 fn panel(rated: &[Rated], frequency_hz: f64, shown: &Shown, up: &PlotAxis) -> Panel {
     let better = match (shown.best, shown.is_band) {
         (_, true) => "wide",

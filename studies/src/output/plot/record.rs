@@ -47,7 +47,6 @@ struct RecordPicture {
     /// Names of both columns in the drawn data, and the factors from SI to the axes.
     columns: [String; 2],
     scales: [f64; 2],
-    /// The record.
     record: Vec<Point>,
     /// Whether its x rises from sample to sample.
     rises: bool,

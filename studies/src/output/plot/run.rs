@@ -146,7 +146,6 @@ impl Seen<'_> {
         (self.trace.stops.0 * 1e3, self.trace.stops.1 * 1e3)
     }
 
-    /// One of its panels.
     fn panel(&self, kind: RunPanel) -> Panel {
         let shown = self.rows(self.trace.shown_from);
         let label = |unit: &str| kind.label(unit, self.trace.has_load);
@@ -249,7 +248,6 @@ impl Seen<'_> {
         t.iter().zip(x).zip(v).map(|((t, x), v)| [*t, *x, *v])
     }
 
-    /// Velocity over displacement.
     fn portrait(&self) -> Panel {
         let Self { trace, .. } = *self;
         let shown = self.rows(trace.portrait_from);
@@ -335,7 +333,6 @@ impl Seen<'_> {
     }
 }
 
-/// Whether all values are the first one.
 fn is_still(values: &[f64]) -> bool {
     values.iter().all(|value| *value == values[0])
 }

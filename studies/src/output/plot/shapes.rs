@@ -53,7 +53,6 @@ pub fn shapes_chart(states: &[State], mechanism: &Mechanism, stops: (f64, f64)) 
     Chart::stack(vec![panel], format!("{about}; sideways stretched"), drawn(states, stops))
 }
 
-/// All that is drawn.
 fn drawn(states: &[State], stops: (f64, f64)) -> crate::study::Table {
     let mut drawn = Drawn::new(["x_m", "s_m", "px_m", "py_m"], &["flexure"]);
     for state in states {

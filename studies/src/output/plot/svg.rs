@@ -10,7 +10,6 @@ const FAMILY: &str = "Inter, Helvetica, Arial, sans-serif";
 /// Number of units of the SVG coordinates, which are whole numbers, per unit of the canvas.
 const UNITS: f64 = 8.0;
 
-/// The picture as SVG.
 pub fn svg(figure: &Figure) -> String {
     let Area { left, top, right, bottom } = figure.shown;
     let (width, height) = match (figure.size_mm(), figure.size) {

@@ -128,7 +128,7 @@ pub fn sweep_chart(picture: &SweepPicture) -> Result<Chart, NoPicture> {
     let quantity = can_show(grid, picture.quantity, &picture.view, rows)?;
     let picture = &SweepPicture { quantity, ..picture.clone() };
     let ways = rows.words(DIRECTION);
-    let walked = [Direction::Up, Direction::Down].into_iter().filter(|way| ways.contains(&way.name()));
+    let walked = Direction::ALL.into_iter().filter(|way| ways.contains(&way.name()));
     let walked: Vec<Direction> = walked.collect();
     let mut chart = match (grid.columns(), few_lines(rows, grid)) {
         ([x, y], _) if picture.view == View::Surface => surface(picture, (x, y)),
@@ -182,12 +182,8 @@ pub(super) fn distinct(values: &[f64]) -> Vec<f64> {
 /// from the one before, and the time in s up to which runs continued until they repeat, if they did.
 pub fn sweep_about(grid: &Grid, scene: &Scene, walked: &[Direction], until_settled: Option<f64>) -> String {
     let lengths = grid.axes().iter().map(|axis| axis.values.len());
-    let counts: Vec<String> = Some(walked.len())
-        .filter(|ways| *ways > 1)
-        .into_iter()
-        .chain(lengths)
-        .map(|n| n.to_string())
-        .collect();
+    let counts = Some(walked.len()).filter(|ways| *ways > 1).into_iter().chain(lengths);
+    let counts: Vec<String> = counts.map(|n| n.to_string()).collect();
     let swept = |field: &str| grid.axes().iter().any(|axis| axis.field == field);
     let mut parts = vec![format!("{} runs", counts.join(" \u{d7} "))];
     if !swept("run.duration_s") {
@@ -282,10 +278,9 @@ pub(super) fn each_line<'a>(rows: &'a Table, series: Option<&str>) -> Vec<Series
     let values = rows.numbers(name).unwrap_or_default();
     let each = distinct(values);
     let last = each.len().saturating_sub(1).max(1) as f64;
-    let line = |(i, (value, name))| SeriesLine {
-        values: Some((values, value)),
-        name,
-        role: Role::Step(i as f64 / last),
+    let line = |(i, (value, name))| {
+        let (values, role) = (Some((values, value)), Role::Step(i as f64 / last));
+        SeriesLine { values, name, role }
     };
     each.iter().copied().zip(of_each(name, &each)).enumerate().map(line).collect()
 }
@@ -311,8 +306,8 @@ fn walked_lines(picture: &SweepPicture, x: &str) -> Chart {
         return Chart::stack(panels.into(), "", data);
     }
     let both = walks[0].2.iter().zip(&walks[1].2);
-    let between = both.map(|(&a, &b)| [places[a], quantity.values[a], quantity.values[b]]);
-    let between: Vec<[f64; 3]> = between.collect();
+    let between: Vec<[f64; 3]> =
+        both.map(|(&a, &b)| [places[a], quantity.values[a], quantity.values[b]]).collect();
     let apart = |row: &[f64; 3]| (panel.y.share(row[1]) - panel.y.share(row[2])).abs() > VISIBLE;
     if between.iter().any(apart) {
         panel.layer(Role::Hysteresis, "hysteresis", Marks::Band(between));
