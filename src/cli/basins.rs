@@ -166,8 +166,8 @@ fn starts(options: &Arguments) -> Result<Starts, Failure> {
         return Starts::grid(&x_mm, &v).map_err(|problem| wrong("--x-mm and --v", "", &problem));
     };
     let whole = |option: &str, text: &str| {
-        let wrong = || format!("{option} {text}: give a whole number, such as 1000");
-        text.trim().parse::<u64>().map_err(|_| Failure::argument(wrong()))
+        let wrong = |_| Failure::argument(format!("{option} {text}: give a whole number, such as 1000"));
+        text.trim().parse::<u64>().map_err(wrong)
     };
     let count = whole("--random", text)?;
     let seed = options.seed.as_deref().map_or(Ok(0), |text| whole("--seed", text))?;

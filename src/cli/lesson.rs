@@ -76,22 +76,19 @@ fn full_text(document: &LessonDocument) -> String {
     let lesson = &document.lesson;
     let mut text = format!("{} ({} min)\nGoal: {}\n\n", lesson.title, lesson.minutes, lesson.goal);
     for (number, step) in lesson.steps.iter().enumerate() {
-        let word = match step {
-            Step::Say(_) => "",
-            Step::Predict { .. } => "Predict: ",
-            Step::Do { .. } => "Do: ",
-            Step::Explain(_) => "Explained: ",
-        };
-        text += &format!("{}. {word}{}\n", number + 1, step.text());
-        match step {
+        let (word, more): (&str, String) = match step {
+            Step::Say(_) => ("", String::new()),
             Step::Predict { options, .. } => {
-                for (letter, option) in ('a'..).zip(options) {
-                    text += &format!("   ({letter}) {}\n", option.text);
-                }
+                let lettered = ('a'..).zip(options);
+                (
+                    "Predict: ",
+                    lettered.map(|(letter, option)| format!("   ({letter}) {}\n", option.text)).collect(),
+                )
             }
-            Step::Do { hint: Some(hint), .. } => text += &format!("   Hint: {hint}\n"),
-            _ => {}
-        }
+            Step::Do { hint, .. } => ("Do: ", hint.iter().map(|hint| format!("   Hint: {hint}\n")).collect()),
+            Step::Explain(_) => ("Explained: ", String::new()),
+        };
+        text += &format!("{}. {word}{}\n{more}", number + 1, step.text());
     }
     text + &format!("\nMisconception: {}\nLecturer: {}\n", lesson.misconception, lesson.lecturer)
 }

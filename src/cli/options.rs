@@ -93,10 +93,9 @@ macro_rules! commands {
             )*
         }
 
-        pub const COMMANDS: &[&str] = &[$(stringify!($word)),*];
-
-        /// For each command the common options that it refuses, and those that it ignores.
-        const UNUSED: &[(&[&str], &[&str])] = &[$((&[$($($refused),+)?], &[$($($ignored),+)?])),*];
+        /// Each command with the common options that it refuses, and those that it ignores.
+        const COMMANDS: &[(&str, &[&str], &[&str])] =
+            &[$((stringify!($word), &[$($($refused),+)?], &[$($($ignored),+)?])),*];
 
         impl Command {
             pub fn name(&self) -> &'static str {
@@ -107,9 +106,7 @@ macro_rules! commands {
 
             /// The common options that it refuses.
             pub fn refused(&self) -> &'static [&'static str] {
-                match self {
-                    $(Self::$variant { .. } => &[$($($refused),+)?],)*
-                }
+                COMMANDS.iter().find(|command| command.0 == self.name()).map_or(&[], |command| command.1)
             }
 
             pub fn common(&mut self) -> &mut Common {
@@ -169,7 +166,7 @@ commands! {
 
 /// The command line for clap; the help of each command hides the options that it does not use.
 pub fn command_line() -> clap::Command {
-    COMMANDS.iter().zip(UNUSED).fold(Options::command(), |command, (word, (refused, ignored))| {
+    COMMANDS.iter().fold(Options::command(), |command, (word, refused, ignored)| {
         let unused = refused.iter().chain(*ignored);
         command
             .mut_subcommand(word, |sub| unused.fold(sub, |sub, name| sub.mut_arg(name, |arg| arg.hide(true))))
@@ -178,7 +175,8 @@ pub fn command_line() -> clap::Command {
 
 /// The names of all commands, as a sentence lists them.
 pub fn command_names() -> String {
-    let (last, others) = COMMANDS.split_last().unwrap_or((&"", &[]));
+    let names: Vec<&str> = COMMANDS.iter().map(|command| command.0).collect();
+    let (last, others) = names.split_last().unwrap_or((&"", &[]));
     format!("{} or {last}", others.join(", "))
 }
 

@@ -113,13 +113,9 @@ impl Outputs {
 
 fn sheet(options: &PlotOptions, format: Format) -> Result<Option<Sheet>, Failure> {
     let Some(width_mm) = &options.plot_width_mm else { return Ok(None) };
-    let text = SheetText {
-        width_mm,
-        height_mm: options.plot_height_mm.as_deref(),
-        font_pt: &options.font_pt,
-        dpi: options.dpi.as_deref(),
-        titled: !options.no_title,
-    };
+    let PlotOptions { plot_height_mm, font_pt, dpi, no_title, .. } = options;
+    let (height_mm, dpi, titled) = (plot_height_mm.as_deref(), dpi.as_deref(), !no_title);
+    let text = SheetText { width_mm, height_mm, font_pt, dpi, titled };
     Sheet::read(&text, format == Format::Png).map(Some).map_err(|error| Failure::argument(error.to_string()))
 }
 

@@ -73,12 +73,8 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
             SectionAt::Phase(finite("--phase-deg", text, "give an angle in degrees, such as 90")?)
         }
     };
-    let settings = SectionOptions {
-        at,
-        periods: options.skip.zip(options.keep),
-        until_settled: None,
-        carry: options.carry.as_deref().and_then(Carry::named),
-    };
+    let carry = options.carry.as_deref().and_then(Carry::named);
+    let settings = SectionOptions { at, periods: options.skip.zip(options.keep), until_settled: None, carry };
     if options.over.is_empty() { one(options, common, settings) } else { diagram(options, common, settings) }
 }
 

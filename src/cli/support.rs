@@ -191,11 +191,6 @@ pub fn finite(option: &str, text: &str, remedy: &str) -> Result<f64, Failure> {
     number(option, text, |value| value.is_finite(), remedy)
 }
 
-/// Whether a value is finite and above 0.
-pub fn is_positive(value: &f64) -> bool {
-    *value > 0.0 && value.is_finite()
-}
-
 /// A number of things, such as `1 cell` or `2 cells`.
 pub fn counted(count: u64, name: &str) -> String {
     format!("{count} {name}{}", if count == 1 { "" } else { "s" })

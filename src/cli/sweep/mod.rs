@@ -41,7 +41,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     all.add(&tally);
     if let Rows::Compared(file) = &mut rows_out {
         file.end()?;
-        common.say(&format!("{}: all {} rows are the same", prepared.data.display(), all.cells));
+        common.say(&format!("{}: all {} rows are the same", prepared.data().display(), all.cells));
     }
     let chart = |rows: &Table, ranges| prepared.chart(rows, ranges);
     let wall_s = job.finish(chart, |manifest| {
@@ -70,7 +70,7 @@ impl Prepared<'_> {
     fn open_rows(&self, outputs: &mut Outputs) -> Result<Option<(Rows, Tally)>, Failure> {
         let header = header(&self.sweep.empty_table().only(&self.columns));
         if self.options.check {
-            let mut file = Compared::new(&self.data)?;
+            let mut file = Compared::new(&self.data())?;
             file.put(&header)?;
             return Ok(Some((Rows::Compared(file), Tally::default())));
         }

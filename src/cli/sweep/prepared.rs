@@ -102,8 +102,6 @@ pub struct Prepared<'a> {
     pub document: Document,
     /// Where the rows go.
     pub out: PathBuf,
-    /// The file with the rows of the manifest that is given as the scene.
-    pub data: PathBuf,
     pub sweep: Sweep,
     pub slice: Slice,
     /// The mechanism of the first cell, if it is solved.
@@ -164,23 +162,15 @@ impl<'a> Prepared<'a> {
         if picture.is_some() {
             can_show(sweep.grid(), quantity, &view, &sweep.empty_table())?;
         }
-        let data = Path::new(&options.scene).with_file_name(swept.data);
         let mut plan = plan(&document, &sweep, &chosen, env!("CARGO_PKG_VERSION"));
         (plan["rows"], plan["unit"]) = (json!(sweep.rows()), json!(slice.unit()));
-        Ok(Self {
-            options,
-            document,
-            out,
-            data,
-            sweep,
-            slice,
-            mechanism,
-            columns,
-            plan,
-            picture,
-            quantity,
-            view,
-        })
+        Ok(Self { options, document, out, sweep, slice, mechanism, columns, plan, picture, quantity, view })
+    }
+
+    /// The file with the rows of the manifest that is given as the scene.
+    pub fn data(&self) -> PathBuf {
+        let name = self.document.swept.as_ref().map_or("", |swept| &swept.data);
+        Path::new(&self.options.scene).with_file_name(name)
     }
 }
 

@@ -6,9 +6,9 @@ use serde_json::{Map, Value, json};
 
 use super::arguments::REPEATED_SCENE;
 use super::json::{extend, pretty};
-use super::plan::plan_checksum;
 use crate::scene::{Document, Excitation, PROGRAM, Scene, numeric_fields};
 use crate::study::{Answer, Basins, Grid, Shard, Tally};
+use crate::system::checksum::checksum;
 
 /// Provenance of a result, apart from its scene.
 #[derive(Debug, Clone, PartialEq)]
@@ -71,7 +71,7 @@ impl Manifest<'_> {
     /// files; the document is the first of them.
     pub fn of_scenes(&self, scenes: &[(String, Document)]) -> String {
         let scenes = scenes.iter().map(|(name, document)| {
-            let scene = text(document, &document.scene);
+            let scene = document.write(&document.scene).ok();
             json!({ "name": name, "scene_ron": scene, "files": document.files.cached })
         });
         self.written(None, json!({ "scenes": scenes.collect::<Vec<_>>() }))
@@ -92,7 +92,7 @@ impl Manifest<'_> {
         if let Some(Made { plan, shard, sha256, .. }) = made {
             more["shard"] = json!(shard.to_string());
             more["sha256"] = json!(sha256);
-            more["plan_sha256"] = json!(plan_checksum(plan));
+            more["plan_sha256"] = json!(checksum(plan.to_string().as_bytes()));
             more["plan"] = plan.clone();
         }
         self.swept(grid, more)
@@ -113,7 +113,9 @@ impl Manifest<'_> {
     fn swept(&self, grid: &Grid, more: Value) -> String {
         let axes = grid.axes().iter().zip(grid.columns());
         let axes = axes.map(|(axis, column)| {
-            json!({ "field": axis.field, "column": column, "values": numbers(&axis.values) })
+            let mut values = json!(axis.values);
+            name_infinity(&mut values);
+            json!({ "field": axis.field, "column": column, "values": values })
         });
         let mut all = json!({ "grid": axes.collect::<Vec<_>>() });
         extend(&mut all, more);
@@ -173,18 +175,12 @@ impl Manifest<'_> {
             "wall_s": origin.wall_s,
             "cpu_s": origin.cpu_s,
             "scene": scene.map(scene_value),
-            "scene_ron": document.zip(scene).and_then(|(document, scene)| text(document, scene)),
+            "scene_ron": document.zip(scene).and_then(|(document, scene)| document.write(scene).ok()),
             "files": document.map_or_else(|| json!({}), |document| json!(document.files.cached)),
         });
         extend(&mut all, end);
         pretty(&all)
     }
-}
-
-/// The text of a scene, this document's or one made from it; `None` if it cannot be written, rather than that
-/// of an empty scene.
-fn text(document: &Document, scene: &Scene) -> Option<String> {
-    document.write(scene).ok()
 }
 
 /// The path of the manifest beside the rows at `out`.
@@ -247,7 +243,7 @@ pub fn origin(document: &Document, version: &str) -> Map<String, Value> {
         "title": scene.title,
         "tolerance": scene.run.tolerance,
         "seed": seed(scene),
-        "scene_ron": text(document, scene),
+        "scene_ron": document.write(scene).ok(),
     });
     if let Value::Object(all) = all { all } else { Map::new() }
 }
@@ -259,13 +255,6 @@ pub(super) fn scene_value(scene: &Scene) -> Value {
     for part in ["transducer", "sweep"] {
         value.get_mut(part).into_iter().for_each(name_infinity);
     }
-    value
-}
-
-/// The numbers of an axis, infinity as `inf`.
-fn numbers(values: &[f64]) -> Value {
-    let mut value = json!(values);
-    name_infinity(&mut value);
     value
 }
 

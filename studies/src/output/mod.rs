@@ -33,7 +33,7 @@ pub use arguments::{Argument, picture_arguments, repeated};
 pub use csv::{csv, csv_table, header, rows};
 pub use json::{identified, landscape, summary};
 pub use manifest::{Made, Manifest, Provenance, manifest_path, merged_manifest};
-pub use plan::{plan, plan_checksum, plan_differences};
+pub use plan::{plan, plan_differences};
 pub use plot::*;
 pub use text::aligned;
 

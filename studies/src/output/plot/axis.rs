@@ -170,12 +170,12 @@ impl PlotAxis {
     /// A logarithmic axis in whole decades that covers `values`, which are not logarithms and above 0, with
     /// ticks at powers of ten.
     pub fn decades(values: impl IntoIterator<Item = f64>, label: &str) -> Self {
-        let logs =
-            values.into_iter().filter(|value| value.is_finite() && *value > 0.0).map(elementary::log10);
-        let (low, high) = extent(logs);
-        let (low, high) =
-            if low > high { (0.0, 1.0) } else { (low.floor(), high.ceil().max(low.floor() + 1.0)) };
-        Self::powers(low, high, label)
+        let positive = values.into_iter().filter(|value| value.is_finite() && *value > 0.0);
+        let (low, high) = extent(positive.map(elementary::log10));
+        if low > high {
+            return Self::powers(0.0, 1.0, label);
+        }
+        Self::powers(low.floor(), high.ceil().max(low.floor() + 1.0), label)
     }
 
     /// A logarithmic axis between these logarithms, with ticks at powers of ten.

@@ -9,7 +9,7 @@ use super::quantity::suited_unit;
 use super::role::Role;
 use crate::numeric::round::decade;
 use crate::numeric::{elementary, short};
-use crate::study::{Rated, SEARCHED_SPAN, Table, Values};
+use crate::study::{Rated, SEARCHED_SPAN, Table};
 
 /// Largest number of panels side by side.
 const COLUMNS: usize = 4;
@@ -261,8 +261,7 @@ fn panel(rated: &[Rated], frequency_hz: f64, shown: &Shown, up: &PlotAxis) -> Pa
 
 /// The data of the picture, one row for each value, in SI.
 fn drawn(rated: &[Rated]) -> Table {
-    let (mut series, mut scenes, mut values) = (Vec::new(), Vec::new(), Vec::new());
-    for scene in rated {
+    let of_scene = |scene: &Rated| {
         let summary = &scene.summary;
         let power = summary.harvest.and_then(|harvest| harvest.mean_load_power);
         let all = [
@@ -279,15 +278,13 @@ fn drawn(rated: &[Rated]) -> Table {
             ("crosses_to_hz", scene.crosses_hz.map(|band| band.1)),
             ("threshold_sensitivity", scene.sensitivity.as_ref().map(|change| change.0)),
         ];
-        for (name, value) in all {
-            let Some(value) = value else { continue };
-            series.push(name);
-            scenes.push(scene.name.clone());
-            values.push(value);
-        }
-    }
-    Table::new()
-        .with("series", Values::Words(series))
-        .with("scene", Values::Names(scenes))
-        .with("value", Values::Numbers(values))
+        let name = scene.name.clone();
+        all.into_iter().filter_map(move |(series, value)| Some((series, name.clone(), value?)))
+    };
+    let rows: Vec<_> = rated.iter().flat_map(of_scene).collect();
+    Table::new().each("series", &rows, |row| row.0).each("scene", &rows, |row| row.1.clone()).each(
+        "value",
+        &rows,
+        |row| row.2,
+    )
 }

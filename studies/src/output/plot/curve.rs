@@ -1,13 +1,14 @@
-//! Picture of a mechanism: force and potential over displacement, with equilibria, kinks and stops.
+//! Pictures of a mechanism: force and potential over displacement, with equilibria, kinks and stops; and the
+//! restitution of a compliant stop.
 
 use super::axis::{PlotAxis, Ranges};
 use super::chart::{Chart, Layer, Marks, Panel};
-use super::drawn::Drawn;
+use super::drawn::{Drawn, of_rows};
 use super::figure::Point;
 use super::role::Role;
-use crate::mechanics::{Landscape, Mechanism};
+use crate::mechanics::{Hertz, Landscape, Mechanism};
 use crate::numeric::{extent, short};
-use crate::study::Table;
+use crate::study::{Table, yield_speed};
 
 /// The picture of the curve in `table` (as [`curve`](crate::study::curve) gives it), with stops at these
 /// positions in m, NaN where there is none. `ranges` are those of displacement and force.
@@ -138,4 +139,30 @@ fn telling(x: &[f64], values: &[f64], landscape: &Landscape) -> (f64, f64) {
     let (inner_low, inner_high) = range(left.x * 1e3, right.x * 1e3);
     let more = 0.5 * (inner_high - inner_low);
     if more > 0.0 { (low.max(inner_low - more), high.min(inner_high + more)) } else { (low, high) }
+}
+
+/// The picture of restitution over impact speed, beside a rigid stop's constant, from `table` (as
+/// [`contact`](crate::study::contact) gives it), for `stop` and a mass in kg.
+pub fn contact_chart(table: &Table, stop: &Hertz, mass: f64) -> Chart {
+    let names = ["speed_m_per_s", "restitution", "rigid_restitution"];
+    let [speeds, compliant, rigid] = names.map(|name| table.numbers(name).unwrap_or_default());
+    let top = speeds.last().copied().unwrap_or(1.0);
+    let path = |y: &[f64]| Marks::Path(speeds.iter().copied().zip(y.iter().copied()).collect());
+    let across = PlotAxis::between(0.0, top, "impact speed (m/s)");
+    let mut panel = Panel::new(across, PlotAxis::between(0.0, 1.05, "restitution"));
+    panel.layer(Role::Curve, "compliant stop", path(compliant));
+    let name = format!("rigid stop, {}", short(rigid.first().copied().unwrap_or(f64::NAN)));
+    panel.layer(Role::Separatrix, name, path(rigid));
+    if let Some(speed) = yield_speed(stop, mass).filter(|speed| *speed < top) {
+        let name = format!("yields from {} m/s on", short(speed));
+        panel.layer(Role::UnstableMotion, name, Marks::Verticals(vec![speed]));
+    }
+    let about = format!(
+        "one contact alone: {} N/m^1.5, loss {} s/m; {} ms at {} m/s",
+        short(stop.stiffness),
+        short(stop.loss),
+        short(stop.contact_time(mass, 0.5 * top) * 1e3),
+        short(0.5 * top)
+    );
+    Chart::stack(vec![panel], about, of_rows("contact", table, &names, |_| true))
 }

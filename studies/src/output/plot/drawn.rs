@@ -33,10 +33,8 @@ impl Drawn {
     /// All rows.
     pub fn table(self) -> Table {
         let table = Table::new().with("series", Values::Words(self.series));
-        let table = self
-            .numbers
-            .into_iter()
-            .fold(table, |table, (name, values)| table.with(name, Values::Numbers(values)));
+        let numbers = self.numbers.into_iter();
+        let table = numbers.fold(table, |table, (name, values)| table.with(name, Values::Numbers(values)));
         self.words.into_iter().fold(table, |table, (name, values)| table.with(name, Values::Words(values)))
     }
 }

@@ -50,13 +50,9 @@ impl Area {
 
     /// The part of a convex polygon that lies inside (Sutherland and Hodgman 1974); empty if none does.
     pub fn clip_polygon(self, points: Vec<Point>) -> Vec<Point> {
+        let Self { left, top, right, bottom } = self;
         // the inside is the side to which the normal of the edge points
-        let edges = [
-            ((1.0, 0.0), self.left),
-            ((-1.0, 0.0), -self.right),
-            ((0.0, 1.0), self.top),
-            ((0.0, -1.0), -self.bottom),
-        ];
+        let edges = [((1.0, 0.0), left), ((-1.0, 0.0), -right), ((0.0, 1.0), top), ((0.0, -1.0), -bottom)];
         edges.into_iter().fold(points, |points, (normal, edge)| {
             let depth = |at: Point| normal.0 * at.0 + normal.1 * at.1 - edge;
             let mut inside = Vec::new();

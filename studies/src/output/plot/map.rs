@@ -7,7 +7,7 @@ use super::drawn::Drawn;
 use super::figure::Point;
 use super::quantity::Quantity;
 use super::role::Role;
-use super::swept::{Cut, SweepPicture, ascending, cells, drawn, label, marks};
+use super::swept::{Cut, Overlay, SweepPicture, ascending, cells, drawn, label, marks};
 use crate::numeric::short;
 use crate::study::{Table, first_crossing_edge, label_and_unit, line_meets};
 
@@ -19,7 +19,7 @@ const CUT: f64 = 0.5;
 
 /// The lines over a map, in its fields.
 struct Lines {
-    release: Option<Vec<Point>>,
+    release: Vec<Point>,
     /// The edges of the first crossing cells.
     crossing: Vec<Vec<Point>>,
 }
@@ -29,26 +29,22 @@ impl Lines {
         let pairs = |table: &Table| -> Option<Vec<Point>> {
             Some(table.numbers(x)?.iter().copied().zip(table.numbers(y)?.iter().copied()).collect())
         };
-        let crossing = picture.overlay.first_crossing.as_ref();
+        let Overlay { release, first_crossing } = &picture.overlay;
         let edge = |table| first_crossing_edge(table, (x, y), &cells.across, &cells.up);
-        Self {
-            release: picture.overlay.release.as_ref().and_then(pairs),
-            crossing: crossing.map(edge).unwrap_or_default(),
-        }
+        let release = release.as_ref().and_then(pairs).unwrap_or_default();
+        Self { release, crossing: first_crossing.as_ref().map(edge).unwrap_or_default() }
     }
 
     fn draw(&self, panel: &mut Panel) {
         for part in &self.crossing {
             panel.layer(Role::FirstCrossing, "first crossing cell", Marks::Path(part.clone()));
         }
-        if let Some(points) = &self.release {
-            let name = "release in closed form: comes off the stop";
-            panel.layer(Role::Release, name, Marks::Path(points.clone()));
-        }
+        let name = "release in closed form: comes off the stop";
+        panel.layer_if_any(Role::Release, name, Marks::Path(self.release.clone()));
     }
 
     fn record(&self, drawn: &mut Drawn) {
-        let release = self.release.iter().flatten().map(|point| ("release", point));
+        let release = self.release.iter().map(|point| ("release", point));
         let crossing = self.crossing.iter().flatten().map(|point| ("first_crossing", point));
         for (series, (a, b)) in release.chain(crossing) {
             drawn.put(series, &[*a, *b], &[]);
@@ -103,14 +99,6 @@ fn transients(rows: &Table, (x, y): (&str, &str), cells: &Cells) -> Vec<Point> {
     (0..rows.rows()).filter(is_transient).map(|row| (names[0][row], names[1][row])).collect()
 }
 
-/// The quantity as colour over two fields.
-pub(super) fn map(picture: &SweepPicture, (x, y): (&str, &str)) -> Chart {
-    let (panel, lines) = map_panel(picture, (x, y));
-    let mut drawn = drawn(picture, &[(x, picture.ranges.x), (y, picture.ranges.y)]);
-    lines.record(&mut drawn);
-    Chart::stack(vec![panel], "", drawn.table())
-}
-
 /// The quantity as height and colour over two fields.
 pub(super) fn surface(picture: &SweepPicture, (x, y): (&str, &str)) -> Chart {
     let SweepPicture { rows, ranges, .. } = *picture;
@@ -130,8 +118,8 @@ pub(super) fn surface(picture: &SweepPicture, (x, y): (&str, &str)) -> Chart {
     Chart::stack(vec![panel], "", drawn(picture, &[(x, ranges.x), (y, ranges.y)]).table())
 }
 
-/// The map over the fields `x` and `y`, with the quantity along cuts through it beside it.
-pub(super) fn map_with_cuts(picture: &SweepPicture, (x, y): (&str, &str), cuts: &[Cut]) -> Chart {
+/// The quantity as colour over the fields `x` and `y`, with the quantity along cuts through the map beside it.
+pub(super) fn map(picture: &SweepPicture, (x, y): (&str, &str), cuts: &[Cut]) -> Chart {
     let SweepPicture { rows, ranges, .. } = *picture;
     let (mut panel, lines) = map_panel(picture, (x, y));
     let mut drawn = drawn(picture, &[(x, ranges.x), (y, ranges.y)]);
@@ -166,7 +154,7 @@ pub(super) fn map_with_cuts(picture: &SweepPicture, (x, y): (&str, &str), cuts: 
             all
         };
         let thresholds = [
-            (Role::Release, "cut_release", meets(lines.release.as_slice())),
+            (Role::Release, "cut_release", meets(std::slice::from_ref(&lines.release))),
             (Role::FirstCrossing, "cut_first_crossing", meets(&lines.crossing)),
         ];
         for (role, series, at) in thresholds {

@@ -57,9 +57,8 @@ pub fn quantities<'a>(table: &'a Table, grid: &'a Grid) -> impl Iterator<Item = 
         !matches!(values, Values::Words(_) | Values::Names(_)) || words_of(name).is_some()
     };
     let columns = table.columns().iter().filter(move |column| shown(&column.name, &column.values));
-    columns
-        .map(|column| column.name.as_str())
-        .filter(|name| !grid.columns().iter().any(|field| field == name))
+    let names = columns.map(|column| column.name.as_str());
+    names.filter(|name| !grid.columns().iter().any(|field| field == name))
 }
 
 impl Quantity {

@@ -1,5 +1,5 @@
-//! Pictures of a measured record with a fit or a computed curve, and with a lower panel of the residuals, or
-//! of numbers with their intervals.
+//! Pictures of a measured record: with a fit or a computed curve, and a lower panel of the residuals or of
+//! numbers with their intervals; or over a computed motion.
 
 use super::axis::{PlotAxis, Ranges};
 use super::chart::{Chart, Marks, Panel};
@@ -10,10 +10,10 @@ use super::role::Role;
 use crate::dynamics::STANDARD_GRAVITY;
 use crate::numeric::{extent, short};
 use crate::scene::{Quantity, Timing};
-use crate::study::{ForceComparison, Identified, Identity, Table};
+use crate::study::{Comparison, ForceComparison, Identified, Identity, Table, Trace};
 
 /// Number of samples below which they are drawn as dots.
-pub(super) const DOTS: usize = 400;
+const DOTS: usize = 400;
 
 /// The height of the lower panel over that of the upper one.
 const LOWER: f64 = 0.5;
@@ -187,7 +187,7 @@ fn pairs(table: &Table, scale: f64) -> Vec<Point> {
 }
 
 /// The factor from SI to the unit of an axis, what the axis is called, and that unit.
-pub(super) fn axis_of(quantity: Quantity, values: &[f64]) -> (f64, &'static str, &'static str) {
+fn axis_of(quantity: Quantity, values: &[f64]) -> (f64, &'static str, &'static str) {
     let largest = values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
     match quantity {
         Quantity::Velocity => {
@@ -202,7 +202,7 @@ pub(super) fn axis_of(quantity: Quantity, values: &[f64]) -> (f64, &'static str,
 }
 
 /// The root mean square of a difference in words, with its share in percent where it is known.
-pub(super) fn rms_difference((rms, percent): (f64, f64), scale: f64, unit: &str) -> String {
+fn rms_difference((rms, percent): (f64, f64), scale: f64, unit: &str) -> String {
     let words = format!("RMS difference {} {unit}", short(rms * scale));
     if percent.is_finite() { format!("{words}, {} % of the RMS measured", short(percent)) } else { words }
 }
@@ -295,8 +295,67 @@ impl RecordPicture {
 }
 
 /// A record over time, parted where samples are missing.
-pub(super) fn parted(record: &[Point]) -> Vec<Point> {
+fn parted(record: &[Point]) -> Vec<Point> {
     let timing = Timing::of(&record.iter().map(|point| point.0).collect::<Vec<_>>());
     let parts = record.chunk_by(|a, b| !timing.is_gap(b.0 - a.0));
     parts.flat_map(|part| part.iter().copied().chain([(f64::NAN, f64::NAN)])).collect()
+}
+
+/// The picture of a run from its trace, and of what was measured of this quantity over it; `inset` are the
+/// times in s that a second panel shows closer, `ranges` those of the first.
+pub fn measured_chart(
+    trace: &Trace,
+    (found, quantity): (&Comparison, Quantity),
+    inset: Option<(f64, f64)>,
+    ranges: Ranges,
+) -> Chart {
+    let column = |name: &str| trace.path.numbers(name).unwrap_or_default();
+    let (scale, words, unit) = axis_of(quantity, &found.measured);
+    let (name, label) = match quantity {
+        Quantity::Velocity => ("v_m_per_s", format!("{words} ({unit})")),
+        Quantity::Acceleration => ("base_accel_m_per_s2", format!("base {words} ({unit})")),
+        _ => ("x_m", format!("{words} ({unit})")),
+    };
+    let scaled = |times: &[f64], values: &[f64]| -> Vec<Point> {
+        let pairs = times.iter().zip(values).map(|(t, value)| (*t, value * scale));
+        pairs.filter(|point| point.1.is_finite()).collect()
+    };
+    let computed = scaled(column("t_s"), column(name));
+    let measured = scaled(&found.times, &found.measured);
+    let panel = |(from, to): (f64, f64), given: Option<(f64, f64)>, closer: Option<(f64, f64)>| {
+        let seen = |data: &[Point]| -> Vec<Point> {
+            data.iter().copied().filter(|point| (from..=to).contains(&point.0)).collect()
+        };
+        let (seen_computed, seen_measured) = (seen(&computed), seen(&measured));
+        let all = seen_computed.iter().chain(&seen_measured).map(|point| point.1);
+        let up = PlotAxis::around(all, 0.09, &label).or_given(given);
+        let mut panel = Panel::new(PlotAxis::between(from, to, "time (s)"), up);
+        if let Some(times) = closer {
+            panel.layer(Role::Closer, "shown closer below", Marks::Spans(vec![times]));
+        }
+        if quantity == Quantity::Displacement {
+            panel.level_stops((trace.stops.0 * 1e3, trace.stops.1 * 1e3));
+        }
+        // many samples lie below the computed line, few over it
+        let is_cloud = seen_measured.len() < DOTS;
+        if !is_cloud {
+            panel.layer(Role::Measured, "measured", Marks::Trace(parted(&measured)));
+        }
+        panel.layer(Role::Motion, "computed", Marks::Trace(computed.clone()));
+        if is_cloud {
+            panel.layer(Role::Measured, "measured", Marks::Cloud(measured.clone()));
+        }
+        panel
+    };
+    let mut panels = vec![panel(ranges.x.unwrap_or((0.0, trace.end)), ranges.y, inset)];
+    panels.extend(inset.map(|times| panel(times, None, None)));
+    let mut drawn = Drawn::new(["t_s", name], &[]);
+    for (series, points) in [("computed", &computed), ("measured", &measured)] {
+        points.iter().for_each(|(t, value)| drawn.put(series, &[*t, value / scale], &[]));
+    }
+    let mut words = rms_difference(found.rms, scale, unit);
+    if found.shift != 0.0 {
+        words += &format!("; record shifted by {} s", short(found.shift)).replace('-', "\u{2212}");
+    }
+    Chart::stack(panels, words, drawn.table())
 }

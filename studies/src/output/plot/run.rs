@@ -381,17 +381,19 @@ fn subtitle(summary: &Summary) -> String {
 /// Regime and numbers, under the phase portrait.
 fn account(summary: &Summary, trace: &Trace, (scale, unit): (f64, &str)) -> Vec<Note> {
     let name = summary.regime.name();
-    let mut notes = Vec::new();
+    let regime =
+        REGIMES.iter().position(|regime| regime.0 == name).filter(|_| summary.rms_velocity.is_some());
+    let regime = regime.map(|place| Note { words: name.to_owned(), role: Some(Role::Regime(place)) });
+    let mut notes: Vec<Note> = regime.into_iter().collect();
     let mut say = |words: String| notes.push(Note { words, role: None });
     if let Some(rms) = summary.rms_velocity {
         let (from, to) = (short(summary.window.0), short(summary.window.1));
-        let when = match (summary.settled, summary.is_transient()) {
+        say(match (summary.settled, summary.is_transient()) {
             (Some(true), _) => format!("settled, from {from} s on:"),
             (_, true) => format!("not settled, {from} to {to} s:"),
             (Some(false), false) => format!("averages steady, {from} to {to} s:"),
             (None, _) => format!("from {from} to {to} s:"),
-        };
-        say(when);
+        });
         say(format!("RMS velocity {} {unit}", short(rms * scale)));
         if shows_window(summary, trace) {
             let impacts = format!("{} impacts", summary.impacts);
@@ -409,11 +411,6 @@ fn account(summary: &Summary, trace: &Trace, (scale, unit): (f64, &str)) -> Vec<
         }
     } else if trace.path.rows() > 0 {
         say("ended before its settled window".to_owned());
-    }
-    let regime =
-        REGIMES.iter().position(|regime| regime.0 == name).filter(|_| summary.rms_velocity.is_some());
-    if let Some(place) = regime {
-        notes.insert(0, Note { words: name.to_owned(), role: Some(Role::Regime(place)) });
     }
     notes
 }

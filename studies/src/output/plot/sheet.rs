@@ -57,10 +57,8 @@ impl Sheet {
             number.ok_or_else(|| error(option, text, problem))
         };
         let width_mm = within("plot-width-mm", text.width_mm, Self::MM, "a width in mm", "85")?;
-        let height_mm = text.height_mm;
-        let height_mm = height_mm
-            .map(|text| within("plot-height-mm", text, Self::MM, "a height in mm", "60"))
-            .transpose()?;
+        let height = |text| within("plot-height-mm", text, Self::MM, "a height in mm", "60");
+        let height_mm = text.height_mm.map(height).transpose()?;
         let font_pt = within("font-pt", text.font_pt, Self::FONT_PT, "a size in points", "8")?;
         let dpi = text.dpi.map_or(Ok(300.0), |text| {
             within("dpi", text, Self::DPI, "a resolution in pixels an inch", "300")

@@ -86,8 +86,7 @@ impl SurfaceFrame {
     /// Floor and back walls with the lines of their ticks.
     fn walls(&self, figure: &mut Figure, theme: &Theme) {
         let shares = |axis: &PlotAxis| axis.ticks.iter().map(|tick| axis.share(tick.0)).collect::<Vec<_>>();
-        let [x, y, z] = [&self.x, &self.y, &self.z].map(|axis| shares(axis).into_iter());
-        for line in wall_lines(x, y, z) {
+        for line in wall_lines([&self.x, &self.y, &self.z].map(shares)) {
             self.line(figure, line, style::GRID, theme.grid);
         }
         for line in BACK_EDGES {

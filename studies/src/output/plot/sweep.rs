@@ -4,7 +4,7 @@ use super::axis::PlotAxis;
 use super::cells::{Cell, Cells, Colours};
 use super::chart::{Chart, Column, Layer, Marks, Panel, Side};
 use super::figure::Point;
-use super::map::{cells_panel, map, map_with_cuts, surface};
+use super::map::{cells_panel, map, surface};
 use super::quantity::{Quantity, quantities, words_of};
 use super::role::Role;
 use super::surface::MAX_SURFACE_CELLS;
@@ -100,15 +100,6 @@ pub fn can_show<'a>(
     }
 }
 
-/// Checks that `what` can be shown over the field of this grid.
-pub fn can_show_over_field(grid: &Grid, what: &'static str) -> Result<(), NoPicture> {
-    match grid.axes().len() {
-        1 if grid.cells() > MAX_PICTURE_CELLS => Err(NoPicture::Cells(grid.cells())),
-        1 => Ok(()),
-        n => Err(NoPicture::OneField(what, n)),
-    }
-}
-
 /// Largest number of values of a field that are shown as lines, one per value, instead of a map.
 const FEW: usize = 6;
 /// Smallest ratio of the number of values of the other field to these.
@@ -132,12 +123,12 @@ pub fn sweep_chart(picture: &SweepPicture) -> Result<Chart, NoPicture> {
     let walked: Vec<Direction> = walked.collect();
     let mut chart = match (grid.columns(), few_lines(rows, grid)) {
         ([x, y], _) if picture.view == View::Surface => surface(picture, (x, y)),
-        ([x, y], _) if let View::Cuts(cuts) = &picture.view => map_with_cuts(picture, (x, y), cuts),
+        ([x, y], _) if let View::Cuts(cuts) = &picture.view => map(picture, (x, y), cuts),
         ([x], _) if walked.len() == 2 => walked_lines(picture, x),
         ([x, y], _) if walked.len() == 2 => walked_maps(picture, (x, y)),
         ([x], _) => lines(picture, x, None),
         (_, Some((x, each))) => lines(picture, x, Some(each)),
-        ([x, y], None) => map(picture, (x, y)),
+        ([x, y], None) => map(picture, (x, y), &[]),
         (other, None) => return Err(NoPicture::Fields(other.len())),
     };
     chart.subtitle = sweep_about(grid, scene, &walked, until_settled);

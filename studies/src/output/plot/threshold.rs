@@ -48,7 +48,7 @@ pub fn threshold_chart(
             let (until_settled, draws) = (None, "");
             let shown =
                 SweepPicture { rows, grid, scene, until_settled, quantity, overlay, view, ranges, draws };
-            map(&shown, (&columns[0], &columns[1]))
+            map(&shown, (&columns[0], &columns[1]), &[])
         }
     };
     let fields = grid.columns().iter().map(String::as_str);
