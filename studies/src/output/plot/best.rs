@@ -93,9 +93,8 @@ impl<'a> Shown<'a> {
         let Ranges { x, y } = self.ranges;
         let scan = (scan_places(self.question) as usize).min(self.tried.len());
         let (scan, nearer) = self.tried.split_at(scan);
-        let edges =
-            |field: usize| Edges::new(&scan.iter().map(|tried| tried.at[field]).collect::<Vec<f64>>());
-        let (across, up) = (edges(0), edges(1));
+        let values = |field: usize| scan.iter().map(|tried| tried.at[field]).collect::<Vec<f64>>();
+        let (across, up) = (Edges::new(&values(0)), Edges::new(&values(1)));
         let mut cells = vec![Cell::Blank; across.values.len() * up.values.len()];
         for tried in scan {
             if let (Some(column), Some(row)) = (across.place(tried.at[0]), up.place(tried.at[1])) {

@@ -7,6 +7,7 @@ use super::drawn::Drawn;
 use super::figure::Point;
 use super::quantity::Quantity;
 use super::role::Role;
+use super::sweep::distinct;
 use super::swept::{Cut, Overlay, SweepPicture, ascending, cells, drawn, label, marks};
 use crate::numeric::short;
 use crate::study::{Table, first_crossing_edge, label_and_unit, line_meets};
@@ -69,18 +70,6 @@ pub(super) fn cells_panel(
     panel
 }
 
-/// The map and its lines.
-fn map_panel(picture: &SweepPicture, (x, y): (&str, &str)) -> (Panel, Lines) {
-    let quantity = Quantity::of(picture.rows, picture.quantity);
-    let cells = cells(picture.rows, (x, y), &quantity, |_| true);
-    let lines = Lines::new(picture, (x, y), &cells);
-    let transients = transients(picture.rows, (x, y), &cells);
-    let mut panel = cells_panel(picture, (x, y), cells, quantity.bar());
-    panel.layer_if_any(Role::Transient, "may be a transient", Marks::Cloud(transients));
-    lines.draw(&mut panel);
-    (panel, lines)
-}
-
 /// The cells whose motion may be a transient, from the columns `settled` and `steady`; empty if the rows lack
 /// these columns, or if there are too many cells for dots.
 fn transients(rows: &Table, (x, y): (&str, &str), cells: &Cells) -> Vec<Point> {
@@ -121,10 +110,15 @@ pub(super) fn surface(picture: &SweepPicture, (x, y): (&str, &str)) -> Chart {
 /// The quantity as colour over the fields `x` and `y`, with the quantity along cuts through the map beside it.
 pub(super) fn map(picture: &SweepPicture, (x, y): (&str, &str), cuts: &[Cut]) -> Chart {
     let SweepPicture { rows, ranges, .. } = *picture;
-    let (mut panel, lines) = map_panel(picture, (x, y));
+    let quantity = Quantity::of(rows, picture.quantity);
+    let cells = cells(rows, (x, y), &quantity, |_| true);
+    let lines = Lines::new(picture, (x, y), &cells);
+    let transients = transients(rows, (x, y), &cells);
+    let mut panel = cells_panel(picture, (x, y), cells, quantity.bar());
+    panel.layer_if_any(Role::Transient, "may be a transient", Marks::Cloud(transients));
+    lines.draw(&mut panel);
     let mut drawn = drawn(picture, &[(x, ranges.x), (y, ranges.y)]);
     lines.record(&mut drawn);
-    let quantity = Quantity::of(rows, picture.quantity);
     let (mut below, mut beside) = (Vec::new(), Vec::new());
     for Cut { column, value } in cuts {
         let is_upright = column == x;
@@ -147,11 +141,8 @@ pub(super) fn map(picture: &SweepPicture, (x, y): (&str, &str), cuts: &[Cut]) ->
         let (name, unit) = label_and_unit(column);
         cut.heading = format!("at {name} {} {unit}", short(*value)).trim_end().to_owned();
         let meets = |lines: &[Vec<Point>]| {
-            let mut all: Vec<f64> =
-                lines.iter().flat_map(|line| line_meets(line, *value, is_upright)).collect();
-            all.sort_by(f64::total_cmp);
-            all.dedup();
-            all
+            let all = lines.iter().flat_map(|line| line_meets(line, *value, is_upright));
+            distinct(&all.collect::<Vec<f64>>())
         };
         let thresholds = [
             (Role::Release, "cut_release", meets(std::slice::from_ref(&lines.release))),

@@ -4,6 +4,7 @@ use super::axis::PlotAxis;
 use super::drawn::as_numbers;
 use super::mark::REGIMES;
 use super::role::Role;
+use super::sweep::distinct;
 use crate::numeric::extent;
 use crate::study::{Grid, RMS_VELOCITY, Read, SummaryField, Table, Values, label_and_unit};
 
@@ -46,7 +47,6 @@ pub(super) struct Quantity {
     pub rests: bool,
     /// The band about its values, if it has one: least and largest values.
     pub band: Option<[Vec<f64>; 2]>,
-    /// The column.
     name: String,
 }
 
@@ -188,9 +188,8 @@ const PERIOD: &str = "period";
 
 /// Whole numbers as kinds: each value becomes its place among them; the greatest ones are one kind.
 fn counted(values: &mut [f64]) -> Vec<(Role, String)> {
-    let mut all: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
-    all.sort_by(f64::total_cmp);
-    all.dedup();
+    let finite: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
+    let mut all = distinct(&finite);
     let rest = all.len() > MAX_COUNTS;
     all.truncate(MAX_COUNTS);
     for value in values.iter_mut().filter(|value| value.is_finite()) {

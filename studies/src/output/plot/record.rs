@@ -30,7 +30,6 @@ struct Series {
     is_marks: bool,
 }
 
-/// The lower panel.
 enum Lower {
     /// Residuals about 0: label, and name of the series in the drawn data.
     Rest(&'static str, &'static str, Vec<Point>),
@@ -42,7 +41,6 @@ enum Lower {
 struct RecordPicture {
     across: &'static str,
     up: &'static str,
-    /// The unit upwards.
     unit: &'static str,
     /// Names of both columns in the drawn data, and the factors from SI to the axes.
     columns: [String; 2],
@@ -271,9 +269,7 @@ impl RecordPicture {
     fn data(&self) -> Table {
         let below = match &self.lower {
             Lower::Rest(..) => Vec::new(),
-            Lower::Intervals(_, name, ..) => {
-                ["", "_low", "_high"].into_iter().map(|end| format!("{name}{end}")).collect()
-            }
+            Lower::Intervals(_, name, ..) => ["", "_low", "_high"].map(|end| format!("{name}{end}")).into(),
         };
         let mut drawn = Drawn::new(self.columns.iter().chain(&below).map(String::as_str), &[]);
         let [k, scale] = self.scales;

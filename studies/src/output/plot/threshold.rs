@@ -57,20 +57,16 @@ pub fn threshold_chart(
     chart.data = of_rows("threshold", rows, &names, |_| true);
     chart.subtitle = match rows.numbers("probability").and_then(|shares| shares.first()) {
         Some(share) => format!("the value at which {} % of the runs under noise cross", short(100.0 * share)),
-        None => about(onset).to_owned(),
+        None => {
+            let what = match onset {
+                Onset::Release => "the mass is released from the stop that it rests on",
+                Onset::Crossing => "the motion from rest, once it has settled, crosses",
+                Onset::Interwell => "the motion from rest, once it has settled, is interwell",
+            };
+            format!("the least value at which {what}")
+        }
     };
     Ok(chart)
-}
-
-/// What begins at the threshold.
-fn about(onset: Onset) -> &'static str {
-    match onset {
-        Onset::Release => "the least value at which the mass is released from the stop that it rests on",
-        Onset::Crossing => "the least value at which the motion from rest, once it has settled, crosses",
-        Onset::Interwell => {
-            "the least value at which the motion from rest, once it has settled, is interwell"
-        }
-    }
 }
 
 /// The threshold, which is the column `least`, over the field `x`; a line for each value of `series`.
