@@ -6,7 +6,6 @@ use std::sync::Arc;
 use clap::Args;
 use interwell::dynamics::Model;
 use interwell::mechanics::Mechanism;
-use interwell::mechanics::flexure::State;
 use interwell::numeric::extent;
 use interwell::output::{contact_chart, curve_chart, landscape, measured_force_chart, shapes_chart};
 use interwell::scene::Document;
@@ -141,8 +140,12 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     if let Some(found) = &measured {
         outputs.table(Output::COMPARISON, &found.table)?;
     }
+    let solved = |positions: &[f64], option: &str| {
+        let found = states(&mechanism, positions, &interrupt::silent_task());
+        found.map_err(|error| unknown(&document.name, option, error))
+    };
     if options.full {
-        let rows = solved(&mechanism, &positions(CURVE_POINTS), &document.name, "--full")?;
+        let rows = solved(&positions(CURVE_POINTS), "--full")?;
         let warning = mechanism.flexures.as_ref().and_then(|flexures| stress_warning(flexures, &rows));
         warning.iter().for_each(|words| common.say(&format!("warning: {}: {words}", document.name)));
         table = full_curve(&mechanism, &rows)?;
@@ -162,14 +165,14 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         }
     })?;
     if outputs.has(Output::SHAPES) {
-        let drawn = solved(&mechanism, &positions(SHAPES), &document.name, "--shapes")?;
+        let drawn = solved(&positions(SHAPES), "--shapes")?;
         outputs.table(Output::SHAPES, &shapes(&drawn))?;
     }
     outputs.draw(shapes_picture, &document, |_| {
         let is_named = listed.is_some() || options.points.is_some() || range.is_some();
         let equilibria = || mechanism.landscape.equilibria.iter().map(|equilibrium| equilibrium.x).collect();
         let at = if is_named { positions(SHAPES) } else { equilibria() };
-        let drawn = solved(&mechanism, &at, &document.name, "--shapes-plot")?;
+        let drawn = solved(&at, "--shapes-plot")?;
         Ok(shapes_chart(&drawn, &mechanism, stops))
     })?;
     if let Some((table, model)) = &contacts {
@@ -197,16 +200,6 @@ fn contact_table(
             document.name
         ),
     }
-}
-
-/// Solves the flexures at these positions in m; stops at Ctrl-C. An error names `scene` and `option`.
-fn solved(
-    mechanism: &Mechanism,
-    positions: &[f64],
-    scene: &str,
-    option: &str,
-) -> Result<Vec<State>, Failure> {
-    states(mechanism, positions, &interrupt::silent_task()).map_err(|error| unknown(scene, option, error))
 }
 
 fn unknown(scene: &str, option: &str, error: StatesError) -> Failure {

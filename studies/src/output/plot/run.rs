@@ -147,15 +147,12 @@ impl Seen<'_> {
     }
 
     fn panel(&self, kind: RunPanel) -> Panel {
-        let shown = self.rows(self.trace.shown_from);
-        let label = |unit: &str| kind.label(unit, self.trace.has_load);
+        let Self { trace, x, v, speed, .. } = *self;
+        let shown = self.rows(trace.shown_from);
+        let label = |unit: &str| kind.label(unit, trace.has_load);
         match kind {
-            RunPanel::Displacement => {
-                self.quantity(kind, (self.x, 1e3), self.displacement(&self.x[shown]), 1.0)
-            }
-            RunPanel::Velocity => {
-                self.quantity(kind, (self.v, self.speed.0), self.velocity(&self.v[shown]), 0.9)
-            }
+            RunPanel::Displacement => self.quantity(kind, (x, 1e3), self.displacement(&x[shown]), 1.0),
+            RunPanel::Velocity => self.quantity(kind, (v, speed.0), self.velocity(&v[shown]), 0.9),
             RunPanel::Acceleration => {
                 let in_g = self.accel[shown].iter().map(|a| a / STANDARD_GRAVITY);
                 let up = PlotAxis::around(in_g.chain([0.0]), 0.1, &label("g"));
