@@ -54,9 +54,7 @@ pub struct Arguments {
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let picture = Picture::new(&options.plot, common)?;
     let starts = starts(options)?;
-    if picture.is_some() {
-        can_show_starts(&starts)?;
-    }
+    picture.map(|_| can_show_starts(&starts)).transpose()?;
     let (document, mechanism) = load_with_mechanism(&options.scene, common)?;
     let count = starts.count() as u64;
     let basins = Basins::new(&document.scene, mechanism, starts);

@@ -106,7 +106,6 @@ impl Lines {
     }
 }
 
-/// A duration in words.
 pub fn duration(seconds: f64) -> String {
     if seconds < 1.0 {
         return "less than a second".to_owned();

@@ -128,9 +128,8 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     if let Some((measured, found)) = compared.filter(|_| !common.quiet) {
         measured.report(found);
     }
-    if let Some(warning) = yield_warning(&model, &simulation.summary) {
-        common.say(&format!("warning: {}: {warning}", document.name));
-    }
+    let warning = yield_warning(&model, &simulation.summary);
+    warning.iter().for_each(|words| common.say(&format!("warning: {}: {words}", document.name)));
     if let Some(reason) = remark(&model, simulation.summary.outcome) {
         let reason = format!("{}: {reason}", document.name);
         if options.strict {

@@ -114,9 +114,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let onset = Onset::named(&options.of).unwrap_or(Onset::Crossing);
     let (mut scan, chance) = search(options, &document, &grid)?;
     refuse_searched(&grid, &scan)?;
-    if picture.is_some() {
-        can_show_thresholds(&grid)?;
-    }
+    picture.map(|_| can_show_thresholds(&grid)).transpose()?;
     let mechanism = mechanism_of_all(&document, &grid, common, &warnings)?;
     if let Some(text) = options.until_settled.as_deref() {
         let mut first = document.scene.clone();

@@ -37,7 +37,6 @@ const MAX_COUNTS: usize = 8;
 pub(super) struct Quantity {
     /// Its values, one per row, NaN for missing ones; for kinds, their indices.
     pub values: Vec<f64>,
-    /// Label of its axis.
     pub label: String,
     /// The unit at the end of the label; empty where it has none.
     pub unit: String,

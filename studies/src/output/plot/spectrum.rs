@@ -5,7 +5,7 @@ use super::chart::{Chart, Marks, Panel};
 use super::drawn::Drawn;
 use super::figure::Point;
 use super::role::Role;
-use crate::numeric::{Taper, elementary, short};
+use crate::numeric::{Taper, elementary, extent, short};
 use crate::study::{Signal, Spectrum, words};
 
 words! {
@@ -39,8 +39,7 @@ pub fn spectrum_chart(spectrum: &Spectrum, quantity: SpectrumQuantity, ranges: R
     let across = across.or_given(ranges.x);
     let seen = frequencies.iter().zip(values).filter(|line| across.contains(*line.0));
     let seen = seen.map(|pair| *pair.1).filter(|value| *value > 0.0);
-    let (least, greatest) =
-        seen.fold((f64::INFINITY, 0.0_f64), |(low, high), value| (low.min(value), high.max(value)));
+    let (least, greatest) = extent(seen);
     let up = match ranges.y {
         Some((low, high)) => PlotAxis::powers(elementary::log10(low), elementary::log10(high), label),
         None => {

@@ -27,7 +27,6 @@ pub const SIZE: (u32, u32) = (1600, 1000);
 /// Width below which a canvas is narrow.
 pub const NARROW: f64 = 1150.0;
 
-/// Line height of the footer.
 pub const FOOTER_LINE: f64 = 26.0;
 
 /// Text sizes: the height of an em.
@@ -51,15 +50,12 @@ pub const GUIDE: f64 = 5.0;
 pub const THIN: f64 = 1.8;
 /// Frame and ticks.
 pub const FRAME: f64 = 2.0;
-/// Grid.
 pub const GRID: f64 = 1.2;
 /// Half the size of a marker.
 pub const MARKER: f64 = 9.0;
 /// Distance between the lines of a hatching, and their width.
 pub const HATCH: (f64, f64) = (11.0, 1.6);
-/// Thickness of a wall.
 pub const WALL: f64 = 30.0;
-/// Length of a tick.
 pub const TICK_LENGTH: f64 = 9.0;
 /// Dash and gap of a dashed line.
 pub const DASH: (f64, f64) = (18.0, 11.0);
