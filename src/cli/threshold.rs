@@ -140,7 +140,8 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     });
     let table = found.map_err(|end| no_table(&document, end))?;
     outputs.table(Output::DATA, &table)?;
-    let fixed = !grid.axes().iter().map(|axis| &axis.field).chain([&scan.field]).any(|field| is_limit(field));
+    let mut fields = grid.axes().iter().map(|axis| &axis.field).chain([&scan.field]);
+    let fixed = !fields.any(|field| field.starts_with("stops") || field.starts_with("mechanism"));
     let blocked = mechanism.filter(|mechanism| fixed && !can_cross(scene, mechanism));
     let blocked = blocked.map(|mechanism| match mechanism.landscape.barrier {
         None => "there is no barrier between two wells",
@@ -195,11 +196,6 @@ fn undecided(table: &Table) -> Option<String> {
          there is no valid scene; low and high, where given, are values whose answers are known, and \
          --until-settled with a longer time may bring them together"
     ))
-}
-
-/// Whether a field moves a stop or changes the mechanism.
-fn is_limit(field: &str) -> bool {
-    field.starts_with("stops") || field.starts_with("mechanism")
 }
 
 /// Explains an empty `value`, if a row has one. `blocked` says why no row can have a crossing.

@@ -167,7 +167,7 @@ impl Theme {
             Role::Second => fine(self.second),
             Role::Drive => fine(self.shaking),
             Role::Curve => Look { width: style::LINE + 0.8, ..plain },
-            Role::Stop => Look { hatch: Some(self.wall_hatch()), ..of(self.wall) },
+            Role::Stop => Look { hatch: Some(self.wall.over(self.paper, 0.6)), ..of(self.wall) },
             Role::Impact => fine(self.impact),
             Role::Rest => Look { hatch: Some(self.rest_hatch), ..of(self.rest) },
             Role::Well => dashed(self.stable),

@@ -63,7 +63,7 @@ impl Sheet {
         let dpi = text.dpi.map_or(Ok(300.0), |text| {
             within("dpi", text, Self::DPI, "a resolution in pixels an inch", "300")
         })?;
-        let most = Self::largest_font_pt(width_mm);
+        let most = width_mm / (Self::MIN_EMS * MM_A_POINT);
         if font_pt > most {
             let most = (10.0 * most).floor() / 10.0;
             let problem = format!("a picture {width_mm} mm wide has room for text of at most {most} points");
@@ -101,11 +101,6 @@ impl Sheet {
     /// The length in mm of a unit of the canvas.
     pub fn unit_mm(&self) -> f64 {
         self.font_pt * MM_A_POINT / TICK
-    }
-
-    /// The largest text in points that `width_mm` has room for.
-    pub fn largest_font_pt(width_mm: f64) -> f64 {
-        width_mm / (Self::MIN_EMS * MM_A_POINT)
     }
 
     /// A length in mm in pixels.

@@ -157,11 +157,6 @@ impl Theme {
         self.wall.over(self.paper, 0.22)
     }
 
-    /// The hatching of a wall.
-    pub fn wall_hatch(&self) -> Ink {
-        self.wall.over(self.paper, 0.6)
-    }
-
     /// The colour of `share` from 0 to 1 for lines on the paper: a part of the map's scale that stands out
     /// from it.
     pub fn step(&self, share: f64) -> Ink {
