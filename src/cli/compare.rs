@@ -134,10 +134,9 @@ fn remarks(scene: &Alternative, rated: &Rated, amplitude_g: f64) -> Vec<String> 
     let (summary, given) = (&rated.summary, short(amplitude_g));
     let mut all = Vec::new();
     if let Some(at) = summary.outcome.ended_at() {
-        let outcome = summary.outcome.name();
+        let (at, outcome) = (short(at), summary.outcome.name());
         all.push(format!(
-            "its run ended early at {} s ({outcome}): nothing is known of its settled motion",
-            short(at)
+            "its run ended early at {at} s ({outcome}): nothing is known of its settled motion"
         ));
     } else if summary.regime == Regime::Rest {
         all.push(format!("{given} g does not move it"));

@@ -80,10 +80,8 @@ fn full_text(document: &LessonDocument) -> String {
             Step::Say(_) => ("", String::new()),
             Step::Predict { options, .. } => {
                 let lettered = ('a'..).zip(options);
-                (
-                    "Predict: ",
-                    lettered.map(|(letter, option)| format!("   ({letter}) {}\n", option.text)).collect(),
-                )
+                let lines = lettered.map(|(letter, option)| format!("   ({letter}) {}\n", option.text));
+                ("Predict: ", lines.collect())
             }
             Step::Do { hint, .. } => ("Do: ", hint.iter().map(|hint| format!("   Hint: {hint}\n")).collect()),
             Step::Explain(_) => ("Explained: ", String::new()),

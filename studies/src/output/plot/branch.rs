@@ -68,12 +68,9 @@ pub fn branch_chart(branches: &[Branch], phase_deg: f64, ranges: Ranges) -> Char
         [branch] => format!("; the branch ends {}", branch.end),
         _ => format!("; {} branches", branches.len()),
     };
-    let about = format!(
-        "{} periodic motions of period {}, at the drive's phase {}\u{b0}{end}",
-        points.len(),
-        periods.join(", "),
-        short(phase_deg),
-    );
+    let (count, periods, phase) = (points.len(), periods.join(", "), short(phase_deg));
+    let about =
+        format!("{count} periodic motions of period {periods}, at the drive's phase {phase}\u{b0}{end}");
     Chart::stack(vec![panel], about, drawn.table())
 }
 
@@ -113,9 +110,8 @@ pub fn loci_chart(loci: &[Locus], phase_deg: f64, ranges: Ranges) -> Chart {
         Some(BranchEvent::Symmetry) => "breakings of the symmetry",
         Some(BranchEvent::Grazing) | None => "grazings",
     };
-    let about = format!(
-        "{events} over two fields, {motions} periodic motions at the drive's phase {}\u{b0}",
-        short(phase_deg)
-    );
+    let phase = short(phase_deg);
+    let about =
+        format!("{events} over two fields, {motions} periodic motions at the drive's phase {phase}\u{b0}");
     Chart::stack(vec![panel], about, drawn.table())
 }

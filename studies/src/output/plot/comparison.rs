@@ -282,9 +282,6 @@ fn drawn(rated: &[Rated]) -> Table {
         all.into_iter().filter_map(move |(series, value)| Some((series, name.clone(), value?)))
     };
     let rows: Vec<_> = rated.iter().flat_map(of_scene).collect();
-    Table::new().each("series", &rows, |row| row.0).each("scene", &rows, |row| row.1.clone()).each(
-        "value",
-        &rows,
-        |row| row.2,
-    )
+    let table = Table::new().each("series", &rows, |row| row.0).each("scene", &rows, |row| row.1.clone());
+    table.each("value", &rows, |row| row.2)
 }

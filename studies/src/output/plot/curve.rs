@@ -157,12 +157,8 @@ pub fn contact_chart(table: &Table, stop: &Hertz, mass: f64) -> Chart {
         let name = format!("yields from {} m/s on", short(speed));
         panel.layer(Role::UnstableMotion, name, Marks::Verticals(vec![speed]));
     }
-    let about = format!(
-        "one contact alone: {} N/m^1.5, loss {} s/m; {} ms at {} m/s",
-        short(stop.stiffness),
-        short(stop.loss),
-        short(stop.contact_time(mass, 0.5 * top) * 1e3),
-        short(0.5 * top)
-    );
+    let contact_ms = stop.contact_time(mass, 0.5 * top) * 1e3;
+    let [stiffness, loss, ms, speed] = [stop.stiffness, stop.loss, contact_ms, 0.5 * top].map(short);
+    let about = format!("one contact alone: {stiffness} N/m^1.5, loss {loss} s/m; {ms} ms at {speed} m/s");
     Chart::stack(vec![panel], about, of_rows("contact", table, &names, |_| true))
 }

@@ -31,10 +31,8 @@ const MAX_MARKED: usize = 4;
 pub fn spectrum_chart(spectrum: &Spectrum, quantity: SpectrumQuantity, ranges: Ranges) -> Chart {
     let column = |name: &str| spectrum.table.numbers(name).unwrap_or_default();
     let (frequencies, values) = (column("frequency_hz"), column(quantity.name()));
-    let (label, decades) = match quantity {
-        SpectrumQuantity::Amplitude => (label(spectrum.signal).0, DECADES),
-        SpectrumQuantity::Density => (label(spectrum.signal).1, 2.0 * DECADES),
-    };
+    let label = &label(spectrum.signal, quantity);
+    let decades = if quantity == SpectrumQuantity::Density { 2.0 * DECADES } else { DECADES };
     let across = PlotAxis::between(0.0, shown_to(spectrum, frequencies, column("psd")), "frequency (Hz)");
     let across = across.or_given(ranges.x);
     let seen = frequencies.iter().zip(values).filter(|line| across.contains(*line.0));
@@ -69,19 +67,16 @@ pub fn spectrum_chart(spectrum: &Spectrum, quantity: SpectrumQuantity, ranges: R
     Chart::stack(vec![panel], spectrum.describe(), drawn.table())
 }
 
-/// What stands at the axis upward: of the amplitude and of the density.
-fn label(signal: Signal) -> (&'static str, &'static str) {
-    match signal {
-        Signal::Displacement => {
-            ("amplitude of displacement (m)", "power spectral density of displacement (m\u{b2}/Hz)")
-        }
-        Signal::Velocity => {
-            ("amplitude of velocity (m/s)", "power spectral density of velocity (m\u{b2}/s\u{b2}/Hz)")
-        }
-        Signal::BaseAcceleration => (
-            "amplitude of base acceleration (m/s\u{b2})",
-            "power spectral density of base acceleration (m\u{b2}/s\u{2074}/Hz)",
-        ),
+/// What stands at the axis upward.
+fn label(signal: Signal, quantity: SpectrumQuantity) -> String {
+    let (name, unit, squared) = match signal {
+        Signal::Displacement => ("displacement", "m", "m\u{b2}"),
+        Signal::Velocity => ("velocity", "m/s", "m\u{b2}/s\u{b2}"),
+        Signal::BaseAcceleration => ("base acceleration", "m/s\u{b2}", "m\u{b2}/s\u{2074}"),
+    };
+    match quantity {
+        SpectrumQuantity::Amplitude => format!("amplitude of {name} ({unit})"),
+        SpectrumQuantity::Density => format!("power spectral density of {name} ({squared}/Hz)"),
     }
 }
 
