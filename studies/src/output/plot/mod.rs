@@ -46,6 +46,8 @@ mod threshold;
 
 use std::path::Path;
 
+use crate::study::words;
+
 pub use accuracy::accuracy_chart;
 pub use axis::{PlotAxis, Ranges};
 pub use basins::{basins_chart, can_show_starts};
@@ -79,15 +81,16 @@ pub use sweep::{MAX_PICTURE_CELLS, NoPicture, can_show, sweep_about, sweep_chart
 pub use swept::{Cut, Overlay, SweepPicture, View};
 pub use threshold::{can_show_thresholds, threshold_chart};
 
-/// A kind of file that holds a picture.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Format {
-    /// Pixels.
-    Png,
-    /// Shapes.
-    Svg,
-    /// Shapes on a page, with their font.
-    Pdf,
+words! {
+    /// A kind of file that holds a picture.
+    Format {
+        /// Pixels.
+        Png = "png",
+        /// Shapes.
+        Svg = "svg",
+        /// Shapes on a page, with their font.
+        Pdf = "pdf",
+    }
 }
 
 /// The error of a file name without the ending of a picture format.
@@ -99,12 +102,7 @@ impl Format {
     /// The format for the ending of a file name.
     pub fn of(path: &Path) -> Result<Self, UnknownFormat> {
         let ending = path.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
-        match ending.as_deref() {
-            Some("png") => Ok(Self::Png),
-            Some("svg") => Ok(Self::Svg),
-            Some("pdf") => Ok(Self::Pdf),
-            _ => Err(UnknownFormat),
-        }
+        ending.and_then(|ending| Self::named(&ending)).ok_or(UnknownFormat)
     }
 
     /// The picture as a file of this kind.
