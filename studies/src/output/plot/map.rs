@@ -107,7 +107,7 @@ pub(super) fn surface(picture: &SweepPicture, (x, y): (&str, &str)) -> Chart {
     Chart::stack(vec![panel], "", drawn(picture, &[(x, ranges.x), (y, ranges.y)]).table())
 }
 
-/// The quantity as colour over the fields `x` and `y`, with the quantity along cuts through the map beside it.
+/// The quantity as colour over the fields `x` and `y`, beside it the quantity along cuts through the map.
 pub(super) fn map(picture: &SweepPicture, (x, y): (&str, &str), cuts: &[Cut]) -> Chart {
     let SweepPicture { rows, ranges, .. } = *picture;
     let quantity = Quantity::of(rows, picture.quantity);
