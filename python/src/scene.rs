@@ -8,10 +8,9 @@ use interwell_kernel::mechanics::{FitReport, ForceCurve};
 use interwell_kernel::numeric::Taper;
 use interwell_kernel::scene::{Excitation, FieldPath, PRESETS, all_fields, write};
 use interwell_studies::output::{
-    Caption, ComparisonPicture, EscapePicture, ExponentPicture, Overlay, Provenance, Ranges, RunPanel,
-    SectionPicture, SpectrumQuantity, SweepPicture, ThresholdPicture, View, basins_chart, branch_chart,
-    comparison_chart, curve_chart, escape_chart, exponents_chart, identified, identified_chart, loci_chart,
-    run_chart, section_chart, spectrum_chart, summary, sweep_chart, threshold_chart,
+    Caption, Overlay, Provenance, Ranges, RunPanel, SpectrumQuantity, SweepPicture, View, basins_chart,
+    branch_chart, comparison_chart, curve_chart, escape_chart, exponents_chart, identified, identified_chart,
+    loci_chart, run_chart, section_chart, spectrum_chart, summary, sweep_chart, threshold_chart,
 };
 use interwell_studies::questions::{
     self, Basins, Best, Branch, Compare, Curve, Error, Escape, Exponents, Identify, Locus, Orbit,
@@ -92,9 +91,8 @@ impl Simulation {
         }
         let (grid, shown) = (checked(py, self.inner.grid(over))?, self.inner.clone());
         Ok(answer.drawn(move |rows, asked| {
-            let (grid, scene, field, ranges) = (&grid, shown.scene(), field.as_str(), asked.ranges);
-            let picture = ThresholdPicture { rows, grid, scene, field, onset, ranges };
-            threshold_chart(&picture).map_err(|problem| problem.to_string())
+            let chart = threshold_chart(rows, &grid, shown.scene(), &field, onset, asked.ranges);
+            chart.map_err(|problem| problem.to_string())
         }))
     }
 
@@ -386,8 +384,7 @@ impl Simulation {
         let stops = if over.is_none() { self.inner.model().stop_positions() } else { (None, None) };
         Ok(Answer::new(py, table, self.caption()).drawn(move |rows, asked| {
             let phase_deg = if let SectionAt::Phase(degrees) = at { Some(degrees) } else { None };
-            let (over, ranges) = (over.as_deref(), asked.ranges);
-            Ok(section_chart(&SectionPicture { rows, over, phase_deg, stops, ranges }))
+            Ok(section_chart(rows, over.as_deref(), phase_deg, stops, asked.ranges))
         }))
     }
 
@@ -411,8 +408,8 @@ impl Simulation {
         }
         let (grid, shown) = (checked(py, self.inner.grid(&question.over))?, self.inner.clone());
         Ok(answer.drawn(move |rows, asked| {
-            let picture = ExponentPicture { rows, grid: &grid, scene: shown.scene(), ranges: asked.ranges };
-            exponents_chart(&picture).map_err(|problem| problem.to_string())
+            let chart = exponents_chart(rows, &grid, shown.scene(), asked.ranges);
+            chart.map_err(|problem| problem.to_string())
         }))
     }
 
@@ -438,8 +435,8 @@ impl Simulation {
         let grid = checked(py, self.inner.grid(&question.over))?;
         let options = checked(py, question.options(self.inner.document(), &grid))?;
         Ok(answer.drawn(move |rows, asked| {
-            let picture = EscapePicture { rows, grid: &grid, options: &options, ranges: asked.ranges };
-            escape_chart(&picture).map_err(|problem| problem.to_string())
+            let chart = escape_chart(rows, &grid, &options, asked.ranges);
+            chart.map_err(|problem| problem.to_string())
         }))
     }
 
@@ -611,7 +608,7 @@ impl Simulation {
         let way = Way { threads, progress };
         let rated = work(py, &way, |progress| question.run(&self.inner, progress))?;
         Ok(Answer::new(py, Compare::table(&rated), self.caption())
-            .drawn(move |_, _| Ok(comparison_chart(&ComparisonPicture { rated: &rated, frequency_hz }))))
+            .drawn(move |_, _| Ok(comparison_chart(&rated, frequency_hz))))
     }
 
     #[pyo3(signature = (over, maximise, subject_to, environment, vary, seed, until_settled=None, threads=None,

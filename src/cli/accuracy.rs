@@ -83,13 +83,9 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         let (chart, caption) = accuracy_chart(&report.work_table(), env!("CARGO_PKG_VERSION"));
         picture.write(&mut outputs, &chart, &caption)?;
     }
-    let mut tables = Vec::new();
-    if !report.points.is_empty() {
-        tables.push(aligned(&report.cost_table()));
-    }
-    if !report.cases.is_empty() {
-        tables.push(aligned(&report.case_table()));
-    }
+    let costs = (!report.points.is_empty()).then(|| aligned(&report.cost_table()));
+    let cases = (!report.cases.is_empty()).then(|| aligned(&report.case_table()));
+    let tables: Vec<String> = costs.into_iter().chain(cases).collect();
     finish(outputs, None, &tables.join("\n"), common)?;
     common.say(&format!("{:.1} s", watch.wall_s()));
     verdict(&report)
@@ -117,14 +113,11 @@ fn verdict(report: &Report) -> Result<(), Failure> {
     let short = report.shortfalls();
     let named: Vec<String> =
         short.iter().map(|(case, variant, quantity)| format!("{case} ({variant}): {quantity}")).collect();
-    match &named[..] {
-        [] => Ok(()),
-        [one] => Err(Failure::failed(format!("a hard case falls short: {one}"))),
-        all => {
-            let n = all.len();
-            Err(Failure::failed(format!("{n} of the hard cases' checks fall short: {}", all.join("; "))))
-        }
-    }
+    Err(Failure::failed(match &named[..] {
+        [] => return Ok(()),
+        [one] => format!("a hard case falls short: {one}"),
+        all => format!("{} of the hard cases' checks fall short: {}", all.len(), all.join("; ")),
+    }))
 }
 
 /// Describes the selected problems and cases, or all of them, one paragraph each.
@@ -146,10 +139,8 @@ fn of_scene(spec: &str, options: &Arguments, common: &Common) -> Result<(), Fail
     };
     let cost = tolerances(&model, cancel).ok_or_else(Failure::interrupted)?;
     let mut stepped = Vec::new();
-    for (word, scheme) in SCHEMES {
-        if !options.method.is_empty() && !options.method.iter().any(|chosen| chosen == word) {
-            continue;
-        }
+    let is_chosen = |word: &str| options.method.is_empty() || options.method.iter().any(|name| name == word);
+    for (_, scheme) in SCHEMES.into_iter().filter(|(word, _)| is_chosen(word)) {
         for step in &steps {
             let run = step_size(&model, scheme, *step, cancel).map_err(|unfit| match unfit {
                 Unfit::Cancelled => Failure::interrupted(),

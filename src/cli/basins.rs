@@ -10,10 +10,8 @@ use interwell::study::{Answer, Basins, EvenRange, NoBasins, Starts, StartsError}
 use interwell::system::threads::Pool;
 
 use super::progress::duration;
-use super::support::{Watch, counted, load, mechanism, numbers, outputs, pool, warn};
-use super::{
-    Common, Failure, Output, Outputs, Picture, PlotOptions, caption, interrupt, refuse, say, with_bar,
-};
+use super::support::{Watch, counted, load_with_mechanism, numbers, outputs, pool};
+use super::{Common, Failure, Output, Outputs, Picture, PlotOptions, interrupt, refuse, say, with_bar};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -53,16 +51,11 @@ pub struct Arguments {
     pub plot: PlotOptions,
 }
 
-/// Follows the starts and writes a row for each.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let picture = Picture::new(&options.plot, common)?;
     let starts = starts(options)?;
-    if picture.is_some() {
-        can_show_starts(&starts)?;
-    }
-    let (document, warnings) = load(&options.scene, common, None)?;
-    let mechanism = mechanism(&document)?;
-    warn(&document, common, &warnings, Some(&mechanism));
+    picture.map(|_| can_show_starts(&starts)).transpose()?;
+    let (document, mechanism) = load_with_mechanism(&options.scene, common)?;
     let count = starts.count() as u64;
     let basins = Basins::new(&document.scene, mechanism, starts);
     let mut basins = basins.map_err(|problem| match problem {
@@ -76,7 +69,6 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let mut outputs = outputs(&options.scene, &document, common)?
         .with_picture(picture)?
         .with(Output::ATTRACTORS, options.attractors.as_deref())?;
-
     outputs.watch = Watch::start();
     if !common.quiet {
         forecast(&basins).iter().for_each(|line| say(line));
@@ -84,9 +76,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let answer = answer(&mut basins, &pool, common).ok_or_else(Failure::interrupted)?;
     write_rows(&mut outputs, &basins, &answer, &pool)?;
     outputs.table(Output::ATTRACTORS, &answer.attractors_table())?;
-    if let Some(picture) = picture {
-        picture.write(&mut outputs, &basins_chart(&basins, &answer), &caption(&document))?;
-    }
+    outputs.draw(picture, &document, |_| Ok(basins_chart(&basins, &answer)))?;
     outputs.manifest(Some(&document), pool.count(), |manifest| Ok(manifest.of_basins(&basins, &answer)))?;
     let watch = outputs.watch;
     outputs.finish()?;
@@ -174,8 +164,8 @@ fn starts(options: &Arguments) -> Result<Starts, Failure> {
         return Starts::grid(&x_mm, &v).map_err(|problem| wrong("--x-mm and --v", "", &problem));
     };
     let whole = |option: &str, text: &str| {
-        let wrong = || format!("{option} {text}: give a whole number, such as 1000");
-        text.trim().parse::<u64>().map_err(|_| Failure::argument(wrong()))
+        let wrong = |_| Failure::argument(format!("{option} {text}: give a whole number, such as 1000"));
+        text.trim().parse::<u64>().map_err(wrong)
     };
     let count = whole("--random", text)?;
     let seed = options.seed.as_deref().map_or(Ok(0), |text| whole("--seed", text))?;

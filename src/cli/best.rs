@@ -3,14 +3,14 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use interwell::output::{BestPicture, best_chart};
+use interwell::output::best_chart;
 use interwell::questions::Best;
 use interwell::scene::Document;
 use interwell::study::{NoBest, Task, best, names, place, quantity, scan_runs};
 use interwell::system::files::is_file;
 
 use super::support::{inputs, load, pool, waits, warn};
-use super::{ChartOptions, Common, Failure, Output, Outputs, Picture, bar, caption, interrupt, say};
+use super::{ChartOptions, Common, Failure, Output, Outputs, Picture, bar, interrupt, say};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -71,10 +71,9 @@ pub struct Arguments {
     pub chart: ChartOptions,
 }
 
-/// Searches and writes the row.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
-    let (document, warnings) = load(&options.scene, common, None)?;
+    let (document, warnings) = load(&options.scene, common)?;
     let asked = Best {
         over: options.over.clone(),
         maximise: options.maximise.clone(),
@@ -106,10 +105,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     }
     let design = found.map_err(|why| asked.no_best(why, &question, &document))?;
     outputs.table(Output::DATA, &design.table(&question))?;
-    if let Some(picture) = picture {
-        let shown = BestPicture { question: &question, design: &design, ranges: picture.ranges };
-        picture.write(&mut outputs, &best_chart(&shown), &caption(&document))?;
-    }
+    outputs.draw(picture, &document, |ranges| Ok(best_chart(&question, &design, ranges)))?;
     design.words(&question).iter().for_each(|line| common.say(&format!("{}: {line}", document.name)));
     outputs.finish_rows(&document, pool.count())
 }

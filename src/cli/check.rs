@@ -48,13 +48,13 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
 }
 
 fn link(spec: &str, common: &Common) -> Result<String, Failure> {
-    let (document, _) = load(spec, common, None)?;
+    let (document, _) = load(spec, common)?;
     let link = document.link().map_err(|error| Failure::argument(format!("{}: {error}", document.name)))?;
     Ok(page_address() + &link + "\n")
 }
 
 fn report(spec: &str, common: &Common) -> Result<String, Failure> {
-    let (document, warnings) = load(spec, common, None)?;
+    let (document, warnings) = load(spec, common)?;
     let mechanism = mechanism(&document)?;
     let lines = inspect(&document.scene, &mechanism).map_err(|faults| document.error_from(faults))?;
     let mut text = format!("{}: {}\n", document.name, document.scene.title);

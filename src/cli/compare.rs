@@ -3,7 +3,7 @@
 use clap::Args;
 use interwell::dynamics::Regime;
 use interwell::numeric::short;
-use interwell::output::{ComparisonPicture, comparison_chart};
+use interwell::output::comparison_chart;
 use interwell::questions::{in_environment, needs_a_sine};
 use interwell::scene::{Document, RunSettings, Stops, Transducer};
 use interwell::study::{Alternative, Rated, alternatives, comparison_parts, comparison_table};
@@ -40,7 +40,6 @@ pub struct Arguments {
     pub plot: PlotOptions,
 }
 
-/// Rates the scenes and writes a row for each.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let picture = Picture::new(&options.plot, common)?;
     let environment = options.environment.as_deref().or(options.scenes.first().map(String::as_str));
@@ -88,8 +87,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         let mut caption = caption(&environment);
         let (count, amplitude, frequency) = (rated.len(), short(amplitude_g), short(frequency_hz));
         caption.title = format!("{count} scenes under a sine of {amplitude} g at {frequency} Hz");
-        let shown = ComparisonPicture { rated: &rated, frequency_hz };
-        picture.write(&mut outputs, &comparison_chart(&shown), &caption)?;
+        picture.write(&mut outputs, &comparison_chart(&rated, frequency_hz), &caption)?;
     }
     let first = documents.first().map(|(_, document)| document);
     outputs.manifest(first, pool.count(), |manifest| Ok(manifest.of_scenes(&documents)))?;
@@ -136,10 +134,9 @@ fn remarks(scene: &Alternative, rated: &Rated, amplitude_g: f64) -> Vec<String> 
     let (summary, given) = (&rated.summary, short(amplitude_g));
     let mut all = Vec::new();
     if let Some(at) = summary.outcome.ended_at() {
-        let outcome = summary.outcome.name();
+        let (at, outcome) = (short(at), summary.outcome.name());
         all.push(format!(
-            "its run ended early at {} s ({outcome}): nothing is known of its settled motion",
-            short(at)
+            "its run ended early at {at} s ({outcome}): nothing is known of its settled motion"
         ));
     } else if summary.regime == Regime::Rest {
         all.push(format!("{given} g does not move it"));

@@ -6,7 +6,6 @@ use std::sync::Arc;
 use clap::Args;
 use interwell::dynamics::Model;
 use interwell::mechanics::Mechanism;
-use interwell::mechanics::flexure::State;
 use interwell::numeric::extent;
 use interwell::output::{contact_chart, curve_chart, landscape, measured_force_chart, shapes_chart};
 use interwell::scene::Document;
@@ -17,7 +16,7 @@ use interwell::study::{
 
 use super::measured::MeasuredForceOptions;
 use super::support::{inputs, load_with_mechanism, model, number, numbers, range};
-use super::{ChartOptions, Common, Failure, Output, Outputs, Picture, caption, interrupt, refuse, whole};
+use super::{ChartOptions, Common, Failure, Output, Outputs, Picture, interrupt, refuse, whole};
 
 #[derive(Debug, Args)]
 pub struct Arguments {
@@ -113,16 +112,14 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         Some(listed) => listed.clone(),
         None => even(options.points.unwrap_or(points) as usize),
     };
-    let table = curve(&mechanism, positions(CURVE_POINTS))?;
+    let mut table = curve(&mechanism, positions(CURVE_POINTS))?;
     let of_flexures = [
-        (options.full, "--full"),
-        (options.shapes.is_some(), "--shapes"),
-        (shapes_picture.is_some(), "--shapes-plot"),
+        options.full.then_some("--full"),
+        options.shapes.is_some().then_some("--shapes"),
+        shapes_picture.is_some().then_some("--shapes-plot"),
     ];
-    for (given, option) in of_flexures {
-        if given {
-            flexures_at(&mechanism, &[]).map_err(|error| unknown(&document.name, option, error))?;
-        }
+    for option in of_flexures.into_iter().flatten() {
+        flexures_at(&mechanism, &[]).map_err(|error| unknown(&document.name, option, error))?;
     }
     let contact_output = options.contact.as_ref().map(|_| Output::CONTACT);
     let contact_output = contact_output.or(contact_picture.map(|picture| picture.output));
@@ -143,50 +140,45 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     if let Some(found) = &measured {
         outputs.table(Output::COMPARISON, &found.table)?;
     }
-    let table = if options.full {
-        let rows = solved(&mechanism, &positions(CURVE_POINTS), &document.name, "--full")?;
-        let warning = mechanism.flexures.as_ref().and_then(|flexures| stress_warning(flexures, &rows));
-        if let Some(warning) = warning {
-            common.say(&format!("warning: {}: {warning}", document.name));
-        }
-        full_curve(&mechanism, &rows)?
-    } else {
-        table
+    let solved = |positions: &[f64], option: &str| {
+        let found = states(&mechanism, positions, &interrupt::silent_task());
+        found.map_err(|error| unknown(&document.name, option, error))
     };
+    if options.full {
+        let rows = solved(&positions(CURVE_POINTS), "--full")?;
+        let warning = mechanism.flexures.as_ref().and_then(|flexures| stress_warning(flexures, &rows));
+        warning.iter().for_each(|words| common.say(&format!("warning: {}: {words}", document.name)));
+        table = full_curve(&mechanism, &rows)?;
+    }
     outputs.table(Output::DATA, &table)?;
     outputs.write(Output::LANDSCAPE, landscape(&mechanism, document.scene.mass_g / 1e3))?;
-    if let Some(picture) = picture {
-        // The picture shows the whole curve, even if few positions were requested.
-        let chart = match &measured {
-            Some(found) => {
-                let over = even_positions(extent(found.positions.iter().copied()), CURVE_PICTURE_POINTS);
-                measured_force_chart(found, &curve(&mechanism, over)?, picture.ranges)
-            }
-            None => {
-                let table = curve(&mechanism, even(CURVE_PICTURE_POINTS))?;
-                let stops = stop_positions(&document.scene);
-                curve_chart(&table, &mechanism, stops, picture.ranges)
-            }
-        };
-        picture.write(&mut outputs, &chart, &caption(&document))?;
-    }
+    // The picture shows the whole curve, even if few positions were requested.
+    let stops = stop_positions(&document.scene);
+    outputs.draw(picture, &document, |ranges| match &measured {
+        Some(found) => {
+            let over = even_positions(extent(found.positions.iter().copied()), CURVE_PICTURE_POINTS);
+            Ok(measured_force_chart(found, &curve(&mechanism, over)?, ranges))
+        }
+        None => {
+            let table = curve(&mechanism, even(CURVE_PICTURE_POINTS))?;
+            Ok(curve_chart(&table, &mechanism, stops, ranges))
+        }
+    })?;
     if outputs.has(Output::SHAPES) {
-        let drawn = solved(&mechanism, &positions(SHAPES), &document.name, "--shapes")?;
+        let drawn = solved(&positions(SHAPES), "--shapes")?;
         outputs.table(Output::SHAPES, &shapes(&drawn))?;
     }
-    if let Some(picture) = shapes_picture {
+    outputs.draw(shapes_picture, &document, |_| {
         let is_named = listed.is_some() || options.points.is_some() || range.is_some();
         let equilibria = || mechanism.landscape.equilibria.iter().map(|equilibrium| equilibrium.x).collect();
         let at = if is_named { positions(SHAPES) } else { equilibria() };
-        let drawn = solved(&mechanism, &at, &document.name, "--shapes-plot")?;
-        let chart = shapes_chart(&drawn, &mechanism, stop_positions(&document.scene));
-        picture.write(&mut outputs, &chart, &caption(&document))?;
-    }
+        let drawn = solved(&at, "--shapes-plot")?;
+        Ok(shapes_chart(&drawn, &mechanism, stops))
+    })?;
     if let Some((table, model)) = &contacts {
         outputs.table(Output::CONTACT, table)?;
-        if let Some((picture, stop)) = contact_picture.zip(model.compliant()) {
-            let chart = contact_chart(table, &stop, model.mass());
-            picture.write(&mut outputs, &chart, &caption(&document))?;
+        if let Some(stop) = model.compliant() {
+            outputs.draw(contact_picture, &document, |_| Ok(contact_chart(table, &stop, model.mass())))?;
         }
     }
     outputs.finish_rows(&document, 1)
@@ -208,16 +200,6 @@ fn contact_table(
             document.name
         ),
     }
-}
-
-/// Solves the flexures at these positions in m; stops at Ctrl-C. An error names `scene` and `option`.
-fn solved(
-    mechanism: &Mechanism,
-    positions: &[f64],
-    scene: &str,
-    option: &str,
-) -> Result<Vec<State>, Failure> {
-    states(mechanism, positions, &interrupt::silent_task()).map_err(|error| unknown(scene, option, error))
 }
 
 fn unknown(scene: &str, option: &str, error: StatesError) -> Failure {

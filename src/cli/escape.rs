@@ -1,13 +1,13 @@
 //! `escape`: rates at which motions under noise leave their well, a row for each cell of a grid.
 
 use clap::Args;
-use interwell::output::{EscapePicture, can_show_escapes, escape_chart};
+use interwell::output::{can_show_over_field, escape_chart};
 use interwell::questions::{Escape, no_table};
 use interwell::scene::Document;
-use interwell::study::{Grid, Table, Until, Values, escape_table};
+use interwell::study::{Table, Until, Values, escape_table};
 
-use super::support::{counted, finite, load, mechanism, outputs, pool, warn};
-use super::{ChartOptions, Common, Failure, Output, Picture, caption, whole, with_bar};
+use super::support::{counted, finite, load_over, mechanism_of_all, outputs, pool};
+use super::{ChartOptions, Common, Failure, Output, Picture, whole, with_bar};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -49,26 +49,16 @@ pub struct Arguments {
     pub chart: ChartOptions,
 }
 
-/// Runs all cells and writes the table.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
-    // without --over the sweep in the scene is ignored
-    let over = Some(options.over.as_slice()).filter(|over| !over.is_empty());
-    let (document, warnings) = load(&options.scene, common, over)?;
-    let grid = match over {
-        None => Grid::of_one(),
-        Some(over) => Grid::new(document.axes(over)?)?,
-    };
-    if picture.is_some() {
-        can_show_escapes(&grid)?;
-    }
+    let (document, warnings, grid) = load_over(&options.scene, &options.over, common)?;
+    picture.map(|_| can_show_over_field(&grid, "escapes")).transpose()?;
     let within = options.within.as_deref();
     let within = within.map(|text| finite("--within", text, "give a time in s, such as 100")).transpose()?;
     let until = Until::named(&options.until).unwrap_or(Until::Well);
     let question = Escape { runs: options.runs, within, until, ..Escape::default() };
     let settings = question.options(&document, &grid)?;
-    let mechanism = (!grid.changes_mechanism()).then(|| mechanism(&document)).transpose()?;
-    warn(&document, common, &warnings, mechanism.as_deref());
+    mechanism_of_all(&document, &grid, common, &warnings)?;
     let pool = pool(common)?;
     let mut outputs = outputs(&options.scene, &document, common)?.with_picture(picture)?;
     let Document { scene, files, name, .. } = &document;
@@ -78,10 +68,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let table = found.map_err(|end| no_table(&document, end))?;
     outputs.table(Output::DATA, &table)?;
     common.say(&format!("{name}: {}", about(&table)));
-    if let Some(picture) = picture {
-        let shown = EscapePicture { rows: &table, grid: &grid, options: &settings, ranges: picture.ranges };
-        picture.write(&mut outputs, &escape_chart(&shown)?, &caption(&document))?;
-    }
+    outputs.draw(picture, &document, |ranges| Ok(escape_chart(&table, &grid, &settings, ranges)?))?;
     outputs.finish_rows(&document, pool.count())
 }
 

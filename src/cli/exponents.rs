@@ -2,7 +2,7 @@
 
 use clap::Args;
 use interwell::dynamics::Model;
-use interwell::output::{ExponentPicture, can_show_exponents, exponents_chart};
+use interwell::output::{can_show_over_field, exponents_chart};
 use interwell::questions::{Error, may_have_circuit};
 use interwell::scene::Document;
 use interwell::study::{
@@ -11,7 +11,7 @@ use interwell::study::{
 };
 
 use super::grid_job::GridJob;
-use super::support::{counted, load, load_model, outputs, pool, until_settled_on_grid, warn};
+use super::support::{counted, load_model, load_over, outputs, pool, until_settled_on_grid, warn};
 use super::{ChartOptions, Common, Failure, Output, Picture, interrupt, whole};
 
 const EXAMPLES: &str = "\
@@ -50,15 +50,12 @@ pub struct Arguments {
     pub chart: ChartOptions,
 }
 
-/// Computes the exponents and writes the table.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
     if !options.over.is_empty() {
         return over(options, common, picture);
     }
-    if picture.is_some() {
-        can_show_exponents(&Grid::of_one())?;
-    }
+    picture.map(|_| can_show_over_field(&Grid::of_one(), "exponents")).transpose()?;
     let (document, model) = load_model(&options.scene, common)?;
     if let Some(fault) = drive_fault(&model, &document.scene) {
         return Err(document.error_from(vec![fault]).into());
@@ -110,12 +107,9 @@ fn about(found: &Exponents, forced: bool) -> String {
 
 /// Computes the exponents of every cell of a grid, one row for each.
 fn over(options: &Arguments, common: &Common, picture: Option<Picture>) -> Result<(), Failure> {
-    let (document, warnings) = load(&options.scene, common, Some(&options.over))?;
-    let grid = Grid::new(document.axes(&options.over)?)?;
+    let (document, warnings, grid) = load_over(&options.scene, &options.over, common)?;
     let circuits = may_have_circuit(&document, grid.axes());
-    if picture.is_some() {
-        can_show_exponents(&grid)?;
-    }
+    picture.map(|_| can_show_over_field(&grid, "exponents")).transpose()?;
     let cells = ExponentCells::new(&document.scene, &document.files, grid);
     let task = interrupt::silent_task();
     let pool = pool(common)?;
@@ -127,10 +121,7 @@ fn over(options: &Arguments, common: &Common, picture: Option<Picture>) -> Resul
     let grid = cells.grid();
     let mut job = GridJob::open(&document, common, outputs, picture, pool)?;
     let (tally, _) = job.stream(&cells, "cells")?;
-    let chart = |rows: &Table, picture: &Picture| {
-        let shown = ExponentPicture { rows, grid, scene: &document.scene, ranges: picture.ranges };
-        Ok(exponents_chart(&shown)?)
-    };
+    let chart = |rows: &Table, ranges| Ok(exponents_chart(rows, grid, &document.scene, ranges)?);
     let wall_s = job.finish(chart, |manifest| Ok(manifest.of_exponents(grid, &tally)))?;
     if tally.cells == grid.cells() {
         common.say(&summary(&tally, wall_s));

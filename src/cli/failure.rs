@@ -88,16 +88,9 @@ impl From<Error> for Failure {
     }
 }
 
-arguments_are_wrong!(
-    SceneError,
-    LessonError,
-    ArgumentError,
-    GridError,
-    TimesError,
-    OutsideCurve,
-    NoPicture,
-    UnknownCase
-);
+arguments_are_wrong! {
+    SceneError, LessonError, ArgumentError, GridError, TimesError, OutsideCurve, NoPicture, UnknownCase
+}
 
 impl From<OpenError> for Failure {
     fn from(error: OpenError) -> Self {

@@ -1,13 +1,13 @@
 //! Run of a study over a grid by a command: its outputs, progress, rows, picture and manifest.
 
-use interwell::output::{Chart, Manifest, header, rows};
+use interwell::output::{Chart, Manifest, Ranges, header, rows};
 use interwell::questions::Error;
 use interwell::scene::Document;
 use interwell::study::{GridStudy, IMPACTS, Question, Shard, Slice, SweepEnd, Table, Tally, Task};
 use interwell::system::threads::Pool;
 
 use super::support::Watch;
-use super::{Common, Failure, Output, Outputs, Picture, bar, caption, interrupt};
+use super::{Common, Failure, Output, Outputs, Picture, bar, interrupt};
 
 /// A study of a grid whose outputs are open.
 pub struct GridJob<'a> {
@@ -81,13 +81,10 @@ impl<'a> GridJob<'a> {
     /// since the rows began in s.
     pub fn finish(
         mut self,
-        chart: impl FnOnce(&Table, &Picture) -> Result<Chart, Failure>,
+        chart: impl FnOnce(&Table, Ranges) -> Result<Chart, Failure>,
         manifest: impl FnOnce(&Manifest) -> Result<String, Failure>,
     ) -> Result<f64, Failure> {
-        if let Some(picture) = self.picture {
-            let chart = chart(&self.shown, &picture)?;
-            picture.write(&mut self.outputs, &chart, &caption(self.document))?;
-        }
+        self.outputs.draw(self.picture, self.document, |ranges| chart(&self.shown, ranges))?;
         self.outputs.manifest(Some(self.document), self.pool.count(), manifest)?;
         let watch = self.outputs.watch;
         self.outputs.finish()?;

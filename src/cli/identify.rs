@@ -81,7 +81,6 @@ pub struct Arguments {
     pub chart: ChartOptions,
 }
 
-/// Reads the record, identifies the quantity, and writes rows and summary.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let (Some(file), Some(of)) = (options.file.as_deref(), options.of.as_deref()) else {
         refuse!(

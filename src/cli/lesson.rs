@@ -1,11 +1,11 @@
 //! `lesson`: list of the lessons, the text of a lesson, its check, and a template for a new one.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 use interwell::scene::Fault;
 use interwell::scene::lesson::{LESSONS, LessonDocument, LessonError, Step, TEMPLATE};
-use interwell::study::{LessonFinding, LessonReport, Unjudged, check_lesson, result_fields};
+use interwell::study::{LessonFinding, Unjudged, check_lesson, result_fields};
 use interwell::system::files;
 
 use super::support::{counted, pool};
@@ -36,13 +36,15 @@ pub struct Arguments {
     pub new: Option<PathBuf>,
 }
 
-/// Lists, prints or checks lessons, or writes the template of a new one.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     if common.jobs.is_some() && !options.check {
         refuse!("--jobs: nothing runs without --check; leave it out");
     }
     if let Some(path) = &options.new {
-        return begin(path);
+        if files::exists(path) {
+            refuse!("--new {}: the file is there already; name another", path.display());
+        }
+        return write_alone(Output::LESSON, path, TEMPLATE);
     }
     let input: Vec<PathBuf> = options.lesson.iter().map(PathBuf::from).collect();
     let mut outputs = Outputs::new(&input).with(Output::DATA, Some(common.out()))?;
@@ -74,22 +76,17 @@ fn full_text(document: &LessonDocument) -> String {
     let lesson = &document.lesson;
     let mut text = format!("{} ({} min)\nGoal: {}\n\n", lesson.title, lesson.minutes, lesson.goal);
     for (number, step) in lesson.steps.iter().enumerate() {
-        let word = match step {
-            Step::Say(_) => "",
-            Step::Predict { .. } => "Predict: ",
-            Step::Do { .. } => "Do: ",
-            Step::Explain(_) => "Explained: ",
-        };
-        text += &format!("{}. {word}{}\n", number + 1, step.text());
-        match step {
+        let (word, more): (&str, String) = match step {
+            Step::Say(_) => ("", String::new()),
             Step::Predict { options, .. } => {
-                for (letter, option) in ('a'..).zip(options) {
-                    text += &format!("   ({letter}) {}\n", option.text);
-                }
+                let lettered = ('a'..).zip(options);
+                let lines = lettered.map(|(letter, option)| format!("   ({letter}) {}\n", option.text));
+                ("Predict: ", lines.collect())
             }
-            Step::Do { hint: Some(hint), .. } => text += &format!("   Hint: {hint}\n"),
-            _ => {}
-        }
+            Step::Do { hint, .. } => ("Do: ", hint.iter().map(|hint| format!("   Hint: {hint}\n")).collect()),
+            Step::Explain(_) => ("Explained: ", String::new()),
+        };
+        text += &format!("{}. {word}{}\n{more}", number + 1, step.text());
     }
     text + &format!("\nMisconception: {}\nLecturer: {}\n", lesson.misconception, lesson.lecturer)
 }
@@ -111,10 +108,9 @@ fn checked(options: &Arguments, common: &Common) -> Result<(String, Option<Failu
     let mut text = String::new();
     let mut wrong: Vec<String> = Vec::new();
     for (document, report) in documents.iter().zip(&reports) {
-        let LessonReport { predictions, tasks, .. } = report;
         let verdict = if report.wrong.is_empty() { "holds" } else { "is wrong" };
-        let predictions = counted(*predictions as u64, "prediction");
-        let tasks = counted(*tasks as u64, "task");
+        let predictions = counted(report.predictions as u64, "prediction");
+        let tasks = counted(report.tasks as u64, "task");
         text += &format!("{}: {verdict} ({predictions}, {tasks})\n", document.name);
         lines(document, &report.warnings).iter().for_each(|line| common.say(&format!("warning: {line}")));
         wrong.extend(lines(document, &report.wrong));
@@ -128,20 +124,11 @@ fn lines(document: &LessonDocument, findings: &[LessonFinding]) -> Vec<String> {
     if findings.is_empty() {
         return Vec::new();
     }
-    let fault = |finding: &LessonFinding| Fault {
-        field: finding.field.clone(),
+    let fault = |LessonFinding { field, problem, .. }: &LessonFinding| Fault {
+        field: field.clone(),
         value: String::new(),
-        problem: finding.problem.clone(),
+        problem: problem.clone(),
     };
     let error = document.error_from(findings.iter().map(fault).collect());
     error.to_string().lines().map(str::to_owned).collect()
-}
-
-/// Writes the template; an error if the file exists.
-fn begin(path: &Path) -> Result<(), Failure> {
-    let shown = path.display();
-    if files::exists(path) {
-        refuse!("--new {shown}: the file is there already; name another");
-    }
-    write_alone(Output::LESSON, path, TEMPLATE)
 }

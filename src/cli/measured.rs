@@ -39,18 +39,6 @@ pub struct ColumnOptions {
     pub unit: Option<String>,
 }
 
-impl ColumnOptions {
-    /// The request to the record for the times.
-    pub fn times(&self) -> ColumnRequest {
-        ColumnRequest::by_options(&[Quantity::Time], &self.time, &self.time_unit, ["--time", "--time-unit"])
-    }
-
-    /// The request to the record for values of the first of these quantities that it has.
-    pub fn values(&self, quantities: &[Quantity]) -> ColumnRequest {
-        ColumnRequest::by_options(quantities, &self.column, &self.unit, ["--column", "--unit"])
-    }
-}
-
 /// The column of positions, of a force over them.
 #[derive(Debug, Args)]
 pub struct PositionOptions {
@@ -63,17 +51,12 @@ pub struct PositionOptions {
     pub position_unit: Option<String>,
 }
 
-impl PositionOptions {
-    /// The request to the record for the positions.
-    pub fn positions(&self) -> ColumnRequest {
-        let names = ["--position", "--position-unit"];
-        ColumnRequest::by_options(&[Quantity::Displacement], &self.position, &self.position_unit, names)
-    }
-}
-
 /// The answer without `--measured`: nothing to compare, an error if a column of the record is `chosen`.
-fn no_record<T>(chosen: &[(&str, &Option<String>)]) -> Result<Option<T>, Failure> {
-    match chosen.iter().find(|(_, name)| name.is_some()) {
+fn no_record<T, const N: usize>(
+    options: [&str; N],
+    chosen: [&Option<String>; N],
+) -> Result<Option<T>, Failure> {
+    match options.iter().zip(chosen).find(|(_, column)| column.is_some()) {
         None => Ok(None),
         Some((option, _)) => refuse!("{option} is of a record: name that by --measured FILE"),
     }
@@ -133,13 +116,9 @@ impl MeasuredOptions {
     /// Reads the record, if one is given.
     pub fn read(&self, common: &Common) -> Result<Option<MeasuredRecord>, Failure> {
         let ColumnOptions { time, time_unit, column, unit } = &self.columns;
+        let names = ["--time", "--time-unit", "--column", "--unit"];
         let Some(path) = &self.measured else {
-            return no_record(&[
-                ("--time", time),
-                ("--time-unit", time_unit),
-                ("--column", column),
-                ("--unit", unit),
-            ]);
+            return no_record(names, [time, time_unit, column, unit]);
         };
         let offset = offset(self.offset_mm.as_deref())?;
         let shift = match self.shift_s.as_deref() {
@@ -160,7 +139,9 @@ impl MeasuredOptions {
         let inset = self.inset.as_deref().map(inset).transpose()?;
         let name = path.display().to_string();
         let any = [Quantity::Displacement, Quantity::Velocity, Quantity::Acceleration];
-        let record = read_measured(path, &[self.columns.times(), self.columns.values(&any)])
+        let times = ColumnRequest::by_options(&[Quantity::Time], time, time_unit, [names[0], names[1]]);
+        let values = ColumnRequest::by_options(&any, column, unit, [names[2], names[3]]);
+        let record = read_measured(path, &[times, values])
             .map_err(|problem| Failure::argument(format!("--measured {name}: {problem}")))?;
         let quantity = record.channels[1].quantity;
         if self.offset_mm.is_some() && quantity != Quantity::Displacement {
@@ -229,21 +210,22 @@ impl MeasuredForceOptions {
         common: &Common,
     ) -> Result<Option<ForceComparison>, Failure> {
         let PositionOptions { position, position_unit } = &self.positions;
+        let names = ["--position", "--position-unit"];
         let Some(path) = &self.measured else {
-            return no_record(&[("--position", position), ("--position-unit", position_unit)]);
+            return no_record(names, [position, position_unit]);
         };
         let offset = offset(self.offset_mm.as_deref())?;
         let name = path.display();
+        let position = ColumnRequest::by_options(&[Quantity::Displacement], position, position_unit, names);
         let force =
             ColumnRequest::by_options(&[Quantity::Force], &self.column, &self.unit, ["--column", "--unit"]);
-        let about =
-            |problem: &dyn std::fmt::Display| Failure::argument(format!("--measured {name}: {problem}"));
-        let record =
-            read_measured(path, &[self.positions.positions(), force]).map_err(|problem| about(&problem))?;
+        let about = |problem: String| Failure::argument(format!("--measured {name}: {problem}"));
+        let record = read_measured(path, &[position, force]).map_err(|problem| about(problem.to_string()))?;
         let commas = if record.decimal_commas { ", with decimal commas" } else { "" };
         let [x, force] = &record.channels;
         let positions: Vec<f64> = x.values.iter().map(|x| x + offset).collect();
-        let found = compare_force(mechanism, &positions, &force.values).map_err(|problem| about(&problem))?;
+        let found = compare_force(mechanism, &positions, &force.values)
+            .map_err(|problem| about(problem.to_string()))?;
         common.say(&format!("{name}: position from `{}`, force from `{}`{commas}", x.column, force.column));
         found.remarks.iter().for_each(|remark| common.say(&format!("{name}: {remark}")));
         common.say(aligned(&found.table).trim_end());

@@ -58,11 +58,8 @@ pub fn parse() -> Result<Options, ExitCode> {
         }
         ErrorKind::InvalidUtf8 => {
             let wrong = std::env::args_os().find(|text| text.to_str().is_none()).unwrap_or_default();
-            let wrong = wrong.to_string_lossy();
-            say(&format!(
-                "error: `{wrong}` is not valid UTF-8: rename the file, or go to its folder and name it from \
-                 there"
-            ));
+            let remedy = "rename the file, or go to its folder and name it from there";
+            say(&format!("error: `{}` is not valid UTF-8: {remedy}", wrong.to_string_lossy()));
             ExitCode::from(2)
         }
         _ => {
@@ -88,7 +85,7 @@ pub fn run(
     match (command, headless, scene) {
         (Some(_), _, Some(scene)) => refuse!("`{scene}` stands before the command: put the scene after it"),
         (Some(Word::Page(page)), _, None) => {
-            if let Some(option) = common.given(&["set", "tolerance", "jobs", "out", "quiet"]) {
+            if let Some(option) = common.given(Common::ALL) {
                 refuse!("--{option} changes nothing in `{}`: leave it out", page.name());
             }
             page.run()
@@ -99,7 +96,7 @@ pub fn run(
         }
         (Some(Word::Command(mut command)), true, None) => {
             if let Err(option) = command.common().put_before(common) {
-                refuse!("{option} is given before and after the command: give it once");
+                refuse!("--{option} is given before and after the command: give it once");
             }
             let (name, refused) = (command.name(), command.refused());
             if let Some(option) = command.common().given(refused) {
@@ -114,7 +111,7 @@ pub fn run(
         (None, true, Some(word)) => {
             refuse!("--headless needs a command before `{word}`: {commands}; see interwell --help")
         }
-        (None, false, scene) => match common.given(&["set", "tolerance", "jobs", "out", "quiet"]) {
+        (None, false, scene) => match common.given(Common::ALL) {
             Some(option) => refuse!(
                 "--{option} belongs to a command: {commands}, such as interwell --headless simulate; the \
                  window takes a scene alone"

@@ -93,10 +93,9 @@ macro_rules! commands {
             )*
         }
 
-        pub const COMMANDS: &[&str] = &[$(stringify!($word)),*];
-
-        /// For each command the common options that it refuses, and those that it ignores.
-        const UNUSED: &[(&[&str], &[&str])] = &[$((&[$($($refused),+)?], &[$($($ignored),+)?])),*];
+        /// Each command with the common options that it refuses, and those that it ignores.
+        const COMMANDS: &[(&str, &[&str], &[&str])] =
+            &[$((stringify!($word), &[$($($refused),+)?], &[$($($ignored),+)?])),*];
 
         impl Command {
             pub fn name(&self) -> &'static str {
@@ -107,9 +106,7 @@ macro_rules! commands {
 
             /// The common options that it refuses.
             pub fn refused(&self) -> &'static [&'static str] {
-                match self {
-                    $(Self::$variant { .. } => &[$($($refused),+)?],)*
-                }
+                COMMANDS.iter().find(|command| command.0 == self.name()).map_or(&[], |command| command.1)
             }
 
             pub fn common(&mut self) -> &mut Common {
@@ -169,7 +166,7 @@ commands! {
 
 /// The command line for clap; the help of each command hides the options that it does not use.
 pub fn command_line() -> clap::Command {
-    COMMANDS.iter().zip(UNUSED).fold(Options::command(), |command, (word, (refused, ignored))| {
+    COMMANDS.iter().fold(Options::command(), |command, (word, refused, ignored)| {
         let unused = refused.iter().chain(*ignored);
         command
             .mut_subcommand(word, |sub| unused.fold(sub, |sub, name| sub.mut_arg(name, |arg| arg.hide(true))))
@@ -178,7 +175,8 @@ pub fn command_line() -> clap::Command {
 
 /// The names of all commands, as a sentence lists them.
 pub fn command_names() -> String {
-    let (last, others) = COMMANDS.split_last().unwrap_or((&"", &[]));
+    let names: Vec<&str> = COMMANDS.iter().map(|command| command.0).collect();
+    let (last, others) = names.split_last().unwrap_or((&"", &[]));
     format!("{} or {last}", others.join(", "))
 }
 
@@ -221,6 +219,9 @@ pub struct Common {
 }
 
 impl Common {
+    /// The names of all of them.
+    pub const ALL: &'static [&'static str] = &["set", "tolerance", "jobs", "out", "quiet"];
+
     pub fn out(&self) -> &Path {
         self.out.as_deref().unwrap_or(Path::new("-"))
     }
@@ -232,25 +233,20 @@ impl Common {
         }
     }
 
-    /// Adds the options given `before` the command to those given after it. The error is the name of an
-    /// option that may be given once and was given in both places.
+    /// Adds the options given `before` the command to those given after it. The error is the name of one
+    /// that may be given once and was given in both places.
     ///
     /// clap's global arguments would drop a `--set` before the command if another one follows the command.
     pub fn put_before(&mut self, before: Self) -> Result<(), &'static str> {
-        fn put<T>(
-            option: &'static str,
-            value: &mut Option<T>,
-            before: Option<T>,
-        ) -> Result<(), &'static str> {
-            if value.is_some() && before.is_some() {
-                return Err(option);
-            }
-            *value = value.take().or(before);
-            Ok(())
+        let mut once = ["out", "tolerance", "jobs"].into_iter();
+        if let Some(twice) =
+            once.find(|name| [&*self, &before].iter().all(|one| one.given(&[*name]).is_some()))
+        {
+            return Err(twice);
         }
-        put("--out", &mut self.out, before.out)?;
-        put("--tolerance", &mut self.tolerance, before.tolerance)?;
-        put("--jobs", &mut self.jobs, before.jobs)?;
+        self.out = self.out.take().or(before.out);
+        self.tolerance = self.tolerance.take().or(before.tolerance);
+        self.jobs = self.jobs.or(before.jobs);
         self.set.splice(0..0, before.set);
         self.quiet |= before.quiet;
         Ok(())
@@ -289,13 +285,8 @@ pub struct PlotOptions {
 
     /// With a picture: its width on paper in mm, such as 85 for a column; it is laid out for that width, with
     /// text of --font-pt
-    #[arg(
-        long,
-        value_name = "MM",
-        allow_hyphen_values = true,
-        requires = "picture",
-        conflicts_with = "plot_size"
-    )]
+    #[arg(long, value_name = "MM", allow_hyphen_values = true)]
+    #[arg(requires = "picture", conflicts_with = "plot_size")]
     pub plot_width_mm: Option<String>,
 
     /// With --plot-width-mm: its height in mm [default: what its kind needs, about 5/8 of the width]
@@ -303,13 +294,8 @@ pub struct PlotOptions {
     pub plot_height_mm: Option<String>,
 
     /// With --plot-width-mm: the size in points of numbers and legends; labels of axes are a tenth larger
-    #[arg(
-        long,
-        value_name = "PT",
-        allow_hyphen_values = true,
-        requires = "plot_width_mm",
-        default_value = "8"
-    )]
+    #[arg(long, value_name = "PT", allow_hyphen_values = true, default_value = "8")]
+    #[arg(requires = "plot_width_mm")]
     pub font_pt: String,
 
     /// With --plot-width-mm and a PNG: pixels an inch [default: 300]
@@ -332,13 +318,8 @@ pub struct ChartOptions {
     pub plot: PlotOptions,
 
     /// With --plot: range of the axis to the right in its unit; of a run the times in s
-    #[arg(
-        long,
-        value_name = "A:B",
-        visible_alias = "plot-time",
-        allow_hyphen_values = true,
-        requires = "plot"
-    )]
+    #[arg(long, value_name = "A:B", visible_alias = "plot-time", allow_hyphen_values = true)]
+    #[arg(requires = "plot")]
     pub plot_x: Option<String>,
 
     /// With --plot: range of the first axis upward in its unit, such as -2:2 for the displacement of a run in

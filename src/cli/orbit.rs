@@ -9,7 +9,7 @@ use interwell::study::{BranchEvent, BranchOptions, FieldRange, branches_table, l
 
 use super::progress::bar_on_terminal;
 use super::support::{finite, outputs, read, simulation};
-use super::{ChartOptions, Common, Failure, Output, Picture, caption, interrupt, refuse, whole};
+use super::{ChartOptions, Common, Failure, Output, Picture, interrupt, refuse, whole};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -112,36 +112,27 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     };
     let step = options.step.as_ref().map(|text| finite("--step", text, "give a share, such as 0.01"));
     let step = step.transpose()?.unwrap_or(BranchOptions::STEP);
-    let branch = Branch {
-        field,
-        range,
-        period,
-        phase_deg,
-        step,
-        count: options.count.unwrap_or(BranchOptions::COUNT),
-    };
+    let count = options.count.unwrap_or(BranchOptions::COUNT);
+    let branch = Branch { field, range, period, phase_deg, step, count };
     let of = options.locus.as_deref().map(|name| name.strip_suffix("-breaking").unwrap_or(name));
-    let (table, chart, remarks) = match of.and_then(BranchEvent::named).zip(and) {
+    let (table, remarks) = match of.and_then(BranchEvent::named).zip(and) {
         Some((of, second)) => {
             let found = Locus { branch, of, second }.run(&simulation, &progress);
             bar.finish_and_clear();
             let found = found?;
-            let chart = picture.map(|picture| loci_chart(&found, phase_deg, picture.ranges));
+            outputs.draw(picture, document, |ranges| Ok(loci_chart(&found, phase_deg, ranges)))?;
             let remarks = (1..).zip(&found).filter_map(|(number, locus)| locus.remark(number)).collect();
-            (loci_table(&found), chart, remarks)
+            (loci_table(&found), remarks)
         }
         None => {
             let found = branch.with_switches(options.switch.unwrap_or(0), &simulation, &progress);
             bar.finish_and_clear();
             let found = found?;
-            let chart = picture.map(|picture| branch_chart(&found, phase_deg, picture.ranges));
+            outputs.draw(picture, document, |ranges| Ok(branch_chart(&found, phase_deg, ranges)))?;
             let table = if options.switch.is_some() { branches_table(&found) } else { found[0].table() };
-            (table, chart, branches_remarks(&found, range))
+            (table, branches_remarks(&found, range))
         }
     };
-    if let (Some(picture), Some(chart)) = (picture, chart) {
-        picture.write(&mut outputs, &chart, &caption(document))?;
-    }
     remarks.iter().for_each(|line| common.say(line));
     outputs.table(Output::DATA, &table)?;
     outputs.finish_rows(document, 1)

@@ -98,17 +98,24 @@ impl Outputs {
         let Some(picture) = picture else { return Ok(self) };
         self.with(picture.output, Some(picture.path))?.with(Output::PLOT_DATA, picture.data)
     }
+
+    /// Draws a picture of this scene, where it is requested: the chart over the ranges of its axes.
+    pub fn draw(
+        &mut self,
+        picture: Option<Picture>,
+        document: &Document,
+        chart: impl FnOnce(Ranges) -> Result<Chart, Failure>,
+    ) -> Result<(), Failure> {
+        let Some(picture) = picture else { return Ok(()) };
+        picture.write(self, &chart(picture.ranges)?, &caption(document))
+    }
 }
 
 fn sheet(options: &PlotOptions, format: Format) -> Result<Option<Sheet>, Failure> {
     let Some(width_mm) = &options.plot_width_mm else { return Ok(None) };
-    let text = SheetText {
-        width_mm,
-        height_mm: options.plot_height_mm.as_deref(),
-        font_pt: &options.font_pt,
-        dpi: options.dpi.as_deref(),
-        titled: !options.no_title,
-    };
+    let PlotOptions { plot_height_mm, font_pt, dpi, no_title, .. } = options;
+    let (height_mm, dpi, titled) = (plot_height_mm.as_deref(), dpi.as_deref(), !no_title);
+    let text = SheetText { width_mm, height_mm, font_pt, dpi, titled };
     Sheet::read(&text, format == Format::Png).map(Some).map_err(|error| Failure::argument(error.to_string()))
 }
 

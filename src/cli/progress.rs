@@ -40,15 +40,9 @@ pub fn with_bar<T>(parts: u64, unit: &str, common: &Common, work: impl FnOnce(&T
 /// rate and time left on a terminal, unless the rows go there too; lines if standard error is no terminal.
 pub fn bar(parts: u64, before: u64, unit: &str, common: &Common) -> Progress {
     let rows_on_terminal = common.out() == Path::new("-") && std::io::stdout().is_terminal();
-    let (done, printed) = (AtomicU64::new(before), AtomicU64::new(0));
-    let lines = (!common.quiet && !std::io::stderr().is_terminal()).then(|| Lines {
-        parts,
-        unit: unit.to_owned(),
-        clock: WallClock::start(),
-        before,
-        done,
-        printed,
-    });
+    let (clock, done, printed) = (WallClock::start(), AtomicU64::new(before), AtomicU64::new(0));
+    let lines = Lines { parts, unit: unit.to_owned(), clock, before, done, printed };
+    let lines = Some(lines).filter(|_| !common.quiet && !std::io::stderr().is_terminal());
     let template = format!("{{wide_bar}} {{human_pos}}/{{human_len}} {unit}  {{rate}}  {{eta}} left");
     let bar = bar_on_terminal(Some(parts), &template, common.quiet || rows_on_terminal);
     bar.set_position(before);
@@ -112,7 +106,6 @@ impl Lines {
     }
 }
 
-/// A duration in words.
 pub fn duration(seconds: f64) -> String {
     if seconds < 1.0 {
         return "less than a second".to_owned();

@@ -1,16 +1,16 @@
 //! `section`: the state once a forcing period or at every impact; over a field the bifurcation diagram.
 
 use clap::Args;
-use interwell::output::{SectionPicture, section_chart};
+use interwell::output::section_chart;
 use interwell::study::{
-    Carry, Grid, IMPACTS, MAX_SECTION, SectionAt, SectionOptions, Sections, Table, Tally, section,
+    Carry, IMPACTS, MAX_SECTION, SectionAt, SectionOptions, Sections, Table, Tally, section,
 };
 
 use super::grid_job::GridJob;
 use super::support::{
-    counted, finite, load, load_model, outputs, pool, until_settled, until_settled_on_grid, warn,
+    counted, finite, load_model, load_over, outputs, pool, until_settled, until_settled_on_grid, warn,
 };
-use super::{ChartOptions, Common, Failure, Output, Picture, caption, interrupt, refuse, say, whole};
+use super::{ChartOptions, Common, Failure, Output, Picture, interrupt, refuse, say, whole};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -73,12 +73,8 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
             SectionAt::Phase(finite("--phase-deg", text, "give an angle in degrees, such as 90")?)
         }
     };
-    let settings = SectionOptions {
-        at,
-        periods: options.skip.zip(options.keep),
-        until_settled: None,
-        carry: options.carry.as_deref().and_then(Carry::named),
-    };
+    let carry = options.carry.as_deref().and_then(Carry::named);
+    let settings = SectionOptions { at, periods: options.skip.zip(options.keep), until_settled: None, carry };
     if options.over.is_empty() { one(options, common, settings) } else { diagram(options, common, settings) }
 }
 
@@ -92,11 +88,9 @@ fn one(options: &Arguments, common: &Common, mut settings: SectionOptions) -> Re
     let (table, summary) = found.map_err(|fault| document.error_from(vec![fault]))?;
     interrupt::check()?;
     outputs.table(Output::DATA, &table.without(IMPACTS))?;
-    if let Some(picture) = picture {
-        let (stops, ranges) = (model.stop_positions(), picture.ranges);
-        let shown = SectionPicture { rows: &table, over: None, phase_deg: phase(&settings), stops, ranges };
-        picture.write(&mut outputs, &section_chart(&shown), &caption(&document))?;
-    }
+    let stops = model.stop_positions();
+    let chart = |ranges| Ok(section_chart(&table, None, phase(&settings), stops, ranges));
+    outputs.draw(picture, &document, chart)?;
     outputs.finish_rows(&document, 1)?;
     if let Some(at) = summary.outcome.ended_at() {
         let name = summary.outcome.name();
@@ -112,8 +106,7 @@ fn phase(settings: &SectionOptions) -> Option<f64> {
 /// The sections of all cells, written as they are computed.
 fn diagram(options: &Arguments, common: &Common, settings: SectionOptions) -> Result<(), Failure> {
     let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
-    let (document, warnings) = load(&options.scene, common, Some(&options.over))?;
-    let grid = Grid::new(document.axes(&options.over)?)?;
+    let (document, warnings, grid) = load_over(&options.scene, &options.over, common)?;
     let fields = grid.axes().len();
     if picture.is_some() && fields > 1 {
         refuse!(
@@ -131,13 +124,9 @@ fn diagram(options: &Arguments, common: &Common, settings: SectionOptions) -> Re
     let outputs = outputs(&options.scene, &document, common)?;
     let mut job = GridJob::open(&document, common, outputs, picture, pool)?;
     let (tally, count) = job.stream(&sections, "runs")?;
-    let chart = |rows: &Table, picture: &Picture| {
-        let over = sections.grid().columns().first().map(String::as_str);
-        let (phase_deg, ranges) = (phase(&settings), picture.ranges);
-        let shown = SectionPicture { rows, over, phase_deg, stops: (None, None), ranges };
-        Ok(section_chart(&shown))
-    };
     let grid = sections.grid();
+    let over = grid.columns().first().map(String::as_str);
+    let chart = |rows: &Table, ranges| Ok(section_chart(rows, over, phase(&settings), (None, None), ranges));
     let wall_s = job.finish(chart, |manifest| Ok(manifest.of_rows(grid, &tally, None)))?;
     if tally.cells == sections.rows() {
         common.say(&format!("{count} rows of {} in {wall_s:.2} s", runs(&tally)));

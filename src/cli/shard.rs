@@ -68,27 +68,17 @@ fn named(shard: Shard) -> String {
     format!("{}-of-{}", shard.number(), shard.count())
 }
 
-/// Options that belong to the shard or to this one call, and whether each takes a value.
-const SHARD_OPTIONS: [(&str, bool); 6] = [
-    ("--shard", true),
-    ("--out", true),
-    ("--resume", false),
-    ("--force", false),
-    ("--dry-run", false),
-    ("--quiet", false),
-];
-
-/// The command with these `arguments` and other options for the shard.
+/// The command with these `arguments`, and with these `options` in place of those that belong to the shard or
+/// to this one call.
 pub fn command(arguments: &[String], options: &[&str]) -> String {
     let mut words = vec!["interwell"];
     let mut skip_value = false;
     for argument in arguments {
-        let name = argument.split('=').next().unwrap_or_default();
-        let shard_option = SHARD_OPTIONS.iter().find(|(option, _)| *option == name);
-        match shard_option {
+        match argument.split('=').next().unwrap_or_default() {
             _ if std::mem::take(&mut skip_value) => {}
-            Some((_, has_value)) => skip_value = *has_value && name == argument,
-            None => words.push(argument),
+            name @ ("--shard" | "--out") => skip_value = name == argument,
+            "--resume" | "--force" | "--dry-run" | "--quiet" => {}
+            _ => words.push(argument),
         }
     }
     words.extend(options);

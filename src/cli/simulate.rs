@@ -5,14 +5,14 @@ use std::path::PathBuf;
 use clap::Args;
 use interwell::dynamics::{Model, Outcome};
 use interwell::numeric::{extent, short};
-use interwell::output::{Ranges, RunPanel, measured_chart, push_number, run_chart, summary};
+use interwell::output::{RunPanel, measured_chart, push_number, run_chart, summary};
 use interwell::study::{
     Keep, Sampling, ended_remedy, sample_times, simulate, simulate_with_trace, yield_warning,
 };
 
 use super::measured::MeasuredOptions;
 use super::support::{Watch, inputs, load_model, number, numbers, until_settled};
-use super::{ChartOptions, Common, Failure, Output, Outputs, Picture, caption, interrupt, refuse, say};
+use super::{ChartOptions, Common, Failure, Output, Outputs, Picture, interrupt, refuse, say};
 
 #[derive(Debug, Args)]
 pub struct Arguments {
@@ -60,10 +60,8 @@ pub struct Arguments {
     pub chart: ChartOptions,
 }
 
-/// Runs the scene and writes samples, events and summary.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let picture = Picture::of_chart(&options.chart, "--plot-time", common)?;
-    let axes = picture.map_or(Ranges::default(), |picture| picture.ranges);
     let sampling = match (&options.at, &options.dt) {
         (Some(text), _) => Sampling::At(numbers("--at", text, ',')?),
         (None, Some(text)) => {
@@ -79,7 +77,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let (document, model) = load_model(&options.scene, common)?;
     let until_settled = until_settled(options.until_settled.as_deref(), &document, &model)?;
     let times = sample_times(&document.scene, &model, &sampling, until_settled)?;
-    let window = axes.x.or_else(|| span(&sampling));
+    let window = picture.and_then(|picture| picture.ranges.x).or_else(|| span(&sampling));
     let longest = until_settled.unwrap_or(model.duration());
     if let Some((from, to)) = window.filter(|(from, to)| *from < 0.0 || *to > longest) {
         refuse!("--plot-time {from}:{to}: the run lasts from 0 to {longest} s");
@@ -97,16 +95,14 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         .with(Output::SUMMARY, options.summary.as_deref())?
         .with_picture(picture)?
         .with(Output::COMPARISON, options.measured.comparison.as_deref())?;
-
     let cancel = interrupt::listen();
     let watch = Watch::start();
     let keep = Keep { times, events: options.events.is_some(), until_settled };
-    let (simulation, trace) = match picture {
-        None => (simulate(&model, &keep, Some(cancel)), None),
-        Some(_) => {
-            let (simulation, trace) = simulate_with_trace(&model, &keep, inset.or(window), Some(cancel));
-            (simulation, Some(trace))
-        }
+    let (simulation, trace) = if picture.is_none() {
+        (simulate(&model, &keep, Some(cancel)), None)
+    } else {
+        let (simulation, trace) = simulate_with_trace(&model, &keep, inset.or(window), Some(cancel));
+        (simulation, Some(trace))
     };
     interrupt::check()?;
     let compared =
@@ -114,27 +110,26 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     outputs.table(Output::DATA, &simulation.samples)?;
     outputs.table(Output::EVENTS, &simulation.events)?;
     outputs.write(Output::SUMMARY, summary(&simulation.summary, &document.scene, &watch.origin(1)))?;
-    if let Some((picture, trace)) = picture.zip(trace) {
-        let mechanism = model.mechanism();
-        let chart = match record.as_ref().zip(compared.as_ref()) {
+    let compared = record.as_ref().zip(compared.as_ref());
+    if let Some(trace) = trace {
+        let of = (&**model.mechanism(), model.mass());
+        outputs.draw(picture, &document, |ranges| match compared {
             Some((measured, found)) => {
                 let quantity = measured.record.channels[1].quantity;
-                measured_chart(&trace, (found, quantity), inset, axes)
+                Ok(measured_chart(&trace, (found, quantity), inset, ranges))
             }
-            None => run_chart(&trace, &simulation.summary, (mechanism, model.mass()), &panels, axes),
-        };
-        picture.write(&mut outputs, &chart, &caption(&document))?;
+            None => Ok(run_chart(&trace, &simulation.summary, of, &panels, ranges)),
+        })?;
     }
-    if let Some(found) = &compared {
+    if let Some((_, found)) = compared {
         outputs.table(Output::COMPARISON, &found.table)?;
     }
     outputs.finish_rows(&document, 1)?;
-    if let Some((measured, found)) = record.as_ref().zip(compared.as_ref()).filter(|_| !common.quiet) {
+    if let Some((measured, found)) = compared.filter(|_| !common.quiet) {
         measured.report(found);
     }
-    if let Some(warning) = yield_warning(&model, &simulation.summary) {
-        common.say(&format!("warning: {}: {warning}", document.name));
-    }
+    let warning = yield_warning(&model, &simulation.summary);
+    warning.iter().for_each(|words| common.say(&format!("warning: {}: {words}", document.name)));
     if let Some(reason) = remark(&model, simulation.summary.outcome) {
         let reason = format!("{}: {reason}", document.name);
         if options.strict {

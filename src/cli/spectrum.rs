@@ -6,8 +6,8 @@ use interwell::output::{SpectrumQuantity, spectrum_chart};
 use interwell::questions::{Progress, Spectrum};
 use interwell::study::Signal;
 
-use super::support::{is_positive, load_simulation, number, outputs, waits};
-use super::{ChartOptions, Common, Failure, Output, Picture, caption, interrupt, refuse};
+use super::support::{load_simulation, number, outputs, waits};
+use super::{ChartOptions, Common, Failure, Output, Picture, interrupt, refuse};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -54,7 +54,6 @@ pub struct Arguments {
     pub chart: ChartOptions,
 }
 
-/// Runs the scene and writes the spectrum of its settled motion.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
     if let Some((low, high)) = picture.and_then(|picture| picture.ranges.y).filter(|(low, _)| !(*low > 0.0)) {
@@ -62,6 +61,9 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
             "--plot-y {low}:{high}: the axis is logarithmic; give two numbers above 0, such as 1e-9:1e-2"
         );
     }
+    let remedy = "give a number of samples a second above 0, such as 2048";
+    let is_positive = |rate: &f64| *rate > 0.0 && rate.is_finite();
+    let rate_hz = |text| number("--rate-hz", text, is_positive, remedy);
     let question = Spectrum {
         of: Signal::named(&options.of).unwrap_or(Signal::Displacement),
         taper: match options.taper.as_str() {
@@ -69,7 +71,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
             "none" => Some(Taper::None),
             _ => None,
         },
-        rate_hz: options.rate_hz.as_deref().map(rate).transpose()?,
+        rate_hz: options.rate_hz.as_deref().map(rate_hz).transpose()?,
         until_settled: waits(options.until_settled.as_deref())?,
     };
     let simulation = load_simulation(&options.scene, common)?;
@@ -77,19 +79,9 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let mut outputs = outputs(&options.scene, document, common)?.with_picture(picture)?;
     let found = question.run(&simulation, &Progress::none().stopped_by(interrupt::listen()))?;
     outputs.table(Output::DATA, &found.table)?;
-    if let Some(picture) = picture {
-        let quantity = match options.quantity.as_str() {
-            "psd" => SpectrumQuantity::Density,
-            _ => SpectrumQuantity::Amplitude,
-        };
-        let chart = spectrum_chart(&found, quantity, picture.ranges);
-        picture.write(&mut outputs, &chart, &caption(document))?;
-    }
+    let quantity = SpectrumQuantity::named(&options.quantity).unwrap_or(SpectrumQuantity::Amplitude);
+    outputs.draw(picture, document, |ranges| Ok(spectrum_chart(&found, quantity, ranges)))?;
     outputs.finish_rows(document, 1)?;
     common.say(&format!("{}: {}", document.name, found.describe()));
     Ok(())
-}
-
-fn rate(text: &str) -> Result<f64, Failure> {
-    number("--rate-hz", text, is_positive, "give a number of samples a second above 0, such as 2048")
 }

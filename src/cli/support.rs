@@ -8,6 +8,7 @@ use interwell::mechanics::Mechanism;
 use interwell::output::{Provenance, is_regular};
 use interwell::questions::{Error, Simulation, check_until_settled};
 use interwell::scene::{Document, SceneError, read_number};
+use interwell::study::Grid;
 use interwell::system::clock::{ProcessClock, WallClock};
 use interwell::system::threads::{Pool, processors};
 
@@ -47,19 +48,28 @@ pub fn arguments() -> Vec<String> {
 }
 
 /// Loads the scene called `spec`, applies `--set` and `--tolerance`, checks it, and returns it with its
-/// warnings. With the arguments of `--over` its first cell is checked, since the scene's own values of the
-/// swept fields are never run.
-pub fn load(
-    spec: &str,
-    common: &Common,
-    over: Option<&[String]>,
-) -> Result<(Document, Vec<String>), SceneError> {
+/// warnings.
+pub fn load(spec: &str, common: &Common) -> Result<(Document, Vec<String>), SceneError> {
     let mut document = read(spec, common)?;
-    let warnings = check(&mut document, over)?;
+    let warnings = check(&mut document, None)?;
     Ok((document, warnings))
 }
 
-/// Checks a document that was read; returns its warnings.
+/// Loads the scene with its grid: of the fields of `--over`, or of the scene alone without those, where the
+/// sweep in the scene is ignored.
+pub fn load_over(
+    spec: &str,
+    over: &[String],
+    common: &Common,
+) -> Result<(Document, Vec<String>, Grid), Failure> {
+    let (mut document, is_one) = (read(spec, common)?, over.is_empty());
+    let warnings = check(&mut document, (!is_one).then_some(over))?;
+    let grid = if is_one { Grid::of_one() } else { Grid::new(document.axes(over)?)? };
+    Ok((document, warnings, grid))
+}
+
+/// Checks a document that was read; returns its warnings. With the arguments of `--over` its first cell is
+/// checked, since the scene's own values of the swept fields are never run.
 pub fn check(document: &mut Document, over: Option<&[String]>) -> Result<Vec<String>, SceneError> {
     let moved = document.settle_within();
     let mut first_cell = document.clone();
@@ -102,27 +112,37 @@ pub fn outputs(spec: &str, document: &Document, common: &Common) -> Result<Outpu
     Outputs::new(&inputs(spec, document)).with_rows(Some(common.out()))
 }
 
-/// The scene's mechanism.
 pub fn mechanism(document: &Document) -> Result<Arc<Mechanism>, Failure> {
     let built = Mechanism::build(&document.scene.mechanism, &document.files);
     built.map(Arc::new).map_err(|error| Error::unbuilt(document, error).into())
 }
 
-/// The model of a scene with its mechanism.
 pub fn model(document: &Document, mechanism: &Arc<Mechanism>) -> Result<Model, Failure> {
     let model = Model::build(&document.scene, Arc::clone(mechanism));
     model.map_err(|faults| document.error_from(faults).into())
 }
 
+/// The mechanism of all cells of a grid, `None` if they have different ones; prints the warnings.
+pub fn mechanism_of_all(
+    document: &Document,
+    grid: &Grid,
+    common: &Common,
+    warnings: &[String],
+) -> Result<Option<Arc<Mechanism>>, Failure> {
+    let mechanism = (!grid.changes_mechanism()).then(|| mechanism(document)).transpose()?;
+    warn(document, common, warnings, mechanism.as_deref());
+    Ok(mechanism)
+}
+
 /// Loads the scene and its mechanism and prints the warnings of both.
 pub fn load_with_mechanism(spec: &str, common: &Common) -> Result<(Document, Arc<Mechanism>), Failure> {
-    let (document, warnings) = load(spec, common, None)?;
+    let (document, warnings) = load(spec, common)?;
     let mechanism = mechanism(&document)?;
     warn(&document, common, &warnings, Some(&mechanism));
     Ok((document, mechanism))
 }
 
-/// Loads the scene and builds its model; prints the warnings of both.
+/// The same as [`load_simulation`], as its parts.
 pub fn load_model(spec: &str, common: &Common) -> Result<(Document, Model), Failure> {
     let simulation = load_simulation(spec, common)?;
     Ok((simulation.document().clone(), simulation.model().clone()))
@@ -169,11 +189,6 @@ pub fn number(
 /// The finite number in `text`, as given to `option`.
 pub fn finite(option: &str, text: &str, remedy: &str) -> Result<f64, Failure> {
     number(option, text, |value| value.is_finite(), remedy)
-}
-
-/// Whether a value is finite and above 0.
-pub fn is_positive(value: &f64) -> bool {
-    *value > 0.0 && value.is_finite()
 }
 
 /// A number of things, such as `1 cell` or `2 cells`.

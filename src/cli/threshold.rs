@@ -2,7 +2,7 @@
 
 use clap::Args;
 use interwell::numeric::extent;
-use interwell::output::{ThresholdPicture, can_show_thresholds, threshold_chart};
+use interwell::output::{can_show_thresholds, threshold_chart};
 use interwell::questions::{
     Escape, NO_MELNIKOV, ProbableThreshold, Threshold, drive_alone, no_table, refuse_searched,
 };
@@ -12,8 +12,8 @@ use interwell::study::{
     with_melnikov,
 };
 
-use super::support::{finite, load, mechanism, outputs, pool, until_settled, warn};
-use super::{ChartOptions, Common, Failure, Output, Picture, caption, refuse, whole, with_bar};
+use super::support::{finite, load_over, mechanism_of_all, outputs, pool, until_settled};
+use super::{ChartOptions, Common, Failure, Output, Picture, refuse, whole, with_bar};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -36,12 +36,8 @@ pub struct Arguments {
     pub scene: String,
 
     /// The field and its range [default of the step: a 200th of the range]
-    #[arg(
-        long,
-        value_name = "FIELD=FROM:TO[:STEP]",
-        default_value = "excitation.amplitude_g=0:2",
-        allow_hyphen_values = true
-    )]
+    #[arg(long, value_name = "FIELD=FROM:TO[:STEP]", allow_hyphen_values = true)]
+    #[arg(default_value = "excitation.amplitude_g=0:2")]
     pub field: String,
 
     /// What begins there: release (the mass leaves the stop it rests on), crossing (the settled motion
@@ -112,24 +108,14 @@ fn search(options: &Arguments, document: &Document, grid: &Grid) -> Result<(Scan
     Ok((question.scan(document)?, Some(question.chance(document, grid)?)))
 }
 
-/// Searches and writes the table.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
-    // without --over the sweep in the scene is ignored
-    let over = Some(options.over.as_slice()).filter(|over| !over.is_empty());
-    let (document, warnings) = load(&options.scene, common, over)?;
+    let (document, warnings, grid) = load_over(&options.scene, &options.over, common)?;
     let onset = Onset::named(&options.of).unwrap_or(Onset::Crossing);
-    let grid = match over {
-        None => Grid::of_one(),
-        Some(over) => Grid::new(document.axes(over)?)?,
-    };
     let (mut scan, chance) = search(options, &document, &grid)?;
     refuse_searched(&grid, &scan)?;
-    if picture.is_some() {
-        can_show_thresholds(&grid)?;
-    }
-    let mechanism = (!grid.changes_mechanism()).then(|| mechanism(&document)).transpose()?;
-    warn(&document, common, &warnings, mechanism.as_deref());
+    picture.map(|_| can_show_thresholds(&grid)).transpose()?;
+    let mechanism = mechanism_of_all(&document, &grid, common, &warnings)?;
     if let Some(text) = options.until_settled.as_deref() {
         let mut first = document.scene.clone();
         grid.apply(0, &mut first);
@@ -154,7 +140,8 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     });
     let table = found.map_err(|end| no_table(&document, end))?;
     outputs.table(Output::DATA, &table)?;
-    let fixed = !grid.axes().iter().map(|axis| &axis.field).chain([&scan.field]).any(|field| is_limit(field));
+    let mut fields = grid.axes().iter().map(|axis| &axis.field).chain([&scan.field]);
+    let fixed = !fields.any(|field| field.starts_with("stops") || field.starts_with("mechanism"));
     let blocked = mechanism.filter(|mechanism| fixed && !can_cross(scene, mechanism));
     let blocked = blocked.map(|mechanism| match mechanism.landscape.barrier {
         None => "there is no barrier between two wells",
@@ -166,11 +153,8 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     };
     let remarks = [missing, undecided(&table)];
     remarks.iter().flatten().for_each(|words| common.say(&format!("{name}: {words}")));
-    if let Some(picture) = picture {
-        let (rows, grid, field) = (&table, &grid, &*scan.field);
-        let shown = ThresholdPicture { rows, grid, scene, field, onset, ranges: picture.ranges };
-        picture.write(&mut outputs, &threshold_chart(&shown)?, &caption(&document))?;
-    }
+    let chart = |ranges| Ok(threshold_chart(&table, &grid, scene, &scan.field, onset, ranges)?);
+    outputs.draw(picture, &document, chart)?;
     outputs.finish_rows(&document, pool.count())
 }
 
@@ -183,11 +167,16 @@ fn of_rows(count: usize, all: usize, verbs: [&str; 2]) -> Option<String> {
     }
 }
 
-/// Explains an empty `value` of a threshold in probability, if a row has one.
-fn too_few(table: &Table, scan: &Scan, chance: &Chance) -> Option<String> {
+/// The rows with an empty `value`, as a clause, if there are any.
+fn without_value(table: &Table) -> Option<String> {
     let values = table.numbers("value")?;
     let count = values.iter().filter(|value| value.is_nan()).count();
-    let rows = of_rows(count, values.len(), ["has no value", "have no value"])?;
+    of_rows(count, values.len(), ["has no value", "have no value"])
+}
+
+/// Explains an empty `value` of a threshold in probability, if a row has one.
+fn too_few(table: &Table, scan: &Scan, chance: &Chance) -> Option<String> {
+    let rows = without_value(table)?;
     let (last, Chance { probability, within, .. }) = (scan.values.last()?, chance);
     Some(format!(
         "{rows}: at {} = {last} less than a share {probability} of the runs crosses within {within} s; give \
@@ -209,16 +198,9 @@ fn undecided(table: &Table) -> Option<String> {
     ))
 }
 
-/// Whether a field moves a stop or changes the mechanism.
-fn is_limit(field: &str) -> bool {
-    field.starts_with("stops") || field.starts_with("mechanism")
-}
-
 /// Explains an empty `value`, if a row has one. `blocked` says why no row can have a crossing.
 fn missing(table: &Table, scan: &Scan, onset: Onset, grid: &Grid, blocked: Option<&str>) -> Option<String> {
-    let values = table.numbers("value")?;
-    let count = values.iter().filter(|value| value.is_nan()).count();
-    let rows = of_rows(count, values.len(), ["has no value", "have no value"])?;
+    let rows = without_value(table)?;
     if let Some(why) = blocked.filter(|_| onset != Onset::Release) {
         return Some(format!("{rows}: {why}, so nothing to cross"));
     }

@@ -14,9 +14,9 @@ use crate::dynamics::Model;
 use crate::mechanics::Mechanism;
 use crate::numeric::extent;
 use crate::output::{
-    Caption, Chart, Figure, Overlay, Ranges, RunPanel, SectionPicture, SpectrumQuantity, SweepPicture, Theme,
-    View, basins_chart, can_show, curve_chart, measured_chart, measured_force_chart, run_chart,
-    section_chart, shapes_chart, spectrum_chart, sweep_chart,
+    Caption, Chart, Figure, Overlay, Ranges, RunPanel, SpectrumQuantity, SweepPicture, Theme, View,
+    basins_chart, can_show, curve_chart, measured_chart, measured_force_chart, run_chart, section_chart,
+    shapes_chart, spectrum_chart, sweep_chart,
 };
 use crate::scene::{Document, Fault, FieldPath, arguments};
 use crate::study::{
@@ -231,5 +231,5 @@ impl Drawing<'_> {
 /// The stroboscopic states of one run, or of runs over a field.
 fn of_section(rows: &Table, over: Option<&str>, stops: (Option<f64>, Option<f64>)) -> Chart {
     let ranges = Ranges::default();
-    section_chart(&SectionPicture { rows, over, phase_deg: Some(0.0), stops, ranges })
+    section_chart(rows, over, Some(0.0), stops, ranges)
 }

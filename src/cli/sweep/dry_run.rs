@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use interwell::output::rows;
 use interwell::questions::Error;
-use interwell::study::{Shard, Sweep, Task};
+use interwell::study::{Shard, Task};
 use interwell::system::clock::WallClock;
 use interwell::system::threads::{Pool, within};
 
@@ -78,7 +78,9 @@ pub fn print(prepared: &Prepared, pool: &Pool) -> Result<(), Failure> {
             );
         }
     }
-    let memory = PROGRAM_BYTES + sweep.memory(threads) + if picture { picture_bytes(sweep) } else { 0 };
+    // the table that a picture needs
+    let table = if picture { 16 * sweep.rows() * sweep.empty_table().columns().len() as u64 } else { 0 };
+    let memory = PROGRAM_BYTES + sweep.memory(threads) + table;
     let kept = if picture { ", with the table that the picture needs" } else { "" };
     println!("at most about {} MB of memory{kept}", memory.div_ceil(1_000_000));
 
@@ -108,9 +110,4 @@ pub fn print(prepared: &Prepared, pool: &Pool) -> Result<(), Failure> {
     }
     println!("  interwell --headless merge {stem}-*-of-{shards}.csv --out {out}");
     Ok(())
-}
-
-/// Memory in bytes of the table that a picture needs.
-fn picture_bytes(sweep: &Sweep) -> u64 {
-    16 * sweep.rows() * sweep.empty_table().columns().len() as u64
 }

@@ -4,18 +4,17 @@ mod dry_run;
 mod prepared;
 mod rows;
 
-use interwell::output::{Chart, Made, Overlay, SweepPicture, header, is_regular, rows, sweep_chart};
+use interwell::output::{Chart, Made, Overlay, Ranges, SweepPicture, header, is_regular, rows, sweep_chart};
 use interwell::scene::Document;
 use interwell::study::{SweepOptions, Table, Tally};
 
 use super::grid_job::GridJob;
 use super::support::{counted, inputs, pool};
-use super::{Common, Failure, Output, Outputs, Picture, refuse};
+use super::{Common, Failure, Output, Outputs, refuse};
 pub use prepared::Arguments;
 use prepared::Prepared;
 use rows::{Compared, Rows};
 
-/// Runs the grid and writes one row for each cell.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let prepared = Prepared::new(options, common)?;
     let pool = pool(common)?;
@@ -42,9 +41,9 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     all.add(&tally);
     if let Rows::Compared(file) = &mut rows_out {
         file.end()?;
-        common.say(&format!("{}: all {} rows are the same", prepared.data.display(), all.cells));
+        common.say(&format!("{}: all {} rows are the same", prepared.data().display(), all.cells));
     }
-    let chart = |rows: &Table, picture: &Picture| prepared.chart(rows, picture);
+    let chart = |rows: &Table, ranges| prepared.chart(rows, ranges);
     let wall_s = job.finish(chart, |manifest| {
         let sha256 = rows_out.close()?;
         let (shard, mechanisms) = (slice.shard(), sweep.mechanisms());
@@ -71,7 +70,7 @@ impl Prepared<'_> {
     fn open_rows(&self, outputs: &mut Outputs) -> Result<Option<(Rows, Tally)>, Failure> {
         let header = header(&self.sweep.empty_table().only(&self.columns));
         if self.options.check {
-            let mut file = Compared::new(&self.data)?;
+            let mut file = Compared::new(&self.data())?;
             file.put(&header)?;
             return Ok(Some((Rows::Compared(file), Tally::default())));
         }
@@ -95,7 +94,7 @@ impl Prepared<'_> {
         Ok(())
     }
 
-    fn chart(&self, rows: &Table, picture: &Picture) -> Result<Chart, Failure> {
+    fn chart(&self, rows: &Table, ranges: Ranges) -> Result<Chart, Failure> {
         let (grid, scene) = (self.sweep.grid(), &self.document.scene);
         let &SweepOptions { until_settled, carry, ref draws, .. } = self.sweep.options();
         // The overlay holds for runs from rest only.
@@ -103,8 +102,7 @@ impl Prepared<'_> {
             Some(_) => Overlay::default(),
             None => Overlay::of(scene, self.mechanism.as_deref(), grid, rows),
         };
-        let (quantity, view, ranges) = (self.quantity, self.view.clone(), picture.ranges);
-        let draws = &*draws.about();
+        let (quantity, view, draws) = (self.quantity, self.view.clone(), &*draws.about());
         let shown = SweepPicture { rows, grid, scene, until_settled, quantity, overlay, view, ranges, draws };
         Ok(sweep_chart(&shown)?)
     }

@@ -102,8 +102,6 @@ pub struct Prepared<'a> {
     pub document: Document,
     /// Where the rows go.
     pub out: PathBuf,
-    /// The file with the rows of the manifest that is given as the scene.
-    pub data: PathBuf,
     pub sweep: Sweep,
     pub slice: Slice,
     /// The mechanism of the first cell, if it is solved.
@@ -164,23 +162,15 @@ impl<'a> Prepared<'a> {
         if picture.is_some() {
             can_show(sweep.grid(), quantity, &view, &sweep.empty_table())?;
         }
-        let data = Path::new(&options.scene).with_file_name(swept.data);
         let mut plan = plan(&document, &sweep, &chosen, env!("CARGO_PKG_VERSION"));
         (plan["rows"], plan["unit"]) = (json!(sweep.rows()), json!(slice.unit()));
-        Ok(Self {
-            options,
-            document,
-            out,
-            data,
-            sweep,
-            slice,
-            mechanism,
-            columns,
-            plan,
-            picture,
-            quantity,
-            view,
-        })
+        Ok(Self { options, document, out, sweep, slice, mechanism, columns, plan, picture, quantity, view })
+    }
+
+    /// The file with the rows of the manifest that is given as the scene.
+    pub fn data(&self) -> PathBuf {
+        let name = self.document.swept.as_ref().map_or("", |swept| &swept.data);
+        Path::new(&self.options.scene).with_file_name(name)
     }
 }
 
@@ -210,33 +200,27 @@ fn view(options: &Arguments, grid: &Grid) -> Result<View, Failure> {
     let mut cuts: Vec<Cut> = Vec::new();
     for text in &options.cut {
         let wrong = |problem: String| Failure::argument(format!("--cut {text}: {problem}"));
-        let known = || grid.columns().join(", ");
-        let form = || wrong(format!("write FIELD=VALUE with a field of the sweep: {}", known()));
+        let columns: Vec<&str> = grid.columns().iter().map(String::as_str).collect();
+        let form = || wrong(format!("write FIELD=VALUE with a field of the sweep: {}", columns.join(", ")));
         let (field, value) = text.split_once('=').ok_or_else(form)?;
         let field = field.trim();
         let place = grid.axes().iter().position(|axis| axis.field == field);
-        let columns: Vec<&str> = grid.columns().iter().map(String::as_str).collect();
-        let field =
+        let column =
             place.map_or_else(|| find_name("field of the sweep", field, &columns), |at| Ok(columns[at]));
-        let field = field.map_err(wrong)?;
-        let place = columns.iter().position(|column| *column == field).unwrap_or(0);
+        let column = column.map_err(wrong)?;
         let value = read_number(value).map_err(|_| form())?;
-        let column = grid.columns()[place].clone();
-        let values = &grid.axes()[place].values;
-        if !values.contains(&value) {
-            let mut near: Vec<f64> = values.clone();
+        let place = columns.iter().position(|name| *name == column).unwrap_or(0);
+        let mut near = grid.axes()[place].values.clone();
+        if !near.contains(&value) {
             near.sort_by(|a, b| (a - value).abs().total_cmp(&(b - value).abs()));
-            near.truncate(2);
-            let near: Vec<String> = near.iter().map(f64::to_string).collect();
-            return Err(wrong(format!(
-                "the sweep has no such value; the nearest are {}",
-                near.join(" and ")
-            )));
+            let near: Vec<String> = near.iter().take(2).map(f64::to_string).collect();
+            let near = near.join(" and ");
+            return Err(wrong(format!("the sweep has no such value; the nearest are {near}")));
         }
         if cuts.len() == MAX_CUTS {
             return Err(wrong(format!("at most {MAX_CUTS} cuts stand beside a map")));
         }
-        cuts.push(Cut { column, value });
+        cuts.push(Cut { column: column.to_owned(), value });
     }
     Ok(if cuts.is_empty() { View::Top } else { View::Cuts(cuts) })
 }

@@ -88,7 +88,7 @@ impl Prepared<'_> {
                 plan_differences(&plan_with_shard(existing), &plan_with_shard(&head))
             )
         };
-        if resume && !opened.has_rows() && self.is_whole() {
+        if resume && !opened.has_rows() && self.is_whole(&head) {
             opened.leave();
             return Ok(None);
         }
@@ -158,13 +158,10 @@ impl Prepared<'_> {
         manifest["plan"].is_object().then(|| json!({ "plan": manifest["plan"], "shard": manifest["shard"] }))
     }
 
-    /// Whether the file has all rows of this sweep, according to its manifest and checksum.
-    fn is_whole(&self) -> bool {
-        self.manifest().is_some_and(|manifest| {
-            manifest["plan"] == self.plan
-                && manifest["shard"].as_str() == Some(&self.slice.shard().to_string())
-                && manifest["sha256"].as_str() == file_checksum(&self.out).ok().as_deref()
-        })
+    /// Whether the file has all rows of the sweep with this head, according to its manifest and checksum.
+    fn is_whole(&self, head: &Value) -> bool {
+        let sum = |manifest: Value| manifest["sha256"].as_str() == file_checksum(&self.out).ok().as_deref();
+        self.existing_head().as_ref() == Some(head) && self.manifest().is_some_and(sum)
     }
 }
 

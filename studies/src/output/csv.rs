@@ -5,6 +5,7 @@
 
 use std::fmt::Write;
 use std::ops::Range;
+use std::str::FromStr;
 
 use crate::numeric::push_number;
 use crate::study::{Cell, Direction, SUMMARY_FIELDS, Table, Values};
@@ -57,35 +58,27 @@ pub fn csv_table(text: &str, empty: &Table) -> Result<Table, String> {
         let missing = || format!("there is no column {name}");
         let place = names.iter().position(|header| header == name).ok_or_else(missing)?;
         let cells = rows.iter().map(|row| row.get(place).unwrap_or_default());
-        let wrong = |cell: &str| format!("`{cell}` in the column {name} is no number");
-        let values = match &column.values {
+        let wrong = |cell: &str, what| format!("`{cell}` in the column {name} is no {what}");
+        let values: Result<Values, String> = match &column.values {
             Values::Numbers(_) => {
-                Values::Numbers(
-                    cells
-                        .map(|cell| {
-                            if cell.is_empty() { Ok(f64::NAN) } else { cell.parse().map_err(|_| wrong(cell)) }
-                        })
-                        .collect::<Result<_, _>>()?,
-                )
+                cells.map(|cell| parsed::<f64>(cell).ok_or_else(|| wrong(cell, "number"))).collect()
             }
-            Values::Counts(_) => Values::Counts(
-                cells
-                    .map(|cell| (!cell.is_empty()).then(|| cell.parse().map_err(|_| wrong(cell))).transpose())
-                    .collect::<Result<_, _>>()?,
-            ),
-            Values::Names(_) => Values::Names(cells.map(str::to_owned).collect()),
+            Values::Counts(_) => {
+                cells.map(|cell| parsed::<u64>(cell).ok_or_else(|| wrong(cell, "number"))).collect()
+            }
+            Values::Names(_) => Ok(cells.map(str::to_owned).collect()),
             Values::Words(_) => {
-                let unknown = |cell: &str| format!("`{cell}` in the column {name} is no word of a sweep");
-                Values::Words(
-                    cells
-                        .map(|cell| known_word(cell).ok_or_else(|| unknown(cell)))
-                        .collect::<Result<_, _>>()?,
-                )
+                cells.map(|cell| known_word(cell).ok_or_else(|| wrong(cell, "word of a sweep"))).collect()
             }
         };
-        table = table.with(name, values);
+        table = table.with(name, values?);
     }
     Ok(table)
+}
+
+/// The number in a cell, `Some(None)` if it is empty; `None` if there is another text.
+fn parsed<T: FromStr>(cell: &str) -> Option<Option<T>> {
+    if cell.is_empty() { Some(None) } else { cell.parse().ok().map(Some) }
 }
 
 /// The word of a sweep that is equal to `word`; an empty one is a missing value.

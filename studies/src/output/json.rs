@@ -1,7 +1,7 @@
 //! JSON of a summary, a landscape and an identification: numbers in SI with the unit in the key, `null` for
 //! missing values.
 
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 
 use super::manifest::{Provenance, scene_value, seed};
 use crate::dynamics::{Outcome, Summary};
@@ -15,21 +15,19 @@ use crate::study::{Identified, InJson, Read, SUMMARY_FIELDS, SummaryField, small
 pub fn summary(summary: &Summary, scene: &Scene, origin: &Provenance) -> String {
     let entries = SUMMARY_FIELDS.iter().filter_map(|field| entry(field, summary)).collect();
     let mut object = without_negative_zeros(Value::Object(entries));
-    let mut add = |key: &str, value: Value| {
-        if let Value::Object(map) = &mut object {
-            map.insert(key.to_owned(), value);
-        }
-    };
     if let Outcome::ImpactBudget { count, .. } | Outcome::StepBudget { count, .. } = summary.outcome {
-        add("ended_after", json!(count));
+        object["ended_after"] = json!(count);
     }
-    add("cpu_s", json!(summary.cpu_s));
-    add("ledger", summary.ledger.map_or(Value::Null, |balance| ledger(summary, balance.residual_j)));
-    add("scene", scene_value(scene));
-    add("version", json!(origin.version));
-    add("arguments", json!(origin.arguments));
-    add("seed", seed(scene));
-    add("wall_s", json!(origin.wall_s));
+    let more = json!({
+        "cpu_s": summary.cpu_s,
+        "ledger": summary.ledger.map(|balance| ledger(summary, balance.residual_j)),
+        "scene": scene_value(scene),
+        "version": origin.version,
+        "arguments": origin.arguments,
+        "seed": seed(scene),
+        "wall_s": origin.wall_s,
+    });
+    extend(&mut object, more);
     pretty(&object)
 }
 
@@ -56,18 +54,15 @@ fn ledger(summary: &Summary, residual_j: f64) -> Value {
 /// The landscape of a mechanism that carries `mass` in kg, as text.
 pub fn landscape(mechanism: &Mechanism, mass: f64) -> String {
     let Landscape { equilibria, barrier, extrema, kinks, .. } = &mechanism.landscape;
-    let equilibria: Vec<Value> = equilibria
-        .iter()
-        .map(|equilibrium| {
-            json!({
-                "x_m": equilibrium.x,
-                "stable": equilibrium.stable,
-                "stiffness_left_n_per_m": equilibrium.stiffness_left,
-                "stiffness_right_n_per_m": equilibrium.stiffness_right,
-                "frequency_hz": small_amplitude_frequency(mass, equilibrium),
-            })
+    let equilibria = equilibria.iter().map(|equilibrium| {
+        json!({
+            "x_m": equilibrium.x,
+            "stable": equilibrium.stable,
+            "stiffness_left_n_per_m": equilibrium.stiffness_left,
+            "stiffness_right_n_per_m": equilibrium.stiffness_right,
+            "frequency_hz": small_amplitude_frequency(mass, equilibrium),
         })
-        .collect();
+    });
     let barrier = barrier.map(|barrier| {
         json!({
             "x_m": barrier.x,
@@ -78,25 +73,20 @@ pub fn landscape(mechanism: &Mechanism, mass: f64) -> String {
             "right_well_m": barrier.right_well,
         })
     });
-    let extrema: Vec<Value> =
-        extrema.iter().map(|extremum| json!({ "x_m": extremum.x, "force_n": extremum.force })).collect();
-    let kinks: Vec<Value> = kinks
-        .iter()
-        .map(|kink| {
-            json!({
-                "x_m": kink.x,
-                "stiffness_left_n_per_m": kink.stiffness_left,
-                "stiffness_right_n_per_m": kink.stiffness_right,
-            })
+    let extrema = extrema.iter().map(|extremum| json!({ "x_m": extremum.x, "force_n": extremum.force }));
+    let kinks = kinks.iter().map(|kink| {
+        json!({
+            "x_m": kink.x,
+            "stiffness_left_n_per_m": kink.stiffness_left,
+            "stiffness_right_n_per_m": kink.stiffness_right,
         })
-        .collect();
-    let (left, right) = mechanism.curve.domain();
+    });
     let landscape = json!({
-        "equilibria": equilibria,
+        "equilibria": equilibria.collect::<Value>(),
         "barrier": barrier,
-        "force_extrema": extrema,
-        "kinks": kinks,
-        "domain_m": [left, right],
+        "force_extrema": extrema.collect::<Value>(),
+        "kinks": kinks.collect::<Value>(),
+        "domain_m": mechanism.curve.domain(),
     });
     pretty(&without_negative_zeros(landscape))
 }
@@ -104,22 +94,26 @@ pub fn landscape(mechanism: &Mechanism, mass: f64) -> String {
 /// The result of an identification, as text: its numbers by name, each an object of value and 95 % interval.
 /// `of` is the identified quantity, `timing` the sampling of the record.
 pub fn identified(of: &str, found: &Identified, timing: Option<&Timing>, origin: &Provenance) -> String {
-    let mut object = Map::new();
-    object.insert("of".to_owned(), json!(of));
+    let mut object = json!({ "of": of });
     for number in &found.summary {
         let (low, high) = number.interval;
-        object.insert(number.name.to_owned(), json!({ "value": number.value, "low": low, "high": high }));
+        object[number.name] = json!({ "value": number.value, "low": low, "high": high });
     }
-    if let Some(timing) = timing {
-        object.insert("samples".to_owned(), json!(timing.samples));
-        object.insert("step_s".to_owned(), json!(timing.step));
-        object.insert("jitter_s".to_owned(), json!(timing.jitter));
-        object.insert("gaps".to_owned(), json!(timing.gaps.len()));
+    if let Some(Timing { samples, step, jitter, gaps, .. }) = timing {
+        let sampling = json!({ "samples": samples, "step_s": step, "jitter_s": jitter, "gaps": gaps.len() });
+        extend(&mut object, sampling);
     }
-    object.insert("remarks".to_owned(), json!(found.remarks));
-    object.insert("version".to_owned(), json!(origin.version));
-    object.insert("arguments".to_owned(), json!(origin.arguments));
-    pretty(&without_negative_zeros(Value::Object(object)))
+    let Provenance { version, arguments, .. } = origin;
+    let more = json!({ "remarks": found.remarks, "version": version, "arguments": arguments });
+    extend(&mut object, more);
+    pretty(&without_negative_zeros(object))
+}
+
+/// Adds the entries of another object.
+pub(super) fn extend(all: &mut Value, more: Value) {
+    if let (Value::Object(all), Value::Object(more)) = (all, more) {
+        all.extend(more);
+    }
 }
 
 /// Replaces each -0 by 0.

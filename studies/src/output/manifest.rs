@@ -4,11 +4,11 @@ use std::path::{Path, PathBuf};
 
 use serde_json::{Map, Value, json};
 
-use super::json::pretty;
-use super::plan::plan_checksum;
-use super::plot::Argument;
+use super::arguments::REPEATED_SCENE;
+use super::json::{extend, pretty};
 use crate::scene::{Document, Excitation, PROGRAM, Scene, numeric_fields};
 use crate::study::{Answer, Basins, Grid, Shard, Tally};
+use crate::system::checksum::checksum;
 
 /// Provenance of a result, apart from its scene.
 #[derive(Debug, Clone, PartialEq)]
@@ -64,18 +64,17 @@ pub struct Manifest<'a> {
 impl Manifest<'_> {
     /// The manifest of rows that have no further entries, as text.
     pub fn of_table(&self) -> String {
-        self.written(self.document.map(|document| &document.scene), json!({}))
+        self.written(None, json!({}))
     }
 
     /// The manifest of a comparison of these scenes, by their names in the table, as text. Each has its
     /// files; the document is the first of them.
     pub fn of_scenes(&self, scenes: &[(String, Document)]) -> String {
         let scenes = scenes.iter().map(|(name, document)| {
-            let scene = text(document, &document.scene);
+            let scene = document.write(&document.scene).ok();
             json!({ "name": name, "scene_ron": scene, "files": document.files.cached })
         });
-        let more = json!({ "scenes": scenes.collect::<Vec<_>>() });
-        self.written(self.document.map(|document| &document.scene), more)
+        self.written(None, json!({ "scenes": scenes.collect::<Vec<_>>() }))
     }
 
     /// The manifest of the grid that the command ran, as text. A sweep of the manifest, or of a scene file
@@ -93,7 +92,7 @@ impl Manifest<'_> {
         if let Some(Made { plan, shard, sha256, .. }) = made {
             more["shard"] = json!(shard.to_string());
             more["sha256"] = json!(sha256);
-            more["plan_sha256"] = json!(plan_checksum(plan));
+            more["plan_sha256"] = json!(checksum(plan.to_string().as_bytes()));
             more["plan"] = plan.clone();
         }
         self.swept(grid, more)
@@ -114,7 +113,9 @@ impl Manifest<'_> {
     fn swept(&self, grid: &Grid, more: Value) -> String {
         let axes = grid.axes().iter().zip(grid.columns());
         let axes = axes.map(|(axis, column)| {
-            json!({ "field": axis.field, "column": column, "values": numbers(&axis.values) })
+            let mut values = json!(axis.values);
+            name_infinity(&mut values);
+            json!({ "field": axis.field, "column": column, "values": values })
         });
         let mut all = json!({ "grid": axes.collect::<Vec<_>>() });
         extend(&mut all, more);
@@ -122,12 +123,12 @@ impl Manifest<'_> {
             let sweep = grid.axes().iter().map(|axis| axis.to_scene(&document.scene)).collect();
             Scene { sweep, ..document.scene.clone() }
         });
-        self.written(scene.as_ref(), all)
+        self.written(scene, all)
     }
 
     /// The manifest of a map of basins as text. It is that of a sweep with the starts in place of the grid.
     pub fn of_basins(&self, basins: &Basins, answer: &Answer) -> String {
-        let (length, speed) = (basins.model().scales().length, basins.model().scales().speed);
+        let scales = basins.model().scales();
         let more = json!({
             "starts": answer.rows.len(),
             "attractors": answer.attractors.len(),
@@ -136,21 +137,22 @@ impl Manifest<'_> {
             "ended_early": answer.lost,
             "out_of_work": answer.spent,
             "undecided": answer.undecided,
-            "length_scale_m": length,
-            "speed_scale_m_per_s": speed,
+            "length_scale_m": scales.length,
+            "speed_scale_m_per_s": scales.speed,
         });
-        self.written(self.document.map(|document| &document.scene), more)
+        self.written(None, more)
     }
 
-    /// A manifest with `more` entries of the command; `scene` is the scene that ran.
-    fn written(&self, scene: Option<&Scene>, more: Value) -> String {
+    /// A manifest with `more` entries of the command, of a scene that was made from that of the document, or
+    /// of the latter.
+    fn written(&self, made: Option<Scene>, more: Value) -> String {
         let Self { document, command, origin, repeat, data, sha256, inputs } = self;
-        // a change of the scene may have taken a field away that its own sweep goes over
-        let scene = scene.map(|scene| {
+        let mut scene = made.or(document.map(|document| document.scene.clone()));
+        if let Some(scene) = &mut scene {
+            // a change of the scene may have taken a field away that its own sweep goes over
             let known = numeric_fields(scene);
-            let sweep = scene.sweep.iter().filter(|axis| known.contains(&axis.field)).cloned().collect();
-            Scene { sweep, ..scene.clone() }
-        });
+            scene.sweep.retain(|axis| known.contains(&axis.field));
+        }
         let scene = scene.as_ref();
         let inputs = inputs.iter().map(|(path, sum)| (path.clone(), json!(sum)));
         let mut all = json!({
@@ -173,24 +175,11 @@ impl Manifest<'_> {
             "wall_s": origin.wall_s,
             "cpu_s": origin.cpu_s,
             "scene": scene.map(scene_value),
-            "scene_ron": document.zip(scene).and_then(|(document, scene)| text(document, scene)),
+            "scene_ron": document.zip(scene).and_then(|(document, scene)| document.write(scene).ok()),
             "files": document.map_or_else(|| json!({}), |document| json!(document.files.cached)),
         });
         extend(&mut all, end);
         pretty(&all)
-    }
-}
-
-/// The text of a scene, this document's or one made from it; `None` if it cannot be written, rather than that
-/// of an empty scene.
-fn text(document: &Document, scene: &Scene) -> Option<String> {
-    document.write(scene).ok()
-}
-
-/// Adds the entries of another object.
-fn extend(all: &mut Value, more: Value) {
-    if let (Value::Object(all), Value::Object(more)) = (all, more) {
-        all.extend(more);
     }
 }
 
@@ -203,77 +192,6 @@ pub fn manifest_path(out: &Path) -> PathBuf {
 
 fn file_name(path: &Path) -> String {
     path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned())
-}
-
-/// Options on which the rows do not depend, and those whose changes are in the scene of a manifest.
-const NOT_REPEATED: [&str; 36] = [
-    "set",
-    "tolerance",
-    "out",
-    "jobs",
-    "quiet",
-    "strict",
-    "resume",
-    "force",
-    "shard",
-    "check",
-    "events",
-    "summary",
-    "landscape",
-    "shapes",
-    "contact",
-    "attractors",
-    "comparison",
-    "measured",
-    "shift-s",
-    "offset-mm",
-    "time-scale",
-    "inset",
-    "plot",
-    "shapes-plot",
-    "contact-plot",
-    "plot-data",
-    "plot-size",
-    "plot-width-mm",
-    "plot-height-mm",
-    "font-pt",
-    "dpi",
-    "plot-x",
-    "plot-y",
-    "dark",
-    "no-title",
-    "panels",
-];
-
-/// Further ones of a sweep and a spectrum: what a picture shows.
-const SHOWN: [&str; 3] = ["quantity", "surface", "cut"];
-
-/// Columns of a record, which decide the rows of `identify` alone.
-const OF_RECORDS: [&str; 6] = ["time", "time-unit", "column", "unit", "position", "position-unit"];
-
-/// Place of the scene in the arguments of [`repeated`].
-const REPEATED_SCENE: usize = 2;
-
-/// The arguments that write the same rows to standard output, from the arguments `given` to `command` in the
-/// order of `--help`, with the `manifest` in place of the scenes, or with the file that was given where the
-/// command reads no scene.
-pub fn repeated(
-    command: &str,
-    manifest: Option<&Path>,
-    given: impl IntoIterator<Item = Argument>,
-) -> Vec<String> {
-    let is_repeated = |argument: &Argument| match argument.option.as_deref() {
-        None => manifest.is_none(),
-        Some(option) if OF_RECORDS.contains(&option) => command == "identify",
-        // the scenes of a comparison have its excitation
-        Some("environment") => command != "compare",
-        Some(option) => !NOT_REPEATED.contains(&option) && !SHOWN.contains(&option),
-    };
-    let scene = manifest.map(|path| path.to_string_lossy().into_owned());
-    let first = ["--headless".to_owned(), command.to_owned()].into_iter().chain(scene);
-    let options =
-        given.into_iter().filter(is_repeated).flat_map(|argument| argument.words().collect::<Vec<_>>());
-    first.chain(options).chain(["--out".to_owned(), "-".to_owned()]).collect()
 }
 
 /// The manifest of a whole sweep, from the manifests of its shards. `out` is the path of the merged file,
@@ -325,7 +243,7 @@ pub fn origin(document: &Document, version: &str) -> Map<String, Value> {
         "title": scene.title,
         "tolerance": scene.run.tolerance,
         "seed": seed(scene),
-        "scene_ron": text(document, scene),
+        "scene_ron": document.write(scene).ok(),
     });
     if let Value::Object(all) = all { all } else { Map::new() }
 }
@@ -337,13 +255,6 @@ pub(super) fn scene_value(scene: &Scene) -> Value {
     for part in ["transducer", "sweep"] {
         value.get_mut(part).into_iter().for_each(name_infinity);
     }
-    value
-}
-
-/// The numbers of an axis, infinity as `inf`.
-fn numbers(values: &[f64]) -> Value {
-    let mut value = json!(values);
-    name_infinity(&mut value);
     value
 }
 

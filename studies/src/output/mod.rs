@@ -21,6 +21,7 @@
 //! # Ok::<(), interwell_studies::questions::Error>(())
 //! ```
 
+mod arguments;
 mod csv;
 mod json;
 mod manifest;
@@ -28,22 +29,12 @@ mod plan;
 mod plot;
 mod text;
 
+pub use arguments::{Argument, picture_arguments, repeated};
 pub use csv::{csv, csv_table, header, rows};
 pub use json::{identified, landscape, summary};
-pub use manifest::{Made, Manifest, Provenance, manifest_path, merged_manifest, repeated};
-pub use plan::{plan, plan_checksum, plan_differences};
-pub use plot::{
-    Area, Argument, BLACK, BestPicture, Caption, Cell, Cells, Chart, Colours, Column, ComparisonPicture, Cut,
-    EscapePicture, ExponentPicture, Figure, Format, Frame, HACK, INTER, Ink, Layer, Look, MAX_PICTURE_CELLS,
-    Marks, NoPicture, Note, OverTime, Overlay, PaintError, Panel, PlotAxis, Projection, RMS, Ranges, Role,
-    Room, RunPanel, SectionPicture, Shape, Sheet, SheetError, SheetText, Side, SpectrumQuantity,
-    SurfaceFrame, SweepPicture, TICK, Text, Theme, ThresholdPicture, UnknownFormat, View, accuracy_chart,
-    basins_chart, best_chart, branch_chart, can_show, can_show_escapes, can_show_exponents, can_show_starts,
-    can_show_thresholds, comparison_chart, contact_chart, curve_chart, escape_chart, exponents_chart,
-    force_panel, identified_chart, is_fine, loci_chart, measured_chart, measured_force_chart,
-    picture_arguments, portrait_panel, quantities, run_chart, section_chart, shapes_chart, spectrum_chart,
-    suited_unit, sweep_about, sweep_chart, threshold_chart, viridis, words_of,
-};
+pub use manifest::{Made, Manifest, Provenance, manifest_path, merged_manifest};
+pub use plan::{plan, plan_differences};
+pub use plot::*;
 pub use text::aligned;
 
 pub use crate::numeric::push_number;

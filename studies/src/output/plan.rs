@@ -51,11 +51,6 @@ fn axis(axis: &Axis) -> String {
     text + &format!(" ({})", &checksum(&bits)[..12])
 }
 
-/// The checksum of a plan.
-pub fn plan_checksum(plan: &Value) -> String {
-    checksum(plan.to_string().as_bytes())
-}
-
 /// The differences of two plans in words, called `there` and `here`; empty if the plans are equal.
 pub fn plan_differences(there: &Value, here: &Value) -> String {
     let mut found = Vec::new();

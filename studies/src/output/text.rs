@@ -22,35 +22,24 @@ fn brief(value: f64) -> String {
 /// The table as lines of text: a heading with readable names of the columns, then one line for each row.
 /// Words are aligned to the left, numbers to the right; nothing is truncated.
 pub fn aligned(table: &Table) -> String {
-    let cells: Vec<(bool, Vec<String>)> = table
-        .columns()
-        .iter()
-        .map(|column| {
-            let (left, words): (bool, Vec<String>) = match &column.values {
-                Values::Numbers(values) => (false, values.iter().map(|value| brief(*value)).collect()),
-                Values::Counts(values) => {
-                    let text = |count: &Option<u64>| count.map_or_else(String::new, |n| n.to_string());
-                    (false, values.iter().map(text).collect())
-                }
-                Values::Words(values) => (true, values.iter().map(|word| (*word).to_owned()).collect()),
-                Values::Names(values) => (true, values.clone()),
-            };
-            (left, std::iter::once(column.label()).chain(words).collect())
-        })
-        .collect();
-    let width = |column: &[String]| column.iter().map(|cell| cell.chars().count()).max().unwrap_or(0);
-    let widths: Vec<usize> = cells.iter().map(|(_, column)| width(column)).collect();
-    let mut text = String::new();
-    for row in 0..=table.rows() {
-        let mut line = String::new();
-        for ((left, column), width) in cells.iter().zip(&widths) {
-            let cell = &column[row];
-            line += &if *left { format!("{cell:<width$}  ") } else { format!("{cell:>width$}  ") };
+    let mut lines = vec![String::new(); table.rows() + 1];
+    for column in table.columns() {
+        let (left, words): (bool, Vec<String>) = match &column.values {
+            Values::Numbers(values) => (false, values.iter().map(|value| brief(*value)).collect()),
+            Values::Counts(values) => {
+                let text = |count: &Option<u64>| count.map_or_else(String::new, |n| n.to_string());
+                (false, values.iter().map(text).collect())
+            }
+            Values::Words(values) => (true, values.iter().map(|word| (*word).to_owned()).collect()),
+            Values::Names(values) => (true, values.clone()),
+        };
+        let cells = [vec![column.label()], words].concat();
+        let width = cells.iter().map(|cell| cell.chars().count()).max().unwrap_or(0);
+        for (line, cell) in lines.iter_mut().zip(cells) {
+            *line += &if left { format!("{cell:<width$}  ") } else { format!("{cell:>width$}  ") };
         }
-        text += line.trim_end();
-        text.push('\n');
     }
-    text
+    lines.iter().map(|line| format!("{}\n", line.trim_end())).collect()
 }
 
 #[cfg(test)]

@@ -32,6 +32,8 @@ macro_rules! words {
     };
 }
 
+pub(crate) use words;
+
 pub mod accuracy;
 mod alternatives;
 mod amplitudes;

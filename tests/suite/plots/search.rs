@@ -1,6 +1,6 @@
 //! The picture of `best`: every design that was tried, the one that was found, and broken constraints.
 
-use interwell::output::{BestPicture, Chart, Marks, Ranges, best_chart};
+use interwell::output::{Chart, Marks, Ranges, best_chart};
 use interwell::study::{BestDesign, BestQuestion, DesignRange, Table};
 
 use super::*;
@@ -8,7 +8,7 @@ use crate::best::{at_most, found_by, linear, question};
 
 fn charted(question: &BestQuestion) -> (BestDesign, Chart) {
     let design = found_by(question, 2).unwrap();
-    let chart = best_chart(&BestPicture { question, design: &design, ranges: Ranges::default() });
+    let chart = best_chart(question, &design, Ranges::default());
     (design, chart)
 }
 

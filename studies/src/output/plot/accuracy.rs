@@ -1,6 +1,6 @@
 //! Picture of accuracy against cost: error over CPU time, both logarithmic, one panel for each problem.
 
-use serde_json::Map;
+use serde_json::json;
 
 use super::axis::PlotAxis;
 use super::chart::{Chart, Column, Marks, Panel};
@@ -22,14 +22,9 @@ pub fn accuracy_chart(table: &Table, version: &str) -> (Chart, Caption) {
     let (problems, methods) = (table.words("case"), table.words("method"));
     let column = |name: &str| table.numbers(name).unwrap_or_default();
     let (errors, times) = (column("error"), column("cpu_s"));
-    let distinct = |all: &[&'static str]| {
-        let mut found: Vec<&'static str> = Vec::new();
-        all.iter().for_each(|word| {
-            if !found.contains(word) {
-                found.push(word);
-            }
-        });
-        found
+    let distinct = |all: &[&'static str]| -> Vec<&'static str> {
+        let firsts = all.iter().enumerate().filter(|(i, word)| !all[..*i].contains(word));
+        firsts.map(|(_, word)| *word).collect()
     };
     let (shown, named) = (distinct(problems), distinct(methods));
     let floored = |error: f64| if error == 0.0 { LEAST } else { error };
@@ -38,7 +33,8 @@ pub fn accuracy_chart(table: &Table, version: &str) -> (Chart, Caption) {
     let up = PlotAxis::decades(errors.iter().map(|error| floored(*error).min(10.0)), "error");
     let panel_of = |problem: &&'static str| {
         let mut panel = Panel::new(across.clone(), up.clone());
-        heading(problem).clone_into(&mut panel.heading);
+        let known = PROBLEMS.iter().find(|known| known.name == *problem);
+        panel.heading = known.map_or(*problem, |known| known.heading).to_owned();
         // the method of this program is drawn last, so that it lies on top
         for (place, method) in named.iter().enumerate().rev() {
             let points: Vec<Point> = (0..problems.len())
@@ -60,15 +56,8 @@ pub fn accuracy_chart(table: &Table, version: &str) -> (Chart, Caption) {
         1 => "ten seconds of motion: error against the same motion in twice the digits".to_owned(),
         n => format!("{n} problems of ten seconds each: error against the same motion in twice the digits"),
     };
-    let mut origin = Map::new();
-    origin.insert("program".into(), PROGRAM.into());
-    origin.insert("version".into(), version.into());
     let footer = format!("interwell {version} \u{b7} CPU time on one core of the machine that drew this");
-    let caption = Caption { title: "What accuracy costs".to_owned(), footer, origin };
+    let origin = json!({ "program": PROGRAM, "version": version });
+    let caption = Caption::of("What accuracy costs", footer, &origin);
     (Chart { columns, subtitle, data: drawn.table() }, caption)
-}
-
-/// The heading over the frame of a problem.
-fn heading(problem: &str) -> &str {
-    PROBLEMS.iter().find(|known| known.name == problem).map_or(problem, |known| known.heading)
 }

@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::font;
+use super::style::TICK;
 use crate::numeric::round::{ONE_TWO_FIVE, decade, round_up};
 use crate::numeric::{elementary, extent};
 
@@ -168,12 +170,12 @@ impl PlotAxis {
     /// A logarithmic axis in whole decades that covers `values`, which are not logarithms and above 0, with
     /// ticks at powers of ten.
     pub fn decades(values: impl IntoIterator<Item = f64>, label: &str) -> Self {
-        let logs =
-            values.into_iter().filter(|value| value.is_finite() && *value > 0.0).map(elementary::log10);
-        let (low, high) = extent(logs);
-        let (low, high) =
-            if low > high { (0.0, 1.0) } else { (low.floor(), high.ceil().max(low.floor() + 1.0)) };
-        Self::powers(low, high, label)
+        let positive = values.into_iter().filter(|value| value.is_finite() && *value > 0.0);
+        let (low, high) = extent(positive.map(elementary::log10));
+        if low > high {
+            return Self::powers(0.0, 1.0, label);
+        }
+        Self::powers(low.floor(), high.ceil().max(low.floor() + 1.0), label)
     }
 
     /// A logarithmic axis between these logarithms, with ticks at powers of ten.
@@ -187,6 +189,11 @@ impl PlotAxis {
         let powers = powers.filter(|power| power.rem_euclid(every) == 0);
         let ticks = powers.map(|power| (f64::from(power), format!("10{}", superscript(power)))).collect();
         Self { scale: Scale::Decades, ..Self::given(low, high, ticks, label) }
+    }
+
+    /// Width of the widest of its numbers on the canvas.
+    pub(super) fn widest_number(&self) -> f64 {
+        self.ticks.iter().map(|tick| font::width(&tick.1, TICK, false)).fold(0.0, f64::max)
     }
 
     /// Position of `value` between the ends: 0 at the lower, 1 at the upper end.

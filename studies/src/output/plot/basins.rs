@@ -4,12 +4,11 @@ use super::axis::PlotAxis;
 use super::cells::{Cell, Cells, Colours};
 use super::chart::{Chart, Marks, Panel};
 use super::drawn::Drawn;
-use super::figure::Point;
 use super::quantity::suited_unit;
 use super::role::Role;
 use super::sweep::{MAX_PICTURE_CELLS, NoPicture};
 use crate::numeric::short;
-use crate::study::{Answer, Attractor, Basins, Edges, Starts, Table};
+use crate::study::{Answer, Attractor, Basins, Edges, Shares, Starts, Table};
 
 /// Number of attractors that the legend names, those with the largest shares.
 const MAX_NAMED: usize = 9;
@@ -23,19 +22,17 @@ pub fn can_show_starts(starts: &Starts) -> Result<(), NoPicture> {
 /// The picture of a map that may be incomplete.
 pub fn basins_chart(basins: &Basins, answer: &Answer) -> Chart {
     let starts = basins.starts();
+    let all = || (0..starts.count()).map(|row| starts.at(row));
     let (across, up) = match starts.axes() {
         Some((x_mm, v)) => (Edges::new(x_mm).ends(), Edges::new(v).ends()),
         None => {
-            let all = || (0..starts.count()).map(|row| starts.at(row));
-            let around = |values: Vec<f64>| {
-                let axis = PlotAxis::around(values, 0.02, "");
-                (axis.low, axis.high)
-            };
-            (around(all().map(|start| start.0).collect()), around(all().map(|start| start.1).collect()))
+            let ends = |axis: PlotAxis| (axis.low, axis.high);
+            let across = ends(PlotAxis::around(all().map(|start| start.0), 0.02, ""));
+            (across, ends(PlotAxis::around(all().map(|start| start.1), 0.02, "")))
         }
     };
     let rightward = PlotAxis::between(across.0, across.1, "displacement at the start (mm)");
-    let (scale, unit) = suited_unit("m/s", (0..starts.count()).map(|row| starts.at(row).1));
+    let (scale, unit) = suited_unit("m/s", all().map(|start| start.1));
     let upward = PlotAxis::between(up.0 * scale, up.1 * scale, &format!("velocity at the start ({unit})"));
     let mut panel = Panel::new(rightward, upward);
     let (room, source) = (basins.room(), source_row(basins));
@@ -62,8 +59,7 @@ pub fn basins_chart(basins: &Basins, answer: &Answer) -> Chart {
         }
         None => {
             let mut clouds = vec![Vec::new(); names.len() + 1];
-            for row in 0..starts.count() {
-                let (x_mm, v): Point = starts.at(row);
+            for (row, (x_mm, v)) in all().enumerate() {
                 if !is_outside(x_mm) {
                     clouds[found(row).unwrap_or(names.len())].push((x_mm, v * scale));
                 }
@@ -71,9 +67,7 @@ pub fn basins_chart(basins: &Basins, answer: &Answer) -> Chart {
             let roles = roles.iter().copied().chain([Role::Missing]);
             let words = names.iter().map(String::as_str).chain([missing]);
             for ((role, name), cloud) in roles.zip(words).zip(clouds) {
-                if !cloud.is_empty() {
-                    panel.layer(role, name, Marks::Cloud(cloud));
-                }
+                panel.layer_if_any(role, name, Marks::Cloud(cloud));
             }
         }
     }
@@ -137,16 +131,11 @@ fn names(basins: &Basins, answer: &Answer) -> Vec<String> {
 
 /// Description of an attractor with its number and share; for random starts also the interval of the share.
 fn words(place: usize, kind: &str, attractor: &Attractor, is_grid: bool) -> String {
-    let mut words = format!("{} {kind}", place + 1);
     let percent = |share: f64| short((1e3 * share).round() / 10.0);
-    let share = &attractor.share;
-    words += &match is_grid {
-        true => format!(": {} %", percent(share.share)),
-        false => {
-            format!(": {} % ({} to {})", percent(share.share), percent(share.low), percent(share.high))
-        }
-    };
-    words
+    let Shares { share, low, high } = attractor.share;
+    let interval = || format!(" ({} to {})", percent(low), percent(high));
+    let interval = if is_grid { String::new() } else { interval() };
+    format!("{} {kind}: {} %{interval}", place + 1, percent(share))
 }
 
 /// The subtitle: which starts were run.
@@ -155,7 +144,7 @@ fn about(basins: &Basins, answer: &Answer) -> String {
         Some((x_mm, v)) => format!("{} \u{d7} {} starts", x_mm.len(), v.len()),
         None => format!("{} random starts", answer.rows.len()),
     };
-    let period = basins.model().forcing_period().filter(|_| basins.model().is_shaken());
-    let when = period.map_or_else(String::new, |_| " at time 0 of the drive".to_owned());
+    let is_periodic = basins.model().is_shaken() && basins.model().forcing_period().is_some();
+    let when = if is_periodic { " at time 0 of the drive" } else { "" };
     format!("Where motions go from {counted}{when}; markers: the attractors")
 }

@@ -5,49 +5,43 @@ use super::cells::{Cell, Cells, Colours};
 use super::chart::{Chart, Marks, Panel, Side};
 use super::drawn::Drawn;
 use super::figure::Point;
-use super::quantity::suited_unit;
+use super::quantity::{suited_unit, with_unit};
 use super::role::Role;
-use crate::study::{BestDesign, BestQuestion, Edges, Tried, label_and_unit, names, quantity, scan_places};
+use crate::study::{
+    BestDesign, BestQuestion, Edges, Optimum, Tried, label_and_unit, names, quantity, scan_places,
+};
 
-/// The data of the picture of a search.
-#[derive(Debug, Clone, Copy)]
-pub struct BestPicture<'a> {
-    /// The question.
-    pub question: &'a BestQuestion,
-    /// The design that was found.
-    pub design: &'a BestDesign,
-    /// Ranges of the axes.
-    pub ranges: Ranges,
-}
-
-/// Words of the legend for designs without a value.
+/// Words of the legend.
 const NO_VALUE: &str = "no value";
+const BROKEN: &str = "a constraint broken";
 
-/// The picture of a search: over one field the values of all designs that were tried, over two a map of the
-/// scan with the further designs in the colours of their values, over more the values in the order in which
-/// they were tried. The design that was found is marked, and designs that break a constraint are crossed.
-pub fn best_chart(picture: &BestPicture) -> Chart {
-    let shown = Shown::new(picture);
-    let panel = match picture.question.over.len() {
+/// The picture of the search that found a design: over one field the values of all designs that were tried,
+/// over two a map of the scan with the further designs in the colours of their values, over more the values
+/// in the order in which they were tried. The design that was found is marked, and designs that break a
+/// constraint are crossed.
+pub fn best_chart(question: &BestQuestion, design: &BestDesign, ranges: Ranges) -> Chart {
+    let shown = Shown::new(question, design, ranges);
+    let panel = match question.over.len() {
         1 => shown.over_one_field(),
         2 => shown.over_two_fields(),
         _ => shown.in_order(),
     };
-    let (count, maximised) = (picture.design.tried.len(), picture.question.maximise.name);
-    let optimum = &picture.design.optimum;
-    let fields = names(picture.question).into_iter().zip(&optimum.at);
+    let fields = names(question).into_iter().zip(&design.optimum.at);
     let at = fields.map(|(name, value)| {
         let (words, unit) = label_and_unit(&name);
         format!("{words} {value} {unit}").trim_end().to_owned()
     });
-    let (at, value) = (at.collect::<Vec<_>>().join(", "), quantity(optimum.value, maximised));
-    let about = format!("{count} places tried; largest at {at}: {value}");
+    let (at, value) =
+        (at.collect::<Vec<_>>().join(", "), quantity(design.optimum.value, question.maximise.name));
+    let about = format!("{} places tried; largest at {at}: {value}", design.tried.len());
     let data = shown.data(&panel);
     Chart::stack(vec![panel], about, data)
 }
 
 struct Shown<'a> {
-    picture: &'a BestPicture<'a>,
+    question: &'a BestQuestion,
+    design: &'a BestDesign,
+    ranges: Ranges,
     tried: &'a [Tried],
     /// The factor from the unit of the maximised result to that of its axis.
     scale: f64,
@@ -56,16 +50,13 @@ struct Shown<'a> {
 }
 
 impl<'a> Shown<'a> {
-    fn new(picture: &'a BestPicture<'a>) -> Self {
-        let (tried, maximised) = (&*picture.design.tried, picture.question.maximise);
+    fn new(question: &'a BestQuestion, design: &'a BestDesign, ranges: Ranges) -> Self {
+        let (tried, maximised) = (&*design.tried, question.maximise);
         let (_, unit) = label_and_unit(maximised.name);
         let (scale, unit) = suited_unit(unit, tried.iter().filter_map(|tried| tried.value));
-        let mean = if picture.question.environments.len() > 1 { "mean " } else { "" };
-        let label = match unit {
-            "" => format!("{mean}{}", maximised.label),
-            unit => format!("{mean}{} ({unit})", maximised.label),
-        };
-        Self { picture, tried, scale, label }
+        let mean = if question.environments.len() > 1 { "mean " } else { "" };
+        let label = with_unit(format!("{mean}{}", maximised.label), unit);
+        Self { question, design, ranges, tried, scale, label }
     }
 
     /// The value of a design in the unit of its axis; NaN if it has none.
@@ -75,10 +66,9 @@ impl<'a> Shown<'a> {
 
     /// The axis of a field over its range.
     fn field_axis(&self, field: usize, given: Option<(f64, f64)>) -> PlotAxis {
-        let range = &self.picture.question.over[field];
-        let (words, unit) = label_and_unit(&names(self.picture.question)[field]);
-        let label = if unit.is_empty() { words } else { format!("{words} ({unit})") };
-        PlotAxis::around([range.low, range.high], 0.02, &label).or_given(given)
+        let range = &self.question.over[field];
+        let (words, unit) = label_and_unit(&names(self.question)[field]);
+        PlotAxis::around([range.low, range.high], 0.02, &with_unit(words, unit)).or_given(given)
     }
 
     /// The axis of the values, from 0 or below.
@@ -88,43 +78,32 @@ impl<'a> Shown<'a> {
     }
 
     fn over_one_field(&self) -> Panel {
-        let Ranges { x, y } = self.picture.ranges;
+        let Ranges { x, y } = self.ranges;
         let mut panel = Panel::new(self.field_axis(0, x), self.value_axis(0.06).or_given(y));
         let mut line: Vec<Point> = self.points(|tried, _| tried.at[0], |tried| tried.keeps);
         // a design may be tried again, beside the optimum
         line.sort_by(|a, b| a.0.total_cmp(&b.0));
         panel.draw(Role::Joined, Marks::Path(line));
         self.designs(&mut panel, |tried, _| tried.at[0]);
-        if let Some((back, _)) = &self.picture.design.stepped_back {
-            let points = vec![(back.at[0], back.value * self.scale)];
-            panel.layer(Role::SteppedBack, "best worst case", Marks::Points(points));
-        }
-        let optimum = &self.picture.design.optimum;
-        panel.layer(Role::Found, "found", Marks::Points(vec![(optimum.at[0], optimum.value * self.scale)]));
+        self.found(&mut panel, |design| (design.at[0], design.value * self.scale));
         panel
     }
 
     fn over_two_fields(&self) -> Panel {
-        let Ranges { x, y } = self.picture.ranges;
-        let scan = (scan_places(self.picture.question) as usize).min(self.tried.len());
+        let Ranges { x, y } = self.ranges;
+        let scan = (scan_places(self.question) as usize).min(self.tried.len());
         let (scan, nearer) = self.tried.split_at(scan);
-        let values = |field: usize| {
-            let mut values: Vec<f64> = scan.iter().map(|tried| tried.at[field]).collect();
-            values.sort_by(f64::total_cmp);
-            values.dedup();
-            values
-        };
-        let (across, up) = (values(0), values(1));
-        let mut cells = vec![Cell::Blank; across.len() * up.len()];
+        let values = |field: usize| scan.iter().map(|tried| tried.at[field]).collect::<Vec<f64>>();
+        let (across, up) = (Edges::new(&values(0)), Edges::new(&values(1)));
+        let mut cells = vec![Cell::Blank; across.values.len() * up.values.len()];
         for tried in scan {
-            let column = across.partition_point(|value| *value < tried.at[0]);
-            let row = up.partition_point(|value| *value < tried.at[1]);
-            let value = tried.value.map(|value| Cell::Value(value * self.scale));
-            cells[column * up.len() + row] = value.unwrap_or(Cell::Missing);
+            if let (Some(column), Some(row)) = (across.place(tried.at[0]), up.place(tried.at[1])) {
+                let value = tried.value.map(|value| Cell::Value(value * self.scale));
+                cells[column * up.values.len() + row] = value.unwrap_or(Cell::Missing);
+            }
         }
         let bar = self.value_axis(0.0);
         let colours = Colours::Scale(bar.clone());
-        let (across, up) = (Edges::new(&across), Edges::new(&up));
         let axis = |field: usize, edges: &Edges, given| {
             let (low, high) = edges.ends();
             PlotAxis::between(low, high, &self.field_axis(field, None).label).or_given(given)
@@ -137,20 +116,22 @@ impl<'a> Shown<'a> {
         let valued = nearer.iter().filter(|tried| tried.keeps && tried.value.is_some());
         let valued = valued.map(|tried| (place(tried), self.value(tried))).collect();
         panel.draw(Role::Motion, Marks::Valued(valued, colours));
-        let broken: Vec<Point> = self.tried.iter().filter(|tried| !tried.keeps).map(place).collect();
-        if !broken.is_empty() {
-            panel.layer(Role::Broken, BROKEN, Marks::Points(broken));
-        }
-        if let Some((back, _)) = &self.picture.design.stepped_back {
-            panel.layer(Role::SteppedBack, "best worst case", Marks::Points(vec![(back.at[0], back.at[1])]));
-        }
-        let found = &self.picture.design.optimum.at;
-        panel.layer(Role::Found, "found", Marks::Points(vec![(found[0], found[1])]));
+        let broken = self.tried.iter().filter(|tried| !tried.keeps).map(place).collect();
+        panel.layer_if_any(Role::Broken, BROKEN, Marks::Points(broken));
+        self.found(&mut panel, |design| (design.at[0], design.at[1]));
         panel
     }
 
+    /// Marks the design that was found, and the safer one beside it.
+    fn found(&self, panel: &mut Panel, place: impl Fn(&Optimum) -> Point) {
+        let BestDesign { optimum, stepped_back, .. } = self.design;
+        let back = stepped_back.iter().map(|(back, _)| place(back)).collect();
+        panel.layer_if_any(Role::SteppedBack, "best worst case", Marks::Points(back));
+        panel.layer(Role::Found, "found", Marks::Points(vec![place(optimum)]));
+    }
+
     fn in_order(&self) -> Panel {
-        let Ranges { x, y } = self.picture.ranges;
+        let Ranges { x, y } = self.ranges;
         let across = PlotAxis::around([1.0, self.tried.len() as f64], 0.02, "evaluation").or_given(x);
         let mut panel = Panel::new(across, self.value_axis(0.06).or_given(y));
         self.designs(&mut panel, |_, number| number);
@@ -166,7 +147,7 @@ impl<'a> Shown<'a> {
         }
         line.extend(line.last().map(|last| (self.tried.len() as f64, last.1)));
         panel.layer(Role::Best, "best so far", Marks::Path(line));
-        let optimum = &self.picture.design.optimum;
+        let optimum = &self.design.optimum;
         let found = self.tried.iter().position(|tried| tried.at == optimum.at);
         let found = found.map(|place| ((place + 1) as f64, optimum.value * self.scale));
         panel.layer(Role::Found, "found", Marks::Points(found.into_iter().collect()));
@@ -184,19 +165,15 @@ impl<'a> Shown<'a> {
     fn designs(&self, panel: &mut Panel, over: impl Fn(&Tried, f64) -> f64) {
         panel.layer(Role::Motion, "tried", Marks::Cloud(self.points(&over, |tried| tried.keeps)));
         let broken = self.points(&over, |tried| !tried.keeps);
-        if !broken.is_empty() {
-            panel.layer(Role::Broken, BROKEN, Marks::Cloud(broken));
-        }
+        panel.layer_if_any(Role::Broken, BROKEN, Marks::Cloud(broken));
         let missing = self.tried.iter().enumerate().filter(|(_, tried)| tried.value.is_none());
-        let missing: Vec<f64> = missing.map(|(i, tried)| over(tried, (i + 1) as f64)).collect();
-        if !missing.is_empty() {
-            panel.layer(Role::Missing, NO_VALUE, Marks::Ticks(missing, Side::Bottom));
-        }
+        let missing = missing.map(|(i, tried)| over(tried, (i + 1) as f64)).collect();
+        panel.layer_if_any(Role::Missing, NO_VALUE, Marks::Ticks(missing, Side::Bottom));
     }
 
     /// The designs that are within the axes, with the numbers of their evaluations.
     fn data(&self, panel: &Panel) -> crate::study::Table {
-        let (fields, maximised) = (names(self.picture.question), self.picture.question.maximise.name);
+        let (fields, maximised) = (names(self.question), self.question.maximise.name);
         let columns = fields.iter().map(String::as_str);
         let mut drawn = Drawn::new(["evaluation"].into_iter().chain(columns).chain([maximised]), &[]);
         let inside = |number: f64, at: &[f64]| match at {
@@ -218,7 +195,7 @@ impl<'a> Shown<'a> {
             };
             put(series, (i + 1) as f64, &tried.at, tried.value.unwrap_or(f64::NAN));
         }
-        let BestDesign { optimum, stepped_back, .. } = self.picture.design;
+        let BestDesign { optimum, stepped_back, .. } = self.design;
         let back =
             stepped_back.as_ref().filter(|_| fields.len() < 3).map(|(back, _)| ("best_worst_case", back));
         for (series, design) in [("found", optimum)].into_iter().chain(back) {
@@ -228,6 +205,3 @@ impl<'a> Shown<'a> {
         drawn.table()
     }
 }
-
-/// Words of the legend for designs that break a constraint.
-const BROKEN: &str = "a constraint broken";

@@ -23,13 +23,11 @@ pub fn branch_chart(branches: &[Branch], phase_deg: f64, ranges: Ranges) -> Char
         || branches.iter().flat_map(|branch| branch.orbits.iter().zip(&branch.values).zip(&branch.events));
     let points: Vec<Point> = rows().map(|((orbit, value), _)| (*value, orbit.state.x * 1e3)).collect();
     let stable: Vec<bool> = rows().map(|((orbit, _), _)| orbit.is_stable()).collect();
-    let firsts: Vec<usize> = branches
-        .iter()
-        .scan(0, |before, branch| {
-            *before += branch.orbits.len();
-            Some(*before)
-        })
-        .collect();
+    let firsts = branches.iter().scan(0, |before, branch| {
+        *before += branch.orbits.len();
+        Some(*before)
+    });
+    let firsts: Vec<usize> = firsts.collect();
     let up = PlotAxis::around(points.iter().map(|point| point.1), 0.08, "displacement at the strobe (mm)");
     let mut panel = Panel::new(swept_axis(&table, field, ranges.x), up.or_given(ranges.y));
     // a stable or unstable stretch ends at the point where the next one begins
@@ -53,10 +51,8 @@ pub fn branch_chart(branches: &[Branch], phase_deg: f64, ranges: Ranges) -> Char
     }
     for (place, event) in EVENTS.into_iter().enumerate() {
         let marked = rows().zip(&points).filter(|row| *row.0.1 == Some(event));
-        let marked: Vec<Point> = marked.map(|row| *row.1).collect();
-        if !marked.is_empty() {
-            panel.layer(Role::Event(place), event.name(), Marks::Points(marked));
-        }
+        let marked = marked.map(|row| *row.1).collect();
+        panel.layer_if_any(Role::Event(place), event.name(), Marks::Points(marked));
     }
     let mut drawn = Drawn::new([field, "x_m"], &["stable", "event"]);
     for (((orbit, value), event), stable) in rows().zip(&stable).filter(|row| panel.x.contains(*row.0.0.1)) {
@@ -72,18 +68,13 @@ pub fn branch_chart(branches: &[Branch], phase_deg: f64, ranges: Ranges) -> Char
         [branch] => format!("; the branch ends {}", branch.end),
         _ => format!("; {} branches", branches.len()),
     };
-    let about = format!(
-        "{} periodic motions of period {}, at the drive's phase {}\u{b0}{end}",
-        points.len(),
-        periods.join(", "),
-        short(phase_deg),
-    );
+    let (count, periods, phase) = (points.len(), periods.join(", "), short(phase_deg));
+    let about =
+        format!("{count} periodic motions of period {periods}, at the drive's phase {phase}\u{b0}{end}");
     Chart::stack(vec![panel], about, drawn.table())
 }
 
-/// The picture of loci over two fields.
-///
-/// `phase_deg` is the phase of its strobe in degrees.
+/// The picture of loci over two fields; `phase_deg` is the phase of their strobe in degrees.
 pub fn loci_chart(loci: &[Locus], phase_deg: f64, ranges: Ranges) -> Chart {
     let table = loci_table(loci);
     let [across, up] = [1, 2].map(|place| table.columns()[place].name.clone());
@@ -119,9 +110,8 @@ pub fn loci_chart(loci: &[Locus], phase_deg: f64, ranges: Ranges) -> Chart {
         Some(BranchEvent::Symmetry) => "breakings of the symmetry",
         Some(BranchEvent::Grazing) | None => "grazings",
     };
-    let about = format!(
-        "{events} over two fields, {motions} periodic motions at the drive's phase {}\u{b0}",
-        short(phase_deg)
-    );
+    let phase = short(phase_deg);
+    let about =
+        format!("{events} over two fields, {motions} periodic motions at the drive's phase {phase}\u{b0}");
     Chart::stack(vec![panel], about, drawn.table())
 }

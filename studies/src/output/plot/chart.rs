@@ -230,6 +230,20 @@ impl Panel {
         self.layers.push(Layer { marks, role, name: name.into() });
     }
 
+    /// Adds a layer with its words in the legend, unless it has no marks.
+    pub fn layer_if_any(&mut self, role: Role, name: impl Into<String>, marks: Marks) {
+        let is_empty = match &marks {
+            Marks::Path(points) | Marks::Points(points) | Marks::Cloud(points) => points.is_empty(),
+            Marks::Verticals(at) | Marks::Horizontals(at) | Marks::Ticks(at, _) => at.is_empty(),
+            Marks::Intervals(rows) | Marks::Bars(rows, _) => rows.is_empty(),
+            Marks::Spans(spans) => spans.is_empty(),
+            _ => false,
+        };
+        if !is_empty {
+            self.layer(role, name, marks);
+        }
+    }
+
     /// Adds the stops that lie in the range of the horizontal axis, in its units.
     pub fn upright_stops(&mut self, stops: (f64, f64)) {
         for (at, side) in [(stops.0, Side::Left), (stops.1, Side::Right)] {
@@ -247,10 +261,8 @@ impl Panel {
         {
             let of_kind = landscape.equilibria.iter().filter(|equilibrium| equilibrium.stable == stable);
             let points = of_kind.map(|equilibrium| (equilibrium.x * 1e3, height(equilibrium)));
-            let points: Vec<Point> = points.filter(|point| self.x.contains(point.0)).collect();
-            if !points.is_empty() {
-                self.layer(role, name, Marks::Points(points));
-            }
+            let points = points.filter(|point| self.x.contains(point.0)).collect();
+            self.layer_if_any(role, name, Marks::Points(points));
         }
     }
 

@@ -4,22 +4,12 @@ use std::collections::BTreeSet;
 
 use super::axis::PlotAxis;
 use super::chart::{Chart, Column, Marks, Panel};
-use super::figure::Point;
 use super::mark::REGIMES;
 use super::quantity::suited_unit;
 use super::role::Role;
 use crate::numeric::round::decade;
 use crate::numeric::{elementary, short};
-use crate::study::{Rated, SEARCHED_SPAN, Table, Values};
-
-/// What the picture of a comparison is drawn from.
-#[derive(Debug, Clone, Copy)]
-pub struct ComparisonPicture<'a> {
-    /// The scenes, one row each.
-    pub rated: &'a [Rated],
-    /// The drive's frequency in Hz.
-    pub frequency_hz: f64,
-}
+use crate::study::{Rated, SEARCHED_SPAN, Table};
 
 /// Largest number of panels side by side.
 const COLUMNS: usize = 4;
@@ -63,9 +53,7 @@ struct Entry {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Mark {
     None,
-    /// The threshold of release.
     Release,
-    /// The regime of the motion.
     Regime,
 }
 
@@ -91,12 +79,10 @@ impl Shown {
         let merits: Vec<f64> = self.entries.iter().map(|entry| self.merit(entry)).collect();
         let known = || merits.iter().enumerate().filter(|merit| merit.1.is_finite());
         let by = |a: &(usize, &f64), b: &(usize, &f64)| a.1.total_cmp(b.1);
-        let best = match self.best {
+        let (place, merit) = match self.best {
             Best::Least => known().min_by(by),
             Best::Most => known().max_by(by),
-        };
-        let (place, merit) = best?;
-
+        }?;
         (merits.iter().filter(|value| *value == merit).count() == 1 && known().count() > 1).then_some(place)
     }
 }
@@ -110,10 +96,9 @@ fn three(value: f64) -> String {
     short((value / digit).round() * digit)
 }
 
-/// The picture of a comparison.
-pub fn comparison_chart(picture: &ComparisonPicture<'_>) -> Chart {
-    let ComparisonPicture { rated, .. } = *picture;
-    let shown = shown(picture);
+/// The picture of a comparison of scenes, one row each, under a drive of this frequency in Hz.
+pub fn comparison_chart(rated: &[Rated], frequency_hz: f64) -> Chart {
+    let shown = shown(rated, frequency_hz);
     let count = shown.len().div_ceil(shown.len().div_ceil(COLUMNS).max(1)).max(1);
     let names = names(rated);
     let places: Vec<f64> = (0..rated.len()).map(|scene| place(rated, scene)).collect();
@@ -121,7 +106,7 @@ pub fn comparison_chart(picture: &ComparisonPicture<'_>) -> Chart {
     let up = PlotAxis::given(0.0, rated.len() as f64, ticks, "");
     let columns = (0..count).map(|column| {
         let of_column = shown.iter().skip(column).step_by(count);
-        Column { width: 1.0, panels: of_column.map(|shown| panel(picture, shown, &up)).collect() }
+        Column { width: 1.0, panels: of_column.map(|shown| panel(rated, frequency_hz, shown, &up)).collect() }
     });
     let about = "from rest; speeds, reach and impacts over the settled window, numbers to three digits";
     Chart { columns: columns.collect(), subtitle: about.to_owned(), data: drawn(rated) }
@@ -135,13 +120,10 @@ fn place(rated: &[Rated], scene: usize) -> f64 {
 /// The names of the scenes, without folders if they stay distinct.
 fn names(rated: &[Rated]) -> Vec<String> {
     let last = |scene: &Rated| scene.name.rsplit(['/', '\\']).next().unwrap_or(&scene.name).to_owned();
-    let names: Vec<String> = rated.iter().map(last).collect();
-    let apart: BTreeSet<&String> = names.iter().collect();
-    let names = if apart.len() == names.len() {
-        names
-    } else {
-        rated.iter().map(|scene| scene.name.clone()).collect()
-    };
+    let mut names: Vec<String> = rated.iter().map(last).collect();
+    if names.iter().collect::<BTreeSet<_>>().len() < names.len() {
+        names = rated.iter().map(|scene| scene.name.clone()).collect();
+    }
     // the end of a long name distinguishes it from others
     let shortened = |name: String| match name.char_indices().rev().nth(MAX_NAME - 1) {
         Some((begin, _)) if begin > 0 => format!("\u{2026}{}", &name[begin..]),
@@ -151,8 +133,7 @@ fn names(rated: &[Rated]) -> Vec<String> {
 }
 
 /// The quantities that are above 0 for at least one of the scenes.
-fn shown(picture: &ComparisonPicture<'_>) -> Vec<Shown> {
-    let ComparisonPicture { rated, frequency_hz } = *picture;
+fn shown(rated: &[Rated], frequency_hz: f64) -> Vec<Shown> {
     let panel = |title, unit: &str, best, scale: f64, of: &dyn Fn(&Rated) -> Option<f64>| {
         let entry = |scene: &Rated| {
             let to = of(scene).map_or(f64::NAN, |value| value * scale);
@@ -202,22 +183,11 @@ fn bands(rated: &[Rated], frequency_hz: f64) -> Shown {
         let at_least = if to * NEAR > frequency_hz * SEARCHED_SPAN { "\u{2265}" } else { "" };
         Entry { from, to, words: format!("{at_most}{}\u{2013}{at_least}{}", three(from), three(to)) }
     };
-    let entries = rated.iter().map(entry).collect();
-    Shown {
-        title: "crosses at",
-        mark: Mark::None,
-        unit: "Hz".to_owned(),
-        best: Best::Most,
-        entries,
-        is_band: true,
-    }
+    let (title, unit, entries) = ("crosses at", "Hz".to_owned(), rated.iter().map(entry).collect());
+    Shown { title, mark: Mark::None, unit, best: Best::Most, entries, is_band: true }
 }
 
-/// The panel of a quantity.
-fn panel(picture: &ComparisonPicture<'_>, shown: &Shown, up: &PlotAxis) -> Panel {
-    let ComparisonPicture { rated, frequency_hz } = *picture;
-    let longest =
-        shown.entries.iter().map(|entry| entry.to).filter(|end| end.is_finite()).fold(0.0, f64::max);
+fn panel(rated: &[Rated], frequency_hz: f64, shown: &Shown, up: &PlotAxis) -> Panel {
     let better = match (shown.best, shown.is_band) {
         (_, true) => "wide",
         (Best::Least, _) => "small",
@@ -230,7 +200,11 @@ fn panel(picture: &ComparisonPicture<'_>, shown: &Shown, up: &PlotAxis) -> Panel
             // with room for the words beyond the widest band
             PlotAxis::powers(ends[0], ends[1] + BAND_ROOM * (ends[1] - ends[0]), &label)
         }
-        false => PlotAxis::between(0.0, if longest > 0.0 { ROOM * longest } else { 1.0 }, &label),
+        false => {
+            let ends = shown.entries.iter().map(|entry| entry.to).filter(|end| end.is_finite());
+            let longest = ends.fold(0.0, f64::max);
+            PlotAxis::between(0.0, if longest > 0.0 { ROOM * longest } else { 1.0 }, &label)
+        }
     };
     let scaled = |value: f64| if shown.is_band { elementary::log10(value) } else { value };
     let (low, high) = (across.low, across.high);
@@ -252,9 +226,7 @@ fn panel(picture: &ComparisonPicture<'_>, shown: &Shown, up: &PlotAxis) -> Panel
         panel.layer(Role::Best, "best of its panel", Marks::Bars(best, BAR));
     }
     let lost = bars(&|_, entry| entry.to == f64::INFINITY);
-    if !lost.is_empty() {
-        panel.layer(Role::Rest, "crossing lost by 1 % of a size", Marks::Bars(lost, BAR));
-    }
+    panel.layer_if_any(Role::Rest, "crossing lost by 1 % of a size", Marks::Bars(lost, BAR));
     let words = shown.entries.iter().enumerate().map(|(scene, entry)| {
         let end = if entry.to.is_finite() { scaled(entry.to) } else { low };
         let least = if shown.mark == Mark::Regime { low + MARKED.1 * (high - low) } else { low };
@@ -263,11 +235,8 @@ fn panel(picture: &ComparisonPicture<'_>, shown: &Shown, up: &PlotAxis) -> Panel
     });
     panel.draw(Role::Motion, Marks::Words(words.collect()));
     if shown.is_band {
-        panel.layer(
-            Role::Drive,
-            "frequency of the drive",
-            Marks::Verticals(vec![elementary::log10(frequency_hz)]),
-        );
+        let drive = Marks::Verticals(vec![elementary::log10(frequency_hz)]);
+        panel.layer(Role::Drive, "frequency of the drive", drive);
     }
     let marks = rated.iter().enumerate();
     match shown.mark {
@@ -275,10 +244,7 @@ fn panel(picture: &ComparisonPicture<'_>, shown: &Shown, up: &PlotAxis) -> Panel
         Mark::Release => {
             let released =
                 marks.filter_map(|(scene, rated_scene)| Some((rated_scene.release_g?, place(rated, scene))));
-            let released: Vec<Point> = released.collect();
-            if !released.is_empty() {
-                panel.layer(Role::Gaps, "leaves its stop from", Marks::Points(released));
-            }
+            panel.layer_if_any(Role::Gaps, "leaves its stop from", Marks::Points(released.collect()));
         }
         Mark::Regime => {
             let known = marks.filter(|(scene, _)| shown.entries[*scene].to.is_finite());
@@ -295,8 +261,7 @@ fn panel(picture: &ComparisonPicture<'_>, shown: &Shown, up: &PlotAxis) -> Panel
 
 /// The data of the picture, one row for each value, in SI.
 fn drawn(rated: &[Rated]) -> Table {
-    let (mut series, mut scenes, mut values) = (Vec::new(), Vec::new(), Vec::new());
-    for scene in rated {
+    let of_scene = |scene: &Rated| {
         let summary = &scene.summary;
         let power = summary.harvest.and_then(|harvest| harvest.mean_load_power);
         let all = [
@@ -313,15 +278,10 @@ fn drawn(rated: &[Rated]) -> Table {
             ("crosses_to_hz", scene.crosses_hz.map(|band| band.1)),
             ("threshold_sensitivity", scene.sensitivity.as_ref().map(|change| change.0)),
         ];
-        for (name, value) in all {
-            let Some(value) = value else { continue };
-            series.push(name);
-            scenes.push(scene.name.clone());
-            values.push(value);
-        }
-    }
-    Table::new()
-        .with("series", Values::Words(series))
-        .with("scene", Values::Names(scenes))
-        .with("value", Values::Numbers(values))
+        let name = scene.name.clone();
+        all.into_iter().filter_map(move |(series, value)| Some((series, name.clone(), value?)))
+    };
+    let rows: Vec<_> = rated.iter().flat_map(of_scene).collect();
+    let table = Table::new().each("series", &rows, |row| row.0).each("scene", &rows, |row| row.1.clone());
+    table.each("value", &rows, |row| row.2)
 }

@@ -1,13 +1,14 @@
-//! Picture of a mechanism: force and potential over displacement, with equilibria, kinks and stops.
+//! Pictures of a mechanism: force and potential over displacement, with equilibria, kinks and stops; and the
+//! restitution of a compliant stop.
 
 use super::axis::{PlotAxis, Ranges};
 use super::chart::{Chart, Layer, Marks, Panel};
-use super::drawn::Drawn;
+use super::drawn::{Drawn, of_rows};
 use super::figure::Point;
 use super::role::Role;
-use crate::mechanics::{Landscape, Mechanism};
+use crate::mechanics::{Hertz, Landscape, Mechanism};
 use crate::numeric::{extent, short};
-use crate::study::Table;
+use crate::study::{Table, yield_speed};
 
 /// The picture of the curve in `table` (as [`curve`](crate::study::curve) gives it), with stops at these
 /// positions in m, NaN where there is none. `ranges` are those of displacement and force.
@@ -37,9 +38,7 @@ pub fn curve_chart(table: &Table, mechanism: &Mechanism, stops: (f64, f64), rang
     let mut lower = curve_panel((across.clone(), below), landscape, stops_mm, ("", of_potential), energy);
     lower.equilibria(landscape, |equilibrium| curve.potential(equilibrium.x) * potential);
     let mut words = subtitle(landscape);
-    if let Some(wall) = wall(column("x_m"), column("force_n"), &upper, force) {
-        words += &wall;
-    }
+    words.extend(wall(column("x_m"), column("force_n"), &upper, force));
     Chart::stack(vec![upper, lower], words, drawn(table, mechanism, stops, inside))
 }
 
@@ -72,10 +71,8 @@ fn curve_panel(
     panel.upright_stops(stops);
     panel.layers.extend(Layer::curve(name, points, stops, &value));
     let kinks = landscape.kinks.iter().map(|kink| (kink.x * 1e3, value(kink.x * 1e3)));
-    let kinks: Vec<Point> = kinks.filter(|kink| panel.x.contains(kink.0)).collect();
-    if !kinks.is_empty() {
-        panel.layer(Role::Kink, "kink of the force", Marks::Points(kinks));
-    }
+    let kinks = kinks.filter(|kink| panel.x.contains(kink.0)).collect();
+    panel.layer_if_any(Role::Kink, "kink of the force", Marks::Points(kinks));
     panel
 }
 
@@ -99,22 +96,15 @@ fn drawn(table: &Table, mechanism: &Mechanism, stops: (f64, f64), inside: impl F
 }
 
 fn subtitle(landscape: &Landscape) -> String {
-    let mut parts = Vec::new();
-    if let Some(barrier) = landscape.barrier {
-        let wells = (short(barrier.left_well * 1e3), short(barrier.right_well * 1e3));
-        parts.push(format!("wells at {} and {} mm", wells.0.replace('-', "\u{2212}"), wells.1));
-        let (left, right) = (short(barrier.from_left_j * 1e3), short(barrier.from_right_j * 1e3));
-        parts.push(if left == right {
-            format!("barrier of {left} mJ")
-        } else {
-            format!("barrier of {left} mJ from the left, {right} mJ from the right")
-        });
-    } else if landscape.equilibria.is_empty() {
-        parts.push("no equilibrium".to_owned());
-    } else {
-        parts.push("one well".to_owned());
+    let Some(barrier) = landscape.barrier else {
+        return if landscape.equilibria.is_empty() { "no equilibrium" } else { "one well" }.to_owned();
+    };
+    let left = short(barrier.left_well * 1e3).replace('-', "\u{2212}");
+    let wells = format!("wells at {left} and {} mm", short(barrier.right_well * 1e3));
+    match [barrier.from_left_j, barrier.from_right_j].map(|height| short(height * 1e3)) {
+        [left, right] if left == right => format!("{wells}, barrier of {left} mJ"),
+        [left, right] => format!("{wells}, barrier of {left} mJ from the left, {right} mJ from the right"),
     }
-    parts.join(", ")
 }
 
 /// A note on forces beyond the vertical axis at positions in the range: how large they become, and where.
@@ -149,4 +139,26 @@ fn telling(x: &[f64], values: &[f64], landscape: &Landscape) -> (f64, f64) {
     let (inner_low, inner_high) = range(left.x * 1e3, right.x * 1e3);
     let more = 0.5 * (inner_high - inner_low);
     if more > 0.0 { (low.max(inner_low - more), high.min(inner_high + more)) } else { (low, high) }
+}
+
+/// The picture of restitution over impact speed, beside a rigid stop's constant, from `table` (as
+/// [`contact`](crate::study::contact) gives it), for `stop` and a mass in kg.
+pub fn contact_chart(table: &Table, stop: &Hertz, mass: f64) -> Chart {
+    let names = ["speed_m_per_s", "restitution", "rigid_restitution"];
+    let [speeds, compliant, rigid] = names.map(|name| table.numbers(name).unwrap_or_default());
+    let top = speeds.last().copied().unwrap_or(1.0);
+    let path = |y: &[f64]| Marks::Path(speeds.iter().copied().zip(y.iter().copied()).collect());
+    let across = PlotAxis::between(0.0, top, "impact speed (m/s)");
+    let mut panel = Panel::new(across, PlotAxis::between(0.0, 1.05, "restitution"));
+    panel.layer(Role::Curve, "compliant stop", path(compliant));
+    let name = format!("rigid stop, {}", short(rigid.first().copied().unwrap_or(f64::NAN)));
+    panel.layer(Role::Separatrix, name, path(rigid));
+    if let Some(speed) = yield_speed(stop, mass).filter(|speed| *speed < top) {
+        let name = format!("yields from {} m/s on", short(speed));
+        panel.layer(Role::UnstableMotion, name, Marks::Verticals(vec![speed]));
+    }
+    let contact_ms = stop.contact_time(mass, 0.5 * top) * 1e3;
+    let [stiffness, loss, ms, speed] = [stop.stiffness, stop.loss, contact_ms, 0.5 * top].map(short);
+    let about = format!("one contact alone: {stiffness} N/m^1.5, loss {loss} s/m; {ms} ms at {speed} m/s");
+    Chart::stack(vec![panel], about, of_rows("contact", table, &names, |_| true))
 }

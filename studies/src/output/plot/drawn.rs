@@ -33,12 +33,25 @@ impl Drawn {
     /// All rows.
     pub fn table(self) -> Table {
         let table = Table::new().with("series", Values::Words(self.series));
-        let table = self
-            .numbers
-            .into_iter()
-            .fold(table, |table, (name, values)| table.with(name, Values::Numbers(values)));
+        let numbers = self.numbers.into_iter();
+        let table = numbers.fold(table, |table, (name, values)| table.with(name, Values::Numbers(values)));
         self.words.into_iter().fold(table, |table, (name, values)| table.with(name, Values::Words(values)))
     }
+}
+
+/// One series: these columns of numbers or counts, in the rows that are `shown`.
+pub(super) fn of_rows(
+    series: &'static str,
+    rows: &Table,
+    names: &[&str],
+    shown: impl Fn(usize) -> bool,
+) -> Table {
+    let kept: Vec<usize> = (0..rows.rows()).filter(|row| shown(*row)).collect();
+    let table = Table::new().with("series", Values::Words(vec![series; kept.len()]));
+    names.iter().fold(table, |table, name| {
+        let values = rows.column(name).and_then(as_numbers).unwrap_or_default();
+        table.with(*name, kept.iter().map(|row| values[*row]).collect())
+    })
 }
 
 /// The values of a column of numbers or counts; none of words.

@@ -50,13 +50,9 @@ impl Area {
 
     /// The part of a convex polygon that lies inside (Sutherland and Hodgman 1974); empty if none does.
     pub fn clip_polygon(self, points: Vec<Point>) -> Vec<Point> {
+        let Self { left, top, right, bottom } = self;
         // the inside is the side to which the normal of the edge points
-        let edges = [
-            ((1.0, 0.0), self.left),
-            ((-1.0, 0.0), -self.right),
-            ((0.0, 1.0), self.top),
-            ((0.0, -1.0), -self.bottom),
-        ];
+        let edges = [((1.0, 0.0), left), ((-1.0, 0.0), -right), ((0.0, 1.0), top), ((0.0, -1.0), -bottom)];
         edges.into_iter().fold(points, |points, (normal, edge)| {
             let depth = |at: Point| normal.0 * at.0 + normal.1 * at.1 - edge;
             let mut inside = Vec::new();
@@ -152,6 +148,11 @@ impl Text {
     /// Plain words that begin at a place.
     pub fn new(words: impl Into<String>, at: Point, size: f64, ink: Ink) -> Self {
         Self { words: words.into(), at, size, ink, bold: false, align: Align::Left, upright: false }
+    }
+
+    /// The same words with another point at their position.
+    pub fn aligned(self, align: Align) -> Self {
+        Self { align, ..self }
     }
 
     /// Length of the text before its position.
@@ -280,10 +281,8 @@ impl Figure {
     /// Adds a broken line with dashes and gaps of the given lengths, longer ones in a line of very many.
     pub fn dashed(&mut self, points: &[Point], width: f64, ink: Ink, (on, off): (f64, f64), within: Area) {
         for part in within.parts(points) {
-            let length: f64 = part
-                .windows(2)
-                .map(|pair| elementary::hypot(pair[1].0 - pair[0].0, pair[1].1 - pair[0].1))
-                .sum();
+            let lengths = part.windows(2).map(|pair| distance(pair[0], pair[1]));
+            let length: f64 = lengths.sum();
             let longer = (length / (MAX_DASHES * (on + off))).max(1.0);
             for piece in dashes(&part, (on * longer, off * longer)) {
                 self.shapes.push(Shape::Line(piece, width, ink));
@@ -331,31 +330,28 @@ impl Figure {
         self.line(&corners, width, ink, self.canvas);
     }
 
-    /// Hatches `area` with lines that fall to the right, the sign of a missing value.
-    pub fn hatch_missing(&mut self, area: Area, ink: Ink) {
-        let Some(area) = area.common(self.canvas) else { return };
-        let (step, width) = style::HATCH;
-        // Lines x - y = k step.
-        let first = ((area.left - area.bottom) / step).ceil() as i64;
-        let last = ((area.right - area.top) / step).floor() as i64;
-        for k in first..=last {
-            let difference = k as f64 * step;
-            let line = [(difference + area.top, area.top), (difference + area.bottom, area.bottom)];
-            self.line(&line, width, ink, area);
+    /// Fills `area`, and hatches it with lines that rise to the right.
+    pub fn filled(&mut self, area: Area, ink: Ink, hatch: Option<Ink>) {
+        self.rect(area, ink);
+        if let Some(hatch) = hatch {
+            self.hatch(area, hatch, 1.0);
         }
     }
 
-    /// Hatches `area` with lines that rise to the right, aligned with all other hatchings.
-    pub fn hatch(&mut self, area: Area, ink: Ink) {
-        let Some(area) = area.common(self.canvas) else { return };
+    /// Fills `area` with the sign of a missing value, lines that fall to the right.
+    pub fn missing(&mut self, area: Area, theme: &Theme) {
+        self.rect(area, theme.paper);
+        self.hatch(area, theme.soft, -1.0);
+    }
+
+    /// Hatches `area` with lines x + `sign` y = k step, aligned with all other hatchings.
+    fn hatch(&mut self, area: Area, ink: Ink, sign: f64) {
+        let Some(area @ Area { left, top, right, bottom }) = area.common(self.canvas) else { return };
         let (step, width) = style::HATCH;
-        // Lines x + y = k step.
-        let first = ((area.left + area.top) / step).ceil() as i64;
-        let last = ((area.right + area.bottom) / step).floor() as i64;
-        for k in first..=last {
+        let (low, high) = if sign > 0.0 { (top, bottom) } else { (-bottom, -top) };
+        for k in ((left + low) / step).ceil() as i64..=((right + high) / step).floor() as i64 {
             let sum = k as f64 * step;
-            let line = [(sum - area.top, area.top), (sum - area.bottom, area.bottom)];
-            self.line(&line, width, ink, area);
+            self.line(&[(sum - sign * top, top), (sum - sign * bottom, bottom)], width, ink, area);
         }
     }
 
@@ -368,6 +364,11 @@ impl Figure {
     }
 }
 
+/// The distance from one point to another.
+pub fn distance(from: Point, to: Point) -> f64 {
+    elementary::hypot(to.0 - from.0, to.1 - from.1)
+}
+
 /// A line cut into dashes.
 fn dashes(points: &[Point], (on, off): (f64, f64)) -> Vec<Vec<Point>> {
     let mut pieces = Vec::new();
@@ -376,7 +377,7 @@ fn dashes(points: &[Point], (on, off): (f64, f64)) -> Vec<Vec<Point>> {
     for pair in points.windows(2) {
         let (mut from, to) = (pair[0], pair[1]);
         loop {
-            let length = elementary::hypot(to.0 - from.0, to.1 - from.1);
+            let length = distance(from, to);
             if length <= left {
                 left -= length;
                 if drawing {

@@ -32,9 +32,7 @@ pub struct Face {
 /// A letter of a text.
 #[derive(Debug, Clone, Copy)]
 pub struct Letter {
-    /// The character.
     pub character: char,
-    /// Its glyph in the font.
     pub glyph: GlyphId,
     /// Distance from the beginning of the text to that of the letter, in ems.
     pub begin: f64,

@@ -3,7 +3,7 @@
 use super::axis::PlotAxis;
 use super::cells::{Cell, Cells, Colours};
 use super::chart::{Layer, Marks, Side};
-use super::figure::{Align, Area, Figure, Point, Shape, Text};
+use super::figure::{Align, Area, Figure, Point, Shape, Text, distance};
 use super::font;
 use super::mark::{REGIMES, dot, mark, marker};
 use super::role::{Look, Role};
@@ -96,10 +96,8 @@ impl Frame {
         let Area { left, bottom, .. } = self.area;
         figure.outline(self.area, style::FRAME, theme.ink);
         let ascent = style::TICK * font::CAPITAL;
-        let text = |words: &str, at: Point, align: Align| Text {
-            align,
-            ..Text::new(words, at, style::TICK, theme.ink)
-        };
+        let text =
+            |words: &str, at: Point, align| Text::new(words, at, style::TICK, theme.ink).aligned(align);
         let numbered = self.numbered();
         for (i, (value, words)) in self.x.ticks.iter().enumerate() {
             let at = self.across(*value);
@@ -134,12 +132,9 @@ impl Frame {
     /// Which ticks of the horizontal axis have a number: as many as have room, including 0.
     fn numbered(&self) -> impl Fn(usize) -> bool + use<> {
         const BETWEEN: f64 = 16.0;
-        let ticks: Vec<(f64, f64)> = self
-            .x
-            .ticks
-            .iter()
-            .map(|(value, words)| (self.across(*value), 0.5 * font::width(words, style::TICK, false)))
-            .collect();
+        let half = |words: &str| 0.5 * font::width(words, style::TICK, false);
+        let ticks = self.x.ticks.iter().map(|(value, words)| (self.across(*value), half(words)));
+        let ticks: Vec<(f64, f64)> = ticks.collect();
         let zero = self.x.ticks.iter().position(|tick| tick.0 == 0.0).unwrap_or(0);
         let apart = |every: &usize| {
             let kept: Vec<_> = ticks.iter().skip(zero % every).step_by(*every).collect();
@@ -243,10 +238,7 @@ impl Frame {
 
     fn fill(&self, figure: &mut Figure, area: Area, look: &Look) {
         if let Some(area) = area.common(self.area) {
-            figure.rect(area, look.ink);
-            if let Some(hatch) = look.hatch {
-                figure.hatch(area, hatch);
-            }
+            figure.filled(area, look.ink, look.hatch);
         }
     }
 
@@ -258,10 +250,7 @@ impl Frame {
         for part in places.split(|(x, y)| !(x.is_finite() && y.is_finite())) {
             let mut kept: Vec<Point> = Vec::new();
             for place in part {
-                let far = kept
-                    .last()
-                    .is_none_or(|last: &Point| elementary::hypot(last.0 - place.0, last.1 - place.1) > NEAR);
-                if far {
+                if kept.last().is_none_or(|last: &Point| distance(*place, *last) > NEAR) {
                     kept.push(*place);
                 }
             }
@@ -380,23 +369,16 @@ impl Frame {
     fn wall(&self, figure: &mut Figure, at: f64, side: Side, look: &Look, theme: &Theme) {
         let Area { left, top, right, bottom } = self.area;
         let thickness = |room: f64| if room < 3.0 * style::WALL { room } else { style::WALL };
-        let (solid, line) = match side {
-            Side::Left | Side::Right => {
-                let at = self.across(at);
-                let (from, to) = match side {
-                    Side::Left => (at - thickness(at - left), at),
-                    _ => (at, at + thickness(right - at)),
-                };
-                (Area::new(from, top, to, bottom), [(at, top), (at, bottom)])
-            }
-            Side::Top | Side::Bottom => {
-                let at = self.down(at);
-                let (from, to) = match side {
-                    Side::Top => (at - thickness(at - top), at),
-                    _ => (at, at + thickness(bottom - at)),
-                };
-                (Area::new(left, from, right, to), [(left, at), (right, at)])
-            }
+        let is_upright = matches!(side, Side::Left | Side::Right);
+        let (at, least, most) =
+            if is_upright { (self.across(at), left, right) } else { (self.down(at), top, bottom) };
+        let (from, to) = match side {
+            Side::Left | Side::Top => (at - thickness(at - least), at),
+            Side::Right | Side::Bottom => (at, at + thickness(most - at)),
+        };
+        let (solid, line) = match is_upright {
+            true => (Area::new(from, top, to, bottom), [(at, top), (at, bottom)]),
+            false => (Area::new(left, from, right, to), [(left, at), (right, at)]),
         };
         let filled = Look { ink: theme.wall_fill(), ..*look };
         self.fill(figure, solid, &filled);
@@ -416,19 +398,11 @@ impl Frame {
                 };
                 match run[0] {
                     Cell::Value(value) => {
-                        figure.rect(area, grid.colours.ink(value, theme));
-                        if let Some(hatch) = grid.colours.hatch(value, theme) {
-                            figure.hatch(area, hatch);
-                        }
+                        let (ink, hatch) = (grid.colours.ink(value, theme), grid.colours.hatch(value, theme));
+                        figure.filled(area, ink, hatch);
                     }
-                    Cell::Rest => {
-                        figure.rect(area, theme.rest);
-                        figure.hatch(area, theme.rest_hatch);
-                    }
-                    Cell::Missing => {
-                        figure.rect(area, theme.paper);
-                        figure.hatch_missing(area, theme.soft);
-                    }
+                    Cell::Rest => figure.filled(area, theme.rest, Some(theme.rest_hatch)),
+                    Cell::Missing => figure.missing(area, theme),
                     Cell::Blank => {}
                 }
             }

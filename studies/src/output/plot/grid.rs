@@ -3,12 +3,12 @@
 
 use super::axis::PlotAxis;
 use super::cells::Cells;
-use super::chart::{Chart, Layer, Marks, Panel};
+use super::chart::{Chart, Column, Layer, Marks, Panel};
 use super::figure::{Align, Area, Figure, Text};
 use super::font;
 use super::frame::Frame;
 use super::mark::marker;
-use super::page::{NAMELESS, Room, wrapped};
+use super::page::{Lines, NAMELESS, Room, wrapped};
 use super::style::{self, Theme};
 use super::surface;
 
@@ -53,9 +53,9 @@ pub struct Slot<'a> {
     /// Whether the axes show numbers and a label; otherwise they share those of a neighbour.
     shows_x: bool,
     shows_y: bool,
-    x_label: Label,
-    y_label: Label,
-    bar_label: Label,
+    x_label: Lines,
+    y_label: Lines,
+    bar_label: Lines,
     /// Room for the numbers of the vertical axis.
     numbers: f64,
     /// Additional width of its frame compared with the column, if it has no colour bar.
@@ -65,6 +65,7 @@ pub struct Slot<'a> {
 }
 
 /// A column of slots, with the width of its frames and the room beside them.
+#[derive(Default)]
 struct Stack<'a> {
     slots: Vec<Slot<'a>>,
     share: f64,
@@ -95,11 +96,10 @@ pub struct Grid<'a> {
 impl<'a> Grid<'a> {
     /// The panels of a chart; on a narrow canvas all in one column.
     pub fn new(chart: &'a Chart, narrow: bool) -> Self {
+        let of_column = |column: &'a Column| (column.width, column.panels.iter().collect());
         let columns: Vec<(f64, Vec<&Panel>)> = match narrow {
             true => vec![(1.0, chart.panels().collect())],
-            false => {
-                chart.columns.iter().map(|column| (column.width, column.panels.iter().collect())).collect()
-            }
+            false => chart.columns.iter().map(of_column).collect(),
         };
         let total: f64 = columns.iter().map(|column| column.0).sum();
         let mut stacks: Vec<Stack> = Vec::new();
@@ -116,23 +116,16 @@ impl<'a> Grid<'a> {
                     bar: panel.bar.clone(),
                     shows_x: panels.get(i + 1).filter(shares_x).is_none(),
                     shows_y: left.is_none_or(|left| left.panel.y != panel.y),
-                    x_label: Label::default(),
-                    y_label: Label::default(),
-                    bar_label: Label::default(),
+                    x_label: Lines::default(),
+                    y_label: Lines::default(),
+                    bar_label: Lines::default(),
                     numbers: 0.0,
                     more: 0.0,
                     area: Area::new(0.0, 0.0, 0.0, 0.0),
                 }
             };
             let slots = panels.iter().enumerate().map(slot).collect();
-            stacks.push(Stack {
-                slots,
-                share: share / total,
-                left: 0.0,
-                right: 0.0,
-                width: 0.0,
-                unit: USUAL,
-            });
+            stacks.push(Stack { slots, share: share / total, unit: USUAL, ..Stack::default() });
         }
         let aligned = stacks.iter().flat_map(|stack| &stack.slots).any(|slot| !slot.shows_y);
         Self { stacks, aligned, begin: 0.0 }
@@ -206,23 +199,13 @@ impl<'a> Grid<'a> {
     }
 }
 
-fn widest(axis: &PlotAxis) -> f64 {
-    axis.ticks.iter().map(|tick| font::width(&tick.1, style::TICK, false)).fold(0.0, f64::max)
-}
-
 /// Smallest relative size at which a label is kept in one line.
 const ONE_LINE: f64 = 0.85;
 
-/// A label in lines no longer than `room`. It is drawn smaller if it then fits in one line, or if a word is
-/// too long.
-#[derive(Default)]
-struct Label {
-    lines: Vec<String>,
-    size: f64,
-}
-
-impl Label {
-    fn new(axis: &PlotAxis, room: f64) -> Self {
+impl Lines {
+    /// The label of an axis in lines no longer than `room`. It is drawn smaller if it then fits in one line,
+    /// or if a word is too long.
+    fn of_axis(axis: &PlotAxis, room: f64) -> Self {
         let fits = |words: &str| (room / font::width(words, style::AXIS, false).max(1.0)).min(1.0);
         let whole = fits(&axis.label);
         let share =
@@ -251,19 +234,19 @@ impl Stack<'_> {
             let count = (height / TICK_ROOM.0).round().clamp(2.0, 8.0) as usize;
             slot.y = slot.panel.y.with_ticks(count);
             if slot.shows_y && slot.panel.surface().is_none() {
-                numbers = numbers.max(widest(&slot.y).min(most));
+                numbers = numbers.max(slot.y.widest_number().min(most));
             }
             slot.bar = slot.panel.bar.as_ref().map(|axis| axis.with_ticks(count));
             let count = (self.width / TICK_ROOM.1).round().clamp(2.0, 9.0) as usize;
             slot.x = slot.panel.x.with_ticks(count);
             let along = height + BETWEEN - 6.0;
-            slot.y_label = if slot.shows_y { Label::new(&slot.y, along) } else { Label::default() };
+            slot.y_label = if slot.shows_y { Lines::of_axis(&slot.y, along) } else { Lines::default() };
             let under = self.width.max(USUAL) + 10.0;
-            slot.x_label = if slot.shows_x { Label::new(&slot.x, under) } else { Label::default() };
+            slot.x_label = if slot.shows_x { Lines::of_axis(&slot.x, under) } else { Lines::default() };
             if let Some(axis) = &slot.bar {
-                slot.bar_label = Label::new(axis, along);
+                slot.bar_label = Lines::of_axis(axis, along);
                 let label = slot.bar_label.across(LABEL_WIDTH);
-                let right = BAR.0 + BAR.1 + TO_NUMBERS + widest(axis) + TO_LABEL + label;
+                let right = BAR.0 + BAR.1 + TO_NUMBERS + axis.widest_number() + TO_LABEL + label;
                 self.right = self.right.max(right);
             }
             // half of the first and of the last number may stand beside the frame
@@ -300,10 +283,10 @@ impl Stack<'_> {
             slot.more = 0.0;
             slot.numbers = (room.left - TO_NUMBERS - TO_LABEL - LABEL_WIDTH).max(0.0);
             if slot.y_label.lines.len() > 1 || slot.y_label.size < ONE_LINE * style::AXIS {
-                slot.y_label = Label::new(&slot.y.by_unit(), f64::INFINITY);
+                slot.y_label = Lines::of_axis(&slot.y.by_unit(), f64::INFINITY);
             }
             if height < NAMELESS {
-                slot.x_label = Label::default();
+                slot.x_label = Lines::default();
             }
         }
     }
@@ -382,9 +365,8 @@ impl Slot<'_> {
         frame.ticks(figure, theme, self.shows_x, self.shows_y.then_some(self.numbers));
         figure.frames.push(frame);
         let centred = |words: &str, at: (f64, f64), size: f64, upright: bool| Text {
-            align: Align::Centre,
             upright,
-            ..Text::new(words, at, size, theme.ink)
+            ..Text::new(words, at, size, theme.ink).aligned(Align::Centre)
         };
         let middle = (0.5 * (area.left + area.right), 0.5 * (area.top + area.bottom));
         for (i, line) in self.x_label.lines.iter().enumerate() {
@@ -401,7 +383,8 @@ impl Slot<'_> {
             let place = Area::new(from, area.top, from + BAR.1, area.bottom);
             colours.bar(figure, place, axis, theme);
             for (i, line) in self.bar_label.lines.iter().enumerate() {
-                let x = place.right + TO_NUMBERS + widest(axis) + TO_LABEL + LABEL_WIDTH * (i as f64 + 0.75);
+                let begin = place.right + TO_NUMBERS + axis.widest_number() + TO_LABEL;
+                let x = begin + LABEL_WIDTH * (i as f64 + 0.75);
                 figure.text(centred(line, (x, middle.1), self.bar_label.size, true));
             }
         }

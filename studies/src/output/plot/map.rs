@@ -7,7 +7,8 @@ use super::drawn::Drawn;
 use super::figure::Point;
 use super::quantity::Quantity;
 use super::role::Role;
-use super::swept::{Cut, SweepPicture, ascending, cells, drawn, label, marks};
+use super::sweep::distinct;
+use super::swept::{Cut, Overlay, SweepPicture, ascending, cells, drawn, label, marks};
 use crate::numeric::short;
 use crate::study::{Table, first_crossing_edge, label_and_unit, line_meets};
 
@@ -19,7 +20,7 @@ const CUT: f64 = 0.5;
 
 /// The lines over a map, in its fields.
 struct Lines {
-    release: Option<Vec<Point>>,
+    release: Vec<Point>,
     /// The edges of the first crossing cells.
     crossing: Vec<Vec<Point>>,
 }
@@ -29,26 +30,22 @@ impl Lines {
         let pairs = |table: &Table| -> Option<Vec<Point>> {
             Some(table.numbers(x)?.iter().copied().zip(table.numbers(y)?.iter().copied()).collect())
         };
-        let crossing = picture.overlay.first_crossing.as_ref();
+        let Overlay { release, first_crossing } = &picture.overlay;
         let edge = |table| first_crossing_edge(table, (x, y), &cells.across, &cells.up);
-        Self {
-            release: picture.overlay.release.as_ref().and_then(pairs),
-            crossing: crossing.map(edge).unwrap_or_default(),
-        }
+        let release = release.as_ref().and_then(pairs).unwrap_or_default();
+        Self { release, crossing: first_crossing.as_ref().map(edge).unwrap_or_default() }
     }
 
     fn draw(&self, panel: &mut Panel) {
         for part in &self.crossing {
             panel.layer(Role::FirstCrossing, "first crossing cell", Marks::Path(part.clone()));
         }
-        if let Some(points) = &self.release {
-            let name = "release in closed form: comes off the stop";
-            panel.layer(Role::Release, name, Marks::Path(points.clone()));
-        }
+        let name = "release in closed form: comes off the stop";
+        panel.layer_if_any(Role::Release, name, Marks::Path(self.release.clone()));
     }
 
     fn record(&self, drawn: &mut Drawn) {
-        let release = self.release.iter().flatten().map(|point| ("release", point));
+        let release = self.release.iter().map(|point| ("release", point));
         let crossing = self.crossing.iter().flatten().map(|point| ("first_crossing", point));
         for (series, (a, b)) in release.chain(crossing) {
             drawn.put(series, &[*a, *b], &[]);
@@ -73,20 +70,6 @@ pub(super) fn cells_panel(
     panel
 }
 
-/// The map and its lines.
-fn map_panel(picture: &SweepPicture, (x, y): (&str, &str)) -> (Panel, Lines) {
-    let quantity = Quantity::of(picture.rows, picture.quantity);
-    let cells = cells(picture.rows, (x, y), &quantity, |_| true);
-    let lines = Lines::new(picture, (x, y), &cells);
-    let transients = transients(picture.rows, (x, y), &cells);
-    let mut panel = cells_panel(picture, (x, y), cells, quantity.bar());
-    if !transients.is_empty() {
-        panel.layer(Role::Transient, "may be a transient", Marks::Cloud(transients));
-    }
-    lines.draw(&mut panel);
-    (panel, lines)
-}
-
 /// The cells whose motion may be a transient, from the columns `settled` and `steady`; empty if the rows lack
 /// these columns, or if there are too many cells for dots.
 fn transients(rows: &Table, (x, y): (&str, &str), cells: &Cells) -> Vec<Point> {
@@ -103,14 +86,6 @@ fn transients(rows: &Table, (x, y): (&str, &str), cells: &Cells) -> Vec<Point> {
         settled[*row] == "false" && !(is_irregular && steady[*row] == "true")
     };
     (0..rows.rows()).filter(is_transient).map(|row| (names[0][row], names[1][row])).collect()
-}
-
-/// The quantity as colour over two fields.
-pub(super) fn map(picture: &SweepPicture, (x, y): (&str, &str)) -> Chart {
-    let (panel, lines) = map_panel(picture, (x, y));
-    let mut drawn = drawn(picture, &[(x, picture.ranges.x), (y, picture.ranges.y)]);
-    lines.record(&mut drawn);
-    Chart::stack(vec![panel], "", drawn.table())
 }
 
 /// The quantity as height and colour over two fields.
@@ -132,13 +107,18 @@ pub(super) fn surface(picture: &SweepPicture, (x, y): (&str, &str)) -> Chart {
     Chart::stack(vec![panel], "", drawn(picture, &[(x, ranges.x), (y, ranges.y)]).table())
 }
 
-/// The map over the fields `x` and `y`, with the quantity along cuts through it beside it.
-pub(super) fn map_with_cuts(picture: &SweepPicture, (x, y): (&str, &str), cuts: &[Cut]) -> Chart {
+/// The quantity as colour over the fields `x` and `y`, beside it the quantity along cuts through the map.
+pub(super) fn map(picture: &SweepPicture, (x, y): (&str, &str), cuts: &[Cut]) -> Chart {
     let SweepPicture { rows, ranges, .. } = *picture;
-    let (mut panel, lines) = map_panel(picture, (x, y));
+    let quantity = Quantity::of(rows, picture.quantity);
+    let cells = cells(rows, (x, y), &quantity, |_| true);
+    let lines = Lines::new(picture, (x, y), &cells);
+    let transients = transients(rows, (x, y), &cells);
+    let mut panel = cells_panel(picture, (x, y), cells, quantity.bar());
+    panel.layer_if_any(Role::Transient, "may be a transient", Marks::Cloud(transients));
+    lines.draw(&mut panel);
     let mut drawn = drawn(picture, &[(x, ranges.x), (y, ranges.y)]);
     lines.record(&mut drawn);
-    let quantity = Quantity::of(rows, picture.quantity);
     let (mut below, mut beside) = (Vec::new(), Vec::new());
     for Cut { column, value } in cuts {
         let is_upright = column == x;
@@ -161,14 +141,11 @@ pub(super) fn map_with_cuts(picture: &SweepPicture, (x, y): (&str, &str), cuts: 
         let (name, unit) = label_and_unit(column);
         cut.heading = format!("at {name} {} {unit}", short(*value)).trim_end().to_owned();
         let meets = |lines: &[Vec<Point>]| {
-            let mut all: Vec<f64> =
-                lines.iter().flat_map(|line| line_meets(line, *value, is_upright)).collect();
-            all.sort_by(f64::total_cmp);
-            all.dedup();
-            all
+            let all = lines.iter().flat_map(|line| line_meets(line, *value, is_upright));
+            distinct(&all.collect::<Vec<f64>>())
         };
         let thresholds = [
-            (Role::Release, "cut_release", meets(lines.release.as_slice())),
+            (Role::Release, "cut_release", meets(std::slice::from_ref(&lines.release))),
             (Role::FirstCrossing, "cut_first_crossing", meets(&lines.crossing)),
         ];
         for (role, series, at) in thresholds {

@@ -13,15 +13,11 @@ use crate::scene::{Document, PROGRAM};
 /// The shape of a marker.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Marker {
-    /// A disc.
     Disc,
-    /// A square.
     Square,
-    /// A square on its corner.
     Diamond,
     /// An arrow to the left and to the right.
     DoubleArrow,
-    /// A triangle on its base.
     Triangle,
     /// Two bars across each other.
     Cross,
@@ -45,34 +41,28 @@ pub fn marker(figure: &mut Figure, marker: Marker, at: Point, size: f64, ink: In
 
 /// Draws a marker without an outline.
 pub fn dot(figure: &mut Figure, marker: Marker, (x, y): Point, size: f64, ink: Ink) {
-    let flat = 0.86 * size;
-    let polygon = |points: &[Point]| points.iter().map(|(dx, dy)| (x + dx, y + dy)).collect::<Vec<Point>>();
+    let (flat, reach, wide, low) = (0.86 * size, 1.25 * size, 1.15 * size, 0.85 * size);
+    let mut polygon = |points: &[Point]| {
+        figure.polygon(points.iter().map(|(dx, dy)| (x + dx, y + dy)).collect(), ink);
+    };
     match marker {
         Marker::Disc => figure.disc((x, y), size, ink),
         // a polygon, since rectangles are rounded to whole pixels
-        Marker::Square => {
-            figure.polygon(polygon(&[(-flat, -flat), (flat, -flat), (flat, flat), (-flat, flat)]), ink);
-        }
-        Marker::Diamond => {
-            let reach = 1.25 * size;
-            figure.polygon(polygon(&[(0.0, -reach), (reach, 0.0), (0.0, reach), (-reach, 0.0)]), ink);
-        }
-        Marker::Triangle => {
-            let (wide, low) = (1.15 * size, 0.85 * size);
-            figure.polygon(polygon(&[(0.0, -1.2 * size), (wide, low), (-wide, low)]), ink);
-        }
+        Marker::Square => polygon(&[(-flat, -flat), (flat, -flat), (flat, flat), (-flat, flat)]),
+        Marker::Diamond => polygon(&[(0.0, -reach), (reach, 0.0), (0.0, reach), (-reach, 0.0)]),
+        Marker::Triangle => polygon(&[(0.0, -1.2 * size), (wide, low), (-wide, low)]),
         Marker::Cross => {
             let (near, far) = (0.55 * size, 0.95 * size);
             for way in [1.0, -1.0] {
                 let bar = [(-far, -near), (-near, -far), (far, near), (near, far)];
-                figure.polygon(polygon(&bar.map(|(dx, dy)| (way * dx, dy))), ink);
+                polygon(&bar.map(|(dx, dy)| (way * dx, dy)));
             }
         }
         Marker::DoubleArrow => {
             let (tip, neck, bar) = (1.6 * size, 0.35 * size, 0.32 * size);
-            figure.polygon(polygon(&[(-tip, 0.0), (-neck, -size), (-neck, size)]), ink);
-            figure.polygon(polygon(&[(tip, 0.0), (neck, -size), (neck, size)]), ink);
-            figure.polygon(polygon(&[(-size, -bar), (size, -bar), (size, bar), (-size, bar)]), ink);
+            polygon(&[(-tip, 0.0), (-neck, -size), (-neck, size)]);
+            polygon(&[(tip, 0.0), (neck, -size), (neck, size)]);
+            polygon(&[(-size, -bar), (size, -bar), (size, bar), (-size, bar)]);
         }
     }
 }
@@ -80,11 +70,8 @@ pub fn dot(figure: &mut Figure, marker: Marker, (x, y): Point, size: f64, ink: I
 /// The sample of an entry of a legend.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Sample {
-    /// A line.
     Line(Look),
-    /// A marker.
     Marker(Look),
-    /// A filled patch.
     Patch(Look),
     /// A patch as that of a missing cell.
     Missing,
@@ -101,15 +88,11 @@ pub fn entry(figure: &mut Figure, theme: &Theme, sample: Sample, area: Area) {
         Sample::Line(look) => figure.styled(&[(left, middle.1), (right, middle.1)], &look, canvas),
         Sample::Marker(look) => mark(figure, &look, middle, style::MARKER, theme),
         Sample::Patch(look) => {
-            figure.rect(area, look.ink);
-            if let Some(hatch) = look.hatch {
-                figure.hatch(area, hatch);
-            }
+            figure.filled(area, look.ink, look.hatch);
             figure.outline(area, style::GRID, theme.soft);
         }
         Sample::Missing => {
-            figure.rect(area, theme.paper);
-            figure.hatch_missing(area, theme.soft);
+            figure.missing(area, theme);
             figure.outline(area, style::GRID, theme.soft);
         }
         Sample::Ticks(ink) => {
@@ -156,10 +139,7 @@ impl Caption {
     pub fn new(document: &Document, version: &str) -> Self {
         let (scene, name) = (&document.scene, &document.name);
         let mut footer = format!("interwell {version}{PART}{name}{PART}tolerance {:e}", scene.run.tolerance);
-        for change in document.changes() {
-            footer += PART;
-            footer += change;
-        }
+        document.changes().for_each(|change| footer += &format!("{PART}{change}"));
         Self { title: scene.title.clone(), footer, origin: origin(document, version) }
     }
 
@@ -168,8 +148,13 @@ impl Caption {
     pub fn of_record(name: &str, of: &str, version: &str) -> Self {
         let footer = format!("interwell {version}{PART}identify {name} --of {of}");
         let origin = json!({ "program": PROGRAM, "version": version, "record": name, "of": of });
+        Self::of(name, footer, &origin)
+    }
+
+    /// The caption of a picture without a scene, with the names and values of its provenance.
+    pub fn of(title: &str, footer: String, origin: &Value) -> Self {
         let origin = origin.as_object().cloned().unwrap_or_default();
-        Self { title: name.to_owned(), footer, origin }
+        Self { title: title.to_owned(), footer, origin }
     }
 
     /// The footer in lines no longer than `room`, broken between its parts if possible.
@@ -178,10 +163,7 @@ impl Caption {
         let mut lines: Vec<String> = Vec::new();
         for part in self.footer.split(PART) {
             match lines.last_mut() {
-                Some(line) if fits(&format!("{line}{PART}{part}")) => {
-                    line.push_str(PART);
-                    line.push_str(part);
-                }
+                Some(line) if fits(&format!("{line}{PART}{part}")) => *line += &format!("{PART}{part}"),
                 _ => lines.push(part.to_owned()),
             }
         }

@@ -5,7 +5,6 @@
 //! theme, and equal data give equal bytes.
 
 mod accuracy;
-mod arguments;
 mod axis;
 mod basins;
 mod best;
@@ -13,18 +12,15 @@ mod branch;
 mod cells;
 mod chart;
 mod comparison;
-mod contact;
 mod curve;
 mod drawn;
-mod escape;
-mod exponents;
 mod figure;
 mod font;
 mod frame;
 mod grid;
 mod map;
 mod mark;
-mod measured;
+mod over_field;
 mod over_time;
 mod page;
 mod pdf;
@@ -50,34 +46,32 @@ mod threshold;
 
 use std::path::Path;
 
+use crate::study::words;
+
 pub use accuracy::accuracy_chart;
-pub use arguments::{Argument, picture_arguments};
 pub use axis::{PlotAxis, Ranges};
 pub use basins::{basins_chart, can_show_starts};
-pub use best::{BestPicture, best_chart};
+pub use best::best_chart;
 pub use branch::{branch_chart, loci_chart};
 pub use cells::{Cell, Cells, Colours};
 pub use chart::{Chart, Column, Layer, Marks, Note, Panel, Side};
-pub use comparison::{ComparisonPicture, comparison_chart};
-pub use contact::contact_chart;
-pub use curve::{curve_chart, force_panel};
-pub use escape::{EscapePicture, can_show_escapes, escape_chart};
-pub use exponents::{ExponentPicture, can_show_exponents, exponents_chart};
+pub use comparison::comparison_chart;
+pub use curve::{contact_chart, curve_chart, force_panel};
 pub use figure::{Area, Figure, Shape, Text};
 pub use font::{HACK, INTER};
 pub use frame::Frame;
 pub use mark::Caption;
-pub use measured::measured_chart;
+pub use over_field::{can_show_over_field, escape_chart, exponents_chart};
 pub use over_time::OverTime;
 pub use page::Room;
 pub use png::PaintError;
 pub use portrait::portrait_panel;
 pub use projection::Projection;
 pub use quantity::{RMS, quantities, suited_unit, words_of};
-pub use record::{identified_chart, measured_force_chart};
+pub use record::{identified_chart, measured_chart, measured_force_chart};
 pub use role::{Look, Role};
 pub use run::{RunPanel, run_chart};
-pub use section::{SectionPicture, section_chart};
+pub use section::section_chart;
 pub use shapes::shapes_chart;
 pub use sheet::{Sheet, SheetError, SheetText};
 pub use spectrum::{SpectrumQuantity, spectrum_chart};
@@ -85,17 +79,18 @@ pub use style::{BLACK, Ink, TICK, Theme, is_fine, viridis};
 pub use surface::SurfaceFrame;
 pub use sweep::{MAX_PICTURE_CELLS, NoPicture, can_show, sweep_about, sweep_chart};
 pub use swept::{Cut, Overlay, SweepPicture, View};
-pub use threshold::{ThresholdPicture, can_show_thresholds, threshold_chart};
+pub use threshold::{can_show_thresholds, threshold_chart};
 
-/// A kind of file that holds a picture.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Format {
-    /// Pixels.
-    Png,
-    /// Shapes.
-    Svg,
-    /// Shapes on a page, with their font.
-    Pdf,
+words! {
+    /// A kind of file that holds a picture.
+    Format {
+        /// Pixels.
+        Png = "png",
+        /// Shapes.
+        Svg = "svg",
+        /// Shapes on a page, with their font.
+        Pdf = "pdf",
+    }
 }
 
 /// The error of a file name without the ending of a picture format.
@@ -107,12 +102,7 @@ impl Format {
     /// The format for the ending of a file name.
     pub fn of(path: &Path) -> Result<Self, UnknownFormat> {
         let ending = path.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
-        match ending.as_deref() {
-            Some("png") => Ok(Self::Png),
-            Some("svg") => Ok(Self::Svg),
-            Some("pdf") => Ok(Self::Pdf),
-            _ => Err(UnknownFormat),
-        }
+        ending.and_then(|ending| Self::named(&ending)).ok_or(UnknownFormat)
     }
 
     /// The picture as a file of this kind.

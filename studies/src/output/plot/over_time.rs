@@ -49,20 +49,16 @@ impl RunPanel {
         panel.rests(beside);
         if self == Self::Displacement {
             panel.level_stops(beside.stops);
-            let wells: Vec<f64> = beside.wells.iter().copied().filter(|mm| panel.y.contains(*mm)).collect();
-            if !wells.is_empty() {
-                panel.layer(Role::Well, "well", Marks::Horizontals(wells));
-            }
+            let wells = beside.wells.iter().copied().filter(|mm| panel.y.contains(*mm)).collect();
+            panel.layer_if_any(Role::Well, "well", Marks::Horizontals(wells));
         } else {
             panel.draw(Role::Reference, Marks::Horizontals(vec![0.0]));
         }
         panel.layers.extend(lines);
         let impacts = beside.impacts.iter().filter(|_| self == Self::Displacement);
         for (times, side) in impacts.zip([Side::Bottom, Side::Top]) {
-            let at: Vec<f64> = times.iter().copied().filter(|t| beside.time.contains(*t)).collect();
-            if !at.is_empty() {
-                panel.layer(Role::Impact, "impact", Marks::Ticks(at, side));
-            }
+            let at = times.iter().copied().filter(|t| beside.time.contains(*t)).collect();
+            panel.layer_if_any(Role::Impact, "impact", Marks::Ticks(at, side));
         }
         panel
     }
@@ -72,8 +68,6 @@ impl Panel {
     /// Adds the times at rest.
     pub(super) fn rests(&mut self, beside: &OverTime) {
         let (spans, name) = &beside.rests;
-        if !spans.is_empty() {
-            self.layer(Role::Rest, *name, Marks::Spans(spans.clone()));
-        }
+        self.layer_if_any(Role::Rest, *name, Marks::Spans(spans.clone()));
     }
 }

@@ -11,9 +11,8 @@ use super::style::{self, Theme};
 
 /// Free space at the left and right edges of a narrow canvas and of a wide one.
 const EDGE: (f64, f64) = (24.0, 40.0);
-/// Line height of the title.
+/// Line heights.
 const TITLE_LINE: f64 = 46.0;
-/// Line height of the subtitle.
 const SUBTITLE_LINE: f64 = 36.0;
 /// Line height of the legend.
 const ROW: f64 = 38.0;
@@ -80,9 +79,10 @@ pub fn wrapped_to(words: &str, size: f64, bold: bool, room: f64, most: usize) ->
 const MAX_LINES: usize = 3;
 
 /// Lines of text of one size.
-struct Lines {
-    lines: Vec<String>,
-    size: f64,
+#[derive(Default)]
+pub struct Lines {
+    pub lines: Vec<String>,
+    pub size: f64,
 }
 
 impl Lines {
@@ -187,12 +187,8 @@ impl Chart {
         let above = edge + if has_subtitle { SUBTITLE_LINE * subtitle.len() as f64 } else { 0.0 };
         let below = above + legend.height + room.map_or(0.0, |room| room.between);
         let mut grid = Grid::new(self, width < style::NARROW);
-        grid.fit(
-            (margin, width - margin),
-            height - below - edge,
-            room.map_or(MIN_PANE_HEIGHT, |_| MIN_ALIGNED_HEIGHT),
-            room,
-        );
+        let least = room.map_or(MIN_PANE_HEIGHT, |_| MIN_ALIGNED_HEIGHT);
+        grid.fit((margin, width - margin), height - below - edge, least, room);
         let mut figure = Figure::new(theme, (width, height), (0.0, height));
         for (i, line) in subtitle.iter().enumerate() {
             let at = (PANE, edge + SUBTITLE_LINE * (i as f64 + 0.75));
@@ -223,11 +219,9 @@ impl Chart {
                 }
                 Marks::Cells(cells) => {
                     for (role, name) in cells.entries() {
-                        let look = theme.look(role);
-                        match role {
-                            Role::Missing => add(Sample::Missing, &name),
-                            _ => add(Sample::Patch(look), &name),
-                        }
+                        let is_missing = role == Role::Missing;
+                        let patch = Sample::Patch(theme.look(role));
+                        add(if is_missing { Sample::Missing } else { patch }, &name);
                     }
                 }
                 // a missing value is a hole

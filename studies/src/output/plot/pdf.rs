@@ -38,7 +38,6 @@ const FONT_NAMES: [Name<'static>; 2] = [Name(b"R"), Name(b"B")];
 const IDENTITY: SystemInfo<'static> =
     SystemInfo { registry: Str(b"Adobe"), ordering: Str(b"Identity"), supplement: 0 };
 
-/// The picture as PDF.
 pub fn pdf(figure: &Figure) -> Vec<u8> {
     let Area { left, top, right, bottom } = figure.shown;
     let (wide, high) = (right - left, bottom - top);
@@ -66,13 +65,8 @@ pub fn pdf(figure: &Figure) -> Vec<u8> {
     pdf.pages(PAGES).kids([PAGE]).count(1);
     let mut page = pdf.page(PAGE);
     page.media_box(Rect::new(0.0, 0.0, width as f32, height as f32)).parent(PAGES).contents(CONTENT);
-    let mut resources = page.resources();
-    let mut fonts = resources.fonts();
-    for (place, name) in FONT_NAMES.into_iter().enumerate() {
-        fonts.pair(name, font_object(place, 0));
-    }
-    fonts.finish();
-    resources.finish();
+    let fonts = FONT_NAMES.into_iter().enumerate().map(|(place, name)| (name, font_object(place, 0)));
+    page.resources().fonts().pairs(fonts);
     page.finish();
     pdf.stream(CONTENT, &packed(&sheet.content.finish())).filter(Filter::FlateDecode);
     for (place, used) in sheet.used.iter().enumerate() {

@@ -17,7 +17,6 @@ fn failed(error: impl std::fmt::Display) -> PaintError {
     PaintError(error.to_string())
 }
 
-/// The picture as PNG.
 pub fn png(figure: &Figure) -> Result<Vec<u8>, PaintError> {
     let (wide, high) = (figure.shown.right - figure.shown.left, figure.shown.bottom - figure.shown.top);
     let (width, height) = match (figure.sheet.zip(figure.size_mm()), figure.size) {

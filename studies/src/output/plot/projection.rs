@@ -68,11 +68,8 @@ pub const AXIS_EDGES: [BoxLine; 3] = [
 ];
 
 /// The lines of ticks at these shares over floor and back walls.
-pub fn wall_lines(
-    x: impl Iterator<Item = f64>,
-    y: impl Iterator<Item = f64>,
-    z: impl Iterator<Item = f64>,
-) -> Vec<BoxLine> {
+pub fn wall_lines([x, y, z]: [Vec<f64>; 3]) -> Vec<BoxLine> {
+    let (x, y, z) = (x.into_iter(), y.into_iter(), z.into_iter());
     let across = x.flat_map(|x| [((x, 0.0, 0.0), (x, 1.0, 0.0)), ((x, 1.0, 0.0), (x, 1.0, 1.0))]);
     let back = y.flat_map(|y| [((0.0, y, 0.0), (1.0, y, 0.0)), ((1.0, y, 0.0), (1.0, y, 1.0))]);
     let up = z.flat_map(|z| [((0.0, 1.0, z), (1.0, 1.0, z)), ((1.0, 1.0, z), (1.0, 0.0, z))]);

@@ -1,8 +1,10 @@
 //! Column of a sweep that a picture shows, in suitable units.
 
 use super::axis::PlotAxis;
+use super::drawn::as_numbers;
 use super::mark::REGIMES;
 use super::role::Role;
+use super::sweep::distinct;
 use crate::numeric::extent;
 use crate::study::{Grid, RMS_VELOCITY, Read, SummaryField, Table, Values, label_and_unit};
 
@@ -35,7 +37,6 @@ const MAX_COUNTS: usize = 8;
 pub(super) struct Quantity {
     /// Its values, one per row, NaN for missing ones; for kinds, their indices.
     pub values: Vec<f64>,
-    /// Label of its axis.
     pub label: String,
     /// The unit at the end of the label; empty where it has none.
     pub unit: String,
@@ -45,7 +46,6 @@ pub(super) struct Quantity {
     pub rests: bool,
     /// The band about its values, if it has one: least and largest values.
     pub band: Option<[Vec<f64>; 2]>,
-    /// The column.
     name: String,
 }
 
@@ -56,9 +56,8 @@ pub fn quantities<'a>(table: &'a Table, grid: &'a Grid) -> impl Iterator<Item = 
         !matches!(values, Values::Words(_) | Values::Names(_)) || words_of(name).is_some()
     };
     let columns = table.columns().iter().filter(move |column| shown(&column.name, &column.values));
-    columns
-        .map(|column| column.name.as_str())
-        .filter(|name| !grid.columns().iter().any(|field| field == name))
+    let names = columns.map(|column| column.name.as_str());
+    names.filter(|name| !grid.columns().iter().any(|field| field == name))
 }
 
 impl Quantity {
@@ -67,13 +66,11 @@ impl Quantity {
         let column = rows.column(name);
         let words = words_of(name);
         let mut values: Vec<f64> = match column.map(|column| &column.values) {
-            Some(Values::Numbers(values)) => values.clone(),
-            Some(Values::Counts(values)) => values.iter().map(|n| n.map_or(f64::NAN, |n| n as f64)).collect(),
             Some(Values::Words(shown)) => {
                 let place = |word: &&str| words.unwrap_or_default().iter().position(|entry| entry == word);
                 shown.iter().map(|word| place(word).map_or(f64::NAN, |place| place as f64)).collect()
             }
-            Some(Values::Names(_)) | None => Vec::new(),
+            _ => column.and_then(as_numbers).unwrap_or_default(),
         };
         let role = |place: usize, word: &str| match REGIMES.iter().position(|regime| regime.0 == word) {
             Some(regime) if name == "regime" => Role::Regime(regime),
@@ -91,7 +88,7 @@ impl Quantity {
         let (field, end) = end.map_or((SummaryField::find(name), ""), |(field, words)| (Some(field), words));
         let words = field.map_or(words, |field| format!("{}{end}", field.label));
         let (scale, unit) = suited_unit(unit, values.iter().copied());
-        let label = if unit.is_empty() { words } else { format!("{words} ({unit})") };
+        let label = with_unit(words, unit);
         let scaled = |values: &[f64]| values.iter().map(|value| value * scale).collect();
         let end = |end: &str| rows.numbers(&format!("{name}{end}")).map(scaled);
         let band = end("_low").zip(end("_high")).map(|(low, high)| [low, high]);
@@ -145,6 +142,11 @@ impl Quantity {
     }
 }
 
+/// The words of a label with their unit, if there is one.
+pub(super) fn with_unit(words: String, unit: &str) -> String {
+    if unit.is_empty() { words } else { format!("{words} ({unit})") }
+}
+
 /// Why a run that lasted to its end has no value in a column.
 fn without_value(name: &str) -> &'static str {
     match name {
@@ -185,9 +187,8 @@ const PERIOD: &str = "period";
 
 /// Whole numbers as kinds: each value becomes its place among them; the greatest ones are one kind.
 fn counted(values: &mut [f64]) -> Vec<(Role, String)> {
-    let mut all: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
-    all.sort_by(f64::total_cmp);
-    all.dedup();
+    let finite: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
+    let mut all = distinct(&finite);
     let rest = all.len() > MAX_COUNTS;
     all.truncate(MAX_COUNTS);
     for value in values.iter_mut().filter(|value| value.is_finite()) {

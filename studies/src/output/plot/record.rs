@@ -1,5 +1,5 @@
-//! Pictures of a measured record with a fit or a computed curve, and with a lower panel of the residuals, or
-//! of numbers with their intervals.
+//! Pictures of a measured record: with a fit or a computed curve, and a lower panel of the residuals or of
+//! numbers with their intervals; or over a computed motion.
 
 use super::axis::{PlotAxis, Ranges};
 use super::chart::{Chart, Marks, Panel};
@@ -10,10 +10,10 @@ use super::role::Role;
 use crate::dynamics::STANDARD_GRAVITY;
 use crate::numeric::{extent, short};
 use crate::scene::{Quantity, Timing};
-use crate::study::{ForceComparison, Identified, Identity, Table};
+use crate::study::{Comparison, ForceComparison, Identified, Identity, Table, Trace};
 
 /// Number of samples below which they are drawn as dots.
-pub(super) const DOTS: usize = 400;
+const DOTS: usize = 400;
 
 /// The height of the lower panel over that of the upper one.
 const LOWER: f64 = 0.5;
@@ -30,7 +30,6 @@ struct Series {
     is_marks: bool,
 }
 
-/// The lower panel.
 enum Lower {
     /// Residuals about 0: label, and name of the series in the drawn data.
     Rest(&'static str, &'static str, Vec<Point>),
@@ -42,12 +41,10 @@ enum Lower {
 struct RecordPicture {
     across: &'static str,
     up: &'static str,
-    /// The unit upwards.
     unit: &'static str,
     /// Names of both columns in the drawn data, and the factors from SI to the axes.
     columns: [String; 2],
     scales: [f64; 2],
-    /// The record.
     record: Vec<Point>,
     /// Whether its x rises from sample to sample.
     rises: bool,
@@ -75,52 +72,47 @@ pub fn identified_chart(
         x.into_iter().enumerate().map(|(i, x)| (x, [0, 1, 2].map(|k| all[k][i]))).collect()
     };
     let first = found.summary.first().copied();
-    let line = |name, series, points, role| Series { name, series, points, role, is_marks: false };
-    let names = [if of == "force" { "x_m" } else { "t_s" }.to_owned(), column_of(quantity)];
-    let k = if of == "force" { 1e3 } else { 1.0 };
-    let record = across.iter().zip(values).map(|(x, y)| (x * k, y * scale)).collect();
-    let picture = match of {
-        "force" => RecordPicture {
-            across: "position (mm)",
-            up,
-            unit,
-            columns: names,
-            scales: [k, scale],
-            record,
-            rises: false,
-            over: vec![line("identified curve", "identified", pairs(&found.rows, scale), Role::Curve)],
-            lower: Lower::Rest("residual", "residual", fitted("x_m", "residual_n", 1e3)),
-        },
+    let series = |is_marks, role, name, series, points| Series { name, series, points, role, is_marks };
+    let (over, lower) = match of {
+        "force" => (
+            vec![series(false, Role::Curve, "identified curve", "identified", pairs(&found.rows, scale))],
+            Lower::Rest("residual", "residual", fitted("x_m", "residual_n", 1e3)),
+        ),
         "damping" => {
             let (from, to) = (column(&found.rows, "from_s"), column(&found.rows, "to_s"));
             let middle = from.iter().zip(&to).map(|(a, b)| 0.5 * (a + b)).collect();
-            let envelope = |name, series, end| line(name, series, fitted("t_s", end, 1.0), Role::Envelope);
-            let over = vec![
-                envelope("identified envelope", "upper_envelope", "upper"),
-                envelope("", "lower_envelope", "lower"),
-            ];
+            let line = |name, of, end| series(false, Role::Envelope, name, of, fitted("t_s", end, 1.0));
+            let upper = line("identified envelope", "upper_envelope", "upper");
             let rows = intervals(middle, "damping_ratio");
-            let lower = Lower::Intervals("damping ratio", "damping_ratio", rows, first);
-            let (columns, scales) = (names, [k, scale]);
-            RecordPicture { across: "time (s)", up, unit, columns, scales, record, rises: true, over, lower }
+            (
+                vec![upper, line("", "lower_envelope", "lower")],
+                Lower::Intervals("damping ratio", "damping_ratio", rows, first),
+            )
         }
         _ => {
-            let marks = |name, series, x, y, role| Series {
-                name,
-                series,
-                points: fitted(x, y, 1.0),
-                role,
-                is_marks: true,
-            };
-            let over = vec![
-                marks("impact", "impact", "t_s", "x_m", Role::Impact),
-                marks("end of a rebound", "rebound", "rebound_t_s", "rebound_x_m", Role::Rebound),
-            ];
+            let (impacts, rebounds) = (fitted("t_s", "x_m", 1.0), fitted("rebound_t_s", "rebound_x_m", 1.0));
             let rows = intervals(column(&found.rows, "t_s"), "restitution");
-            let lower = Lower::Intervals("restitution", "restitution", rows, first);
-            let (columns, scales) = (names, [k, scale]);
-            RecordPicture { across: "time (s)", up, unit, columns, scales, record, rises: true, over, lower }
+            (
+                vec![
+                    series(true, Role::Impact, "impact", "impact", impacts),
+                    series(true, Role::Rebound, "end of a rebound", "rebound", rebounds),
+                ],
+                Lower::Intervals("restitution", "restitution", rows, first),
+            )
         }
+    };
+    let is_force = of == "force";
+    let (label, name, k) = if is_force { ("position (mm)", "x_m", 1e3) } else { ("time (s)", "t_s", 1.0) };
+    let picture = RecordPicture {
+        across: label,
+        up,
+        unit,
+        columns: [name.to_owned(), column_of(quantity)],
+        scales: [k, scale],
+        record: across.iter().zip(values).map(|(x, y)| (x * k, y * scale)).collect(),
+        rises: !is_force,
+        over,
+        lower,
     };
     picture.chart(&summary_words(&found.summary), ranges)
 }
@@ -193,7 +185,7 @@ fn pairs(table: &Table, scale: f64) -> Vec<Point> {
 }
 
 /// The factor from SI to the unit of an axis, what the axis is called, and that unit.
-pub(super) fn axis_of(quantity: Quantity, values: &[f64]) -> (f64, &'static str, &'static str) {
+fn axis_of(quantity: Quantity, values: &[f64]) -> (f64, &'static str, &'static str) {
     let largest = values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
     match quantity {
         Quantity::Velocity => {
@@ -208,7 +200,7 @@ pub(super) fn axis_of(quantity: Quantity, values: &[f64]) -> (f64, &'static str,
 }
 
 /// The root mean square of a difference in words, with its share in percent where it is known.
-pub(super) fn rms_difference((rms, percent): (f64, f64), scale: f64, unit: &str) -> String {
+fn rms_difference((rms, percent): (f64, f64), scale: f64, unit: &str) -> String {
     let words = format!("RMS difference {} {unit}", short(rms * scale));
     if percent.is_finite() { format!("{words}, {} % of the RMS measured", short(percent)) } else { words }
 }
@@ -217,21 +209,19 @@ impl RecordPicture {
     fn chart(&self, words: &str, ranges: Ranges) -> Chart {
         let inside = |point: &&Point| ranges.x.is_none_or(|(a, b)| (a..=b).contains(&point.0));
         let shown = || self.record.iter().filter(inside);
-        let (label, lower) = match &self.lower {
+        let (label, lower, places) = match &self.lower {
             Lower::Rest(label, _, points) => {
                 let label = format!("{label} ({})", self.unit);
-                (label, points.iter().map(|point| point.1).chain([0.0]).collect())
+                (label, points.iter().map(|point| point.1).chain([0.0]).collect(), Vec::new())
             }
             Lower::Intervals(label, _, rows, all) => {
                 let ends = all.iter().flat_map(|number| [number.interval.0, number.interval.1]);
+                let places = rows.iter().map(|row| row.0).collect();
                 let rows = rows.iter().flat_map(|row| row.1);
-                ((*label).to_owned(), rows.chain(ends).collect::<Vec<f64>>())
+                ((*label).to_owned(), rows.chain(ends).collect::<Vec<f64>>(), places)
             }
         };
-        let places = self.record.iter().map(|point| point.0).chain(match &self.lower {
-            Lower::Intervals(_, _, rows, _) => rows.iter().map(|row| row.0).collect(),
-            Lower::Rest(..) => Vec::new(),
-        });
+        let places = self.record.iter().map(|point| point.0).chain(places);
         let across = PlotAxis::around(places, 0.0, self.across).or_given(ranges.x);
         let drawn = self.over.iter().flat_map(|series| &series.points).filter(inside);
         let heights = shown().chain(drawn).map(|point| point.1);
@@ -279,9 +269,7 @@ impl RecordPicture {
     fn data(&self) -> Table {
         let below = match &self.lower {
             Lower::Rest(..) => Vec::new(),
-            Lower::Intervals(_, name, ..) => {
-                ["", "_low", "_high"].into_iter().map(|end| format!("{name}{end}")).collect()
-            }
+            Lower::Intervals(_, name, ..) => ["", "_low", "_high"].map(|end| format!("{name}{end}")).into(),
         };
         let mut drawn = Drawn::new(self.columns.iter().chain(&below).map(String::as_str), &[]);
         let [k, scale] = self.scales;
@@ -303,8 +291,67 @@ impl RecordPicture {
 }
 
 /// A record over time, parted where samples are missing.
-pub(super) fn parted(record: &[Point]) -> Vec<Point> {
+fn parted(record: &[Point]) -> Vec<Point> {
     let timing = Timing::of(&record.iter().map(|point| point.0).collect::<Vec<_>>());
     let parts = record.chunk_by(|a, b| !timing.is_gap(b.0 - a.0));
     parts.flat_map(|part| part.iter().copied().chain([(f64::NAN, f64::NAN)])).collect()
+}
+
+/// The picture of a run from its trace, and of what was measured of this quantity over it; `inset` are the
+/// times in s that a second panel shows closer, `ranges` those of the first.
+pub fn measured_chart(
+    trace: &Trace,
+    (found, quantity): (&Comparison, Quantity),
+    inset: Option<(f64, f64)>,
+    ranges: Ranges,
+) -> Chart {
+    let column = |name: &str| trace.path.numbers(name).unwrap_or_default();
+    let (scale, words, unit) = axis_of(quantity, &found.measured);
+    let (name, label) = match quantity {
+        Quantity::Velocity => ("v_m_per_s", format!("{words} ({unit})")),
+        Quantity::Acceleration => ("base_accel_m_per_s2", format!("base {words} ({unit})")),
+        _ => ("x_m", format!("{words} ({unit})")),
+    };
+    let scaled = |times: &[f64], values: &[f64]| -> Vec<Point> {
+        let pairs = times.iter().zip(values).map(|(t, value)| (*t, value * scale));
+        pairs.filter(|point| point.1.is_finite()).collect()
+    };
+    let computed = scaled(column("t_s"), column(name));
+    let measured = scaled(&found.times, &found.measured);
+    let panel = |(from, to): (f64, f64), given: Option<(f64, f64)>, closer: Option<(f64, f64)>| {
+        let seen = |data: &[Point]| -> Vec<Point> {
+            data.iter().copied().filter(|point| (from..=to).contains(&point.0)).collect()
+        };
+        let (seen_computed, seen_measured) = (seen(&computed), seen(&measured));
+        let all = seen_computed.iter().chain(&seen_measured).map(|point| point.1);
+        let up = PlotAxis::around(all, 0.09, &label).or_given(given);
+        let mut panel = Panel::new(PlotAxis::between(from, to, "time (s)"), up);
+        if let Some(times) = closer {
+            panel.layer(Role::Closer, "shown closer below", Marks::Spans(vec![times]));
+        }
+        if quantity == Quantity::Displacement {
+            panel.level_stops((trace.stops.0 * 1e3, trace.stops.1 * 1e3));
+        }
+        // many samples lie below the computed line, few over it
+        let is_cloud = seen_measured.len() < DOTS;
+        if !is_cloud {
+            panel.layer(Role::Measured, "measured", Marks::Trace(parted(&measured)));
+        }
+        panel.layer(Role::Motion, "computed", Marks::Trace(computed.clone()));
+        if is_cloud {
+            panel.layer(Role::Measured, "measured", Marks::Cloud(measured.clone()));
+        }
+        panel
+    };
+    let mut panels = vec![panel(ranges.x.unwrap_or((0.0, trace.end)), ranges.y, inset)];
+    panels.extend(inset.map(|times| panel(times, None, None)));
+    let mut drawn = Drawn::new(["t_s", name], &[]);
+    for (series, points) in [("computed", &computed), ("measured", &measured)] {
+        points.iter().for_each(|(t, value)| drawn.put(series, &[*t, value / scale], &[]));
+    }
+    let mut words = rms_difference(found.rms, scale, unit);
+    if found.shift != 0.0 {
+        words += &format!("; record shifted by {} s", short(found.shift)).replace('-', "\u{2212}");
+    }
+    Chart::stack(panels, words, drawn.table())
 }

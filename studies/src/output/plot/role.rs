@@ -159,6 +159,7 @@ impl Theme {
         let dashed = |ink: Ink| Look { ink, dash: Some(style::DASH), ..plain };
         let dotted = |ink: Ink| Look { ink, dash: Some(style::DOT), ..plain };
         let marked = |ink: Ink, marker: Marker| Look { ink, marker, ..plain };
+        let design = |marker: Marker| Look { halo: Some(self.paper), ..marked(self.stable, marker) };
         const MARKERS: [Marker; 5] =
             [Marker::Disc, Marker::Square, Marker::Triangle, Marker::Diamond, Marker::DoubleArrow];
         match role {
@@ -166,7 +167,7 @@ impl Theme {
             Role::Second => fine(self.second),
             Role::Drive => fine(self.shaking),
             Role::Curve => Look { width: style::LINE + 0.8, ..plain },
-            Role::Stop => Look { hatch: Some(self.wall_hatch()), ..of(self.wall) },
+            Role::Stop => Look { hatch: Some(self.wall.over(self.paper, 0.6)), ..of(self.wall) },
             Role::Impact => fine(self.impact),
             Role::Rest => Look { hatch: Some(self.rest_hatch), ..of(self.rest) },
             Role::Well => dashed(self.stable),
@@ -205,14 +206,8 @@ impl Theme {
             Role::Transient => of(self.rest_hatch),
             Role::Best => of(self.stable),
             Role::Other => of(self.soft.over(self.paper, 0.35)),
-            Role::Found => Look {
-                size: style::MARKER + 2.0,
-                halo: Some(self.paper),
-                ..marked(self.stable, Marker::Diamond)
-            },
-            Role::SteppedBack => {
-                Look { size: style::MARKER, halo: Some(self.paper), ..marked(self.stable, Marker::Square) }
-            }
+            Role::Found => Look { size: style::MARKER + 2.0, ..design(Marker::Diamond) },
+            Role::SteppedBack => design(Marker::Square),
             Role::Broken => marked(self.unstable, Marker::Cross),
             Role::Method(place) => {
                 let inks = [self.regimes[3], self.regimes[1], self.unstable, self.regimes[2], self.second];

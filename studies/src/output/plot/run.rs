@@ -14,49 +14,29 @@ use super::role::Role;
 use crate::dynamics::{Outcome, STANDARD_GRAVITY, Summary};
 use crate::mechanics::Mechanism;
 use crate::numeric::{extent, short};
-use crate::study::{Table, Trace};
+use crate::study::{Table, Trace, words};
 
-/// A panel of the picture of a run.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum RunPanel {
-    /// Displacement over time.
-    Displacement,
-    /// Velocity over time.
-    Velocity,
-    /// Acceleration of the base over time.
-    Acceleration,
-    /// Power into the load of a transducer, or without one of the base on the mass, over time.
-    Power,
-    /// Potential and kinetic energy over time.
-    Energy,
-    /// Velocity over displacement.
-    Portrait,
+words! {
+    /// A panel of the picture of a run, in the order in which they stand.
+    RunPanel {
+        /// Displacement over time.
+        Displacement = "displacement",
+        /// Velocity over time.
+        Velocity = "velocity",
+        /// Acceleration of the base over time.
+        Acceleration = "acceleration",
+        /// Power into the load of a transducer, or without one of the base on the mass, over time.
+        Power = "power",
+        /// Potential and kinetic energy over time.
+        Energy = "energy",
+        /// Velocity over displacement.
+        Portrait = "portrait",
+    }
 }
 
 impl RunPanel {
-    /// All of them, in the order in which they stand.
-    pub const ALL: [Self; 6] =
-        [Self::Displacement, Self::Velocity, Self::Acceleration, Self::Power, Self::Energy, Self::Portrait];
-
     /// The default panels. If they are shown together, numbers are printed beside them.
     pub const USUAL: [Self; 4] = [Self::Displacement, Self::Velocity, Self::Acceleration, Self::Portrait];
-
-    /// Its word.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Displacement => "displacement",
-            Self::Velocity => "velocity",
-            Self::Acceleration => "acceleration",
-            Self::Power => "power",
-            Self::Energy => "energy",
-            Self::Portrait => "portrait",
-        }
-    }
-
-    /// The panel that is called so.
-    pub fn named(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|panel| panel.name() == name)
-    }
 }
 
 /// The picture of a run from its trace and its summary, of a mass in kg, with these panels. The trace says
@@ -166,17 +146,13 @@ impl Seen<'_> {
         (self.trace.stops.0 * 1e3, self.trace.stops.1 * 1e3)
     }
 
-    /// One of its panels.
     fn panel(&self, kind: RunPanel) -> Panel {
-        let shown = self.rows(self.trace.shown_from);
-        let label = |unit: &str| kind.label(unit, self.trace.has_load);
+        let Self { trace, x, v, speed, .. } = *self;
+        let shown = self.rows(trace.shown_from);
+        let label = |unit: &str| kind.label(unit, trace.has_load);
         match kind {
-            RunPanel::Displacement => {
-                self.quantity(kind, (self.x, 1e3), self.displacement(&self.x[shown]), 1.0)
-            }
-            RunPanel::Velocity => {
-                self.quantity(kind, (self.v, self.speed.0), self.velocity(&self.v[shown]), 0.9)
-            }
+            RunPanel::Displacement => self.quantity(kind, (x, 1e3), self.displacement(&x[shown]), 1.0),
+            RunPanel::Velocity => self.quantity(kind, (v, speed.0), self.velocity(&v[shown]), 0.9),
             RunPanel::Acceleration => {
                 let in_g = self.accel[shown].iter().map(|a| a / STANDARD_GRAVITY);
                 let up = PlotAxis::around(in_g.chain([0.0]), 0.1, &label("g"));
@@ -194,19 +170,24 @@ impl Seen<'_> {
         }
     }
 
+    /// The times at rest that the picture shows in part.
+    fn rests(&self) -> impl Iterator<Item = (f64, f64)> {
+        let Self { trace, .. } = *self;
+        let [from, to] = ["from_s", "to_s"].map(|name| trace.rests.numbers(name).unwrap_or_default());
+        let spans = from.iter().copied().zip(to.iter().copied());
+        spans.filter(move |(from, to)| *to >= trace.shown_from && *from <= trace.shown_to)
+    }
+
     /// What its panels over time share.
     fn beside(&self) -> OverTime {
         let Self { trace, .. } = *self;
-        let column = |name: &str| trace.rests.numbers(name).unwrap_or_default();
-        let spans = column("from_s").iter().copied().zip(column("to_s").iter().copied());
-        let seen = spans.filter(|(from, to)| *to >= trace.shown_from && *from <= trace.shown_to);
         let times = trace.impacts.numbers("t_s").unwrap_or_default();
         let impacts = times.iter().zip(trace.impacts.words("side"));
         let on =
             |side: &str| impacts.clone().filter(|impact| *impact.1 == side).map(|impact| *impact.0).collect();
         OverTime {
             time: PlotAxis::between(trace.shown_from, trace.shown_to, "time (s)"),
-            rests: (seen.collect(), self.rests),
+            rests: (self.rests().collect(), self.rests),
             impacts: [on("left"), on("right")],
             stops: self.stops_mm(),
             wells: self.wells.iter().map(|well| well * 1e3).collect(),
@@ -264,14 +245,13 @@ impl Seen<'_> {
         t.iter().zip(x).zip(v).map(|((t, x), v)| [*t, *x, *v])
     }
 
-    /// Velocity over displacement.
     fn portrait(&self) -> Panel {
         let Self { trace, .. } = *self;
         let shown = self.rows(trace.portrait_from);
         let (x, v) = (&self.x[shown.clone()], &self.v[shown]);
         let path = x.iter().zip(v).map(|(x, v)| (x * 1e3, v * self.speed.0)).collect();
         let mut motion = vec![Layer::new(Role::Motion, "", Marks::Path(path))];
-        let strobes = self.strobes().map(|[_, x, v]| (x * 1e3, v * self.speed.0)).collect::<Vec<_>>();
+        let strobes: Vec<Point> = self.strobes().map(|[_, x, v]| (x * 1e3, v * self.speed.0)).collect();
         if !strobes.is_empty() {
             motion.push(Layer::new(Role::Strobe, "once a period", Marks::Points(strobes)));
         }
@@ -327,19 +307,15 @@ impl Seen<'_> {
         }
         let has_places = self.has(RunPanel::Displacement) || self.has(RunPanel::Portrait);
         let shown = trace.shown_from..=trace.shown_to;
-        let impacts = Some(&trace.impacts).filter(|_| self.has(RunPanel::Displacement));
-        let column = |table: &Table, name: &str| table.numbers(name).unwrap_or_default().to_vec();
-        if let Some(impacts) = impacts {
-            let sides = impacts.words("side");
-            let times = column(impacts, "t_s");
-            for (at, side) in times.iter().zip(sides).filter(|impact| shown.contains(impact.0)) {
+        if self.has(RunPanel::Displacement) {
+            let impacts = trace.impacts.numbers("t_s").unwrap_or_default();
+            let impacts = impacts.iter().zip(trace.impacts.words("side"));
+            for (at, side) in impacts.filter(|impact| shown.contains(impact.0)) {
                 let stop = if *side == "left" { trace.stops.0 } else { trace.stops.1 };
                 drawn.put("impact", &[*at, stop], &[side]);
             }
         }
-        let rests = column(&trace.rests, "from_s").into_iter().zip(column(&trace.rests, "to_s"));
-        let seen = |(from, to): &(f64, f64)| *to >= trace.shown_from && *from <= trace.shown_to;
-        for (from, to) in rests.filter(seen).filter(|_| self.is_over_time()) {
+        for (from, to) in self.rests().filter(|_| self.is_over_time()) {
             drawn.put("rest_from", &[from.max(trace.shown_from)], &[]);
             drawn.put("rest_to", &[to.min(trace.shown_to)], &[]);
         }
@@ -348,15 +324,12 @@ impl Seen<'_> {
                 drawn.put("stop", &[f64::NAN, at], &[side]);
             }
         }
-        self.wells
-            .iter()
-            .filter(|_| self.has(RunPanel::Displacement))
-            .for_each(|at| drawn.put("well", &[f64::NAN, *at], &[]));
+        let wells = self.wells.iter().filter(|_| self.has(RunPanel::Displacement));
+        wells.for_each(|at| drawn.put("well", &[f64::NAN, *at], &[]));
         drawn.table()
     }
 }
 
-/// Whether all values are the first one.
 fn is_still(values: &[f64]) -> bool {
     values.iter().all(|value| *value == values[0])
 }
@@ -405,17 +378,19 @@ fn subtitle(summary: &Summary) -> String {
 /// Regime and numbers, under the phase portrait.
 fn account(summary: &Summary, trace: &Trace, (scale, unit): (f64, &str)) -> Vec<Note> {
     let name = summary.regime.name();
-    let mut notes = Vec::new();
+    let regime =
+        REGIMES.iter().position(|regime| regime.0 == name).filter(|_| summary.rms_velocity.is_some());
+    let regime = regime.map(|place| Note { words: name.to_owned(), role: Some(Role::Regime(place)) });
+    let mut notes: Vec<Note> = regime.into_iter().collect();
     let mut say = |words: String| notes.push(Note { words, role: None });
     if let Some(rms) = summary.rms_velocity {
         let (from, to) = (short(summary.window.0), short(summary.window.1));
-        let when = match (summary.settled, summary.is_transient()) {
+        say(match (summary.settled, summary.is_transient()) {
             (Some(true), _) => format!("settled, from {from} s on:"),
             (_, true) => format!("not settled, {from} to {to} s:"),
             (Some(false), false) => format!("averages steady, {from} to {to} s:"),
             (None, _) => format!("from {from} to {to} s:"),
-        };
-        say(when);
+        });
         say(format!("RMS velocity {} {unit}", short(rms * scale)));
         if shows_window(summary, trace) {
             let impacts = format!("{} impacts", summary.impacts);
@@ -433,11 +408,6 @@ fn account(summary: &Summary, trace: &Trace, (scale, unit): (f64, &str)) -> Vec<
         }
     } else if trace.path.rows() > 0 {
         say("ended before its settled window".to_owned());
-    }
-    let regime =
-        REGIMES.iter().position(|regime| regime.0 == name).filter(|_| summary.rms_velocity.is_some());
-    if let Some(place) = regime {
-        notes.insert(0, Note { words: name.to_owned(), role: Some(Role::Regime(place)) });
     }
     notes
 }

@@ -30,14 +30,9 @@ pub fn shapes_chart(states: &[State], mechanism: &Mechanism, stops: (f64, f64)) 
     panel.layer(Role::Reference, "clamps", Marks::Horizontals(vec![clamps(f64::min), clamps(f64::max)]));
     let last = states.len().saturating_sub(1);
     for (i, (state, lines)) in states.iter().zip(&all).enumerate() {
-        let name = match states.len() <= NAMED || i == 0 || i == last {
-            true => words(state.x, mechanism),
-            false => String::new(),
-        };
-        let role = match last {
-            0 => Role::Curve,
-            _ => Role::Step(i as f64 / last as f64),
-        };
+        let is_named = states.len() <= NAMED || i == 0 || i == last;
+        let name = if is_named { words(state.x, mechanism) } else { String::new() };
+        let role = if last == 0 { Role::Curve } else { Role::Step(i as f64 / last as f64) };
         for line in lines {
             panel.layer(role, &name, Marks::Path(line.clone()));
         }
@@ -53,7 +48,6 @@ pub fn shapes_chart(states: &[State], mechanism: &Mechanism, stops: (f64, f64)) 
     Chart::stack(vec![panel], format!("{about}; sideways stretched"), drawn(states, stops))
 }
 
-/// All that is drawn.
 fn drawn(states: &[State], stops: (f64, f64)) -> crate::study::Table {
     let mut drawn = Drawn::new(["x_m", "s_m", "px_m", "py_m"], &["flexure"]);
     for state in states {

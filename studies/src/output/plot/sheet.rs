@@ -57,15 +57,13 @@ impl Sheet {
             number.ok_or_else(|| error(option, text, problem))
         };
         let width_mm = within("plot-width-mm", text.width_mm, Self::MM, "a width in mm", "85")?;
-        let height_mm = text.height_mm;
-        let height_mm = height_mm
-            .map(|text| within("plot-height-mm", text, Self::MM, "a height in mm", "60"))
-            .transpose()?;
+        let height = |text| within("plot-height-mm", text, Self::MM, "a height in mm", "60");
+        let height_mm = text.height_mm.map(height).transpose()?;
         let font_pt = within("font-pt", text.font_pt, Self::FONT_PT, "a size in points", "8")?;
         let dpi = text.dpi.map_or(Ok(300.0), |text| {
             within("dpi", text, Self::DPI, "a resolution in pixels an inch", "300")
         })?;
-        let most = Self::largest_font_pt(width_mm);
+        let most = width_mm / (Self::MIN_EMS * MM_A_POINT);
         if font_pt > most {
             let most = (10.0 * most).floor() / 10.0;
             let problem = format!("a picture {width_mm} mm wide has room for text of at most {most} points");
@@ -103,11 +101,6 @@ impl Sheet {
     /// The length in mm of a unit of the canvas.
     pub fn unit_mm(&self) -> f64 {
         self.font_pt * MM_A_POINT / TICK
-    }
-
-    /// The largest text in points that `width_mm` has room for.
-    pub fn largest_font_pt(width_mm: f64) -> f64 {
-        width_mm / (Self::MIN_EMS * MM_A_POINT)
     }
 
     /// A length in mm in pixels.

@@ -5,16 +5,17 @@ use super::chart::{Chart, Marks, Panel};
 use super::drawn::Drawn;
 use super::figure::Point;
 use super::role::Role;
-use crate::numeric::{Taper, elementary, short};
-use crate::study::{Signal, Spectrum};
+use crate::numeric::{Taper, elementary, extent, short};
+use crate::study::{Signal, Spectrum, words};
 
-/// The column that is shown.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum SpectrumQuantity {
-    /// Amplitude of the sine at each frequency.
-    Amplitude,
-    /// Power spectral density.
-    Density,
+words! {
+    /// The column that is shown.
+    SpectrumQuantity {
+        /// Amplitude of the sine at each frequency.
+        Amplitude = "amplitude",
+        /// Power spectral density.
+        Density = "psd",
+    }
 }
 
 /// Share of the power below the right edge of the default range.
@@ -29,18 +30,14 @@ const MAX_MARKED: usize = 4;
 /// The picture of a spectrum. `ranges` are those of the frequency in Hz and of the quantity.
 pub fn spectrum_chart(spectrum: &Spectrum, quantity: SpectrumQuantity, ranges: Ranges) -> Chart {
     let column = |name: &str| spectrum.table.numbers(name).unwrap_or_default();
-    let (frequencies, density) = (column("frequency_hz"), column("psd"));
-    let (values, label) = match quantity {
-        SpectrumQuantity::Amplitude => (column("amplitude"), label(spectrum.signal).0),
-        SpectrumQuantity::Density => (density, label(spectrum.signal).1),
-    };
-    let across = PlotAxis::between(0.0, shown_to(spectrum, frequencies, density), "frequency (Hz)");
+    let (frequencies, values) = (column("frequency_hz"), column(quantity.name()));
+    let label = &label(spectrum.signal, quantity);
+    let decades = if quantity == SpectrumQuantity::Density { 2.0 * DECADES } else { DECADES };
+    let across = PlotAxis::between(0.0, shown_to(spectrum, frequencies, column("psd")), "frequency (Hz)");
     let across = across.or_given(ranges.x);
     let seen = frequencies.iter().zip(values).filter(|line| across.contains(*line.0));
     let seen = seen.map(|pair| *pair.1).filter(|value| *value > 0.0);
-    let (least, greatest) =
-        seen.fold((f64::INFINITY, 0.0_f64), |(low, high), value| (low.min(value), high.max(value)));
-    let decades = if quantity == SpectrumQuantity::Density { 2.0 * DECADES } else { DECADES };
+    let (least, greatest) = extent(seen);
     let up = match ranges.y {
         Some((low, high)) => PlotAxis::powers(elementary::log10(low), elementary::log10(high), label),
         None => {
@@ -55,17 +52,14 @@ pub fn spectrum_chart(spectrum: &Spectrum, quantity: SpectrumQuantity, ranges: R
         (some, all) if some < all => format!("forcing frequencies, {}, .. Hz", names.join(", ")),
         _ => format!("forcing frequencies, {} Hz", names.join(", ")),
     };
-    if !marked.is_empty() {
-        panel.layer(Role::Drive, words, Marks::Verticals(marked.clone()));
-    }
+    panel.layer_if_any(Role::Drive, words, Marks::Verticals(marked.clone()));
     let floor = panel.y.low - 1.0;
     let height = |value: f64| if value > 0.0 { elementary::log10(value).max(floor) } else { floor };
     let points: Vec<Point> =
         frequencies.iter().zip(values).map(|(frequency, value)| (*frequency, height(*value))).collect();
     let is_lines = spectrum.period.is_some() && spectrum.taper == Taper::None;
     panel.draw(Role::Motion, if is_lines { Marks::Sticks(points) } else { Marks::Trace(points) });
-    let name = if quantity == SpectrumQuantity::Density { "psd" } else { "amplitude" };
-    let mut drawn = Drawn::new(["frequency_hz", name], &[]);
+    let mut drawn = Drawn::new(["frequency_hz", quantity.name()], &[]);
     for (frequency, value) in frequencies.iter().zip(values).filter(|line| panel.x.contains(*line.0)) {
         drawn.put("line", &[*frequency, *value], &[]);
     }
@@ -73,19 +67,16 @@ pub fn spectrum_chart(spectrum: &Spectrum, quantity: SpectrumQuantity, ranges: R
     Chart::stack(vec![panel], spectrum.describe(), drawn.table())
 }
 
-/// What stands at the axis upward: of the amplitude and of the density.
-fn label(signal: Signal) -> (&'static str, &'static str) {
-    match signal {
-        Signal::Displacement => {
-            ("amplitude of displacement (m)", "power spectral density of displacement (m\u{b2}/Hz)")
-        }
-        Signal::Velocity => {
-            ("amplitude of velocity (m/s)", "power spectral density of velocity (m\u{b2}/s\u{b2}/Hz)")
-        }
-        Signal::BaseAcceleration => (
-            "amplitude of base acceleration (m/s\u{b2})",
-            "power spectral density of base acceleration (m\u{b2}/s\u{2074}/Hz)",
-        ),
+/// What stands at the axis upward.
+fn label(signal: Signal, quantity: SpectrumQuantity) -> String {
+    let (name, unit, squared) = match signal {
+        Signal::Displacement => ("displacement", "m", "m\u{b2}"),
+        Signal::Velocity => ("velocity", "m/s", "m\u{b2}/s\u{b2}"),
+        Signal::BaseAcceleration => ("base acceleration", "m/s\u{b2}", "m\u{b2}/s\u{2074}"),
+    };
+    match quantity {
+        SpectrumQuantity::Amplitude => format!("amplitude of {name} ({unit})"),
+        SpectrumQuantity::Density => format!("power spectral density of {name} ({squared}/Hz)"),
     }
 }
 

@@ -27,7 +27,6 @@ pub const SIZE: (u32, u32) = (1600, 1000);
 /// Width below which a canvas is narrow.
 pub const NARROW: f64 = 1150.0;
 
-/// Line height of the footer.
 pub const FOOTER_LINE: f64 = 26.0;
 
 /// Text sizes: the height of an em.
@@ -51,15 +50,12 @@ pub const GUIDE: f64 = 5.0;
 pub const THIN: f64 = 1.8;
 /// Frame and ticks.
 pub const FRAME: f64 = 2.0;
-/// Grid.
 pub const GRID: f64 = 1.2;
 /// Half the size of a marker.
 pub const MARKER: f64 = 9.0;
 /// Distance between the lines of a hatching, and their width.
 pub const HATCH: (f64, f64) = (11.0, 1.6);
-/// Thickness of a wall.
 pub const WALL: f64 = 30.0;
-/// Length of a tick.
 pub const TICK_LENGTH: f64 = 9.0;
 /// Dash and gap of a dashed line.
 pub const DASH: (f64, f64) = (18.0, 11.0);
@@ -79,6 +75,7 @@ const GREEN: Ink = Ink(0x00, 0x9e, 0x73);
 const BLUE: Ink = Ink(0x00, 0x72, 0xb2);
 const VERMILION: Ink = Ink(0xd5, 0x5e, 0x00);
 const PURPLE: Ink = Ink(0xcc, 0x79, 0xa7);
+const APRICOT: Ink = Ink(0xe8, 0x9a, 0x5c);
 const PURPLE_LINE: Ink = Ink(0xb0, 0x54, 0x88);
 
 /// The theme of a picture: its sheet of paper, and its colours by their meaning.
@@ -133,7 +130,7 @@ impl Theme {
         rest: Ink(0xe4, 0xe4, 0xe4),
         rest_hatch: Ink(0x9a, 0x9a, 0x9a),
         energy: Ink(0x8c, 0x5c, 0x00),
-        regimes: [Ink(0x80, 0x80, 0x80), BLUE, PURPLE, VERMILION, Ink(0xe8, 0x9a, 0x5c)],
+        regimes: [Ink(0x80, 0x80, 0x80), BLUE, PURPLE, VERMILION, APRICOT],
     };
 
     /// Light on dark.
@@ -152,23 +149,12 @@ impl Theme {
         rest: Ink(0x3a, 0x3f, 0x47),
         rest_hatch: Ink(0x72, 0x78, 0x82),
         energy: Ink(0xff, 0xe0, 0x9a),
-        regimes: [
-            Ink(0x9a, 0x9a, 0x9a),
-            Ink(0x2b, 0x95, 0xd6),
-            PURPLE,
-            Ink(0xf0, 0x73, 0x10),
-            Ink(0xe8, 0x9a, 0x5c),
-        ],
+        regimes: [Ink(0x9a, 0x9a, 0x9a), Ink(0x2b, 0x95, 0xd6), PURPLE, Ink(0xf0, 0x73, 0x10), APRICOT],
     };
 
     /// The inside of a wall.
     pub fn wall_fill(&self) -> Ink {
         self.wall.over(self.paper, 0.22)
-    }
-
-    /// The hatching of a wall.
-    pub fn wall_hatch(&self) -> Ink {
-        self.wall.over(self.paper, 0.6)
     }
 
     /// The colour of `share` from 0 to 1 for lines on the paper: a part of the map's scale that stands out

@@ -51,15 +51,13 @@ pub fn subset(bytes: &[u8], glyphs: impl IntoIterator<Item = usize>) -> Vec<u8> 
     let count = TABLES.len() as u16;
     let power = count.ilog2() as u16;
     let mut file = vec![0, 1, 0, 0];
-    [count, 16 << power, power, 16 * count - (16 << power)]
-        .iter()
-        .for_each(|word| file.extend(word.to_be_bytes()));
+    let search = [count, 16 << power, power, 16 * count - (16 << power)];
+    search.iter().for_each(|word| file.extend(word.to_be_bytes()));
     let mut at = 12 + 16 * TABLES.len();
     for (name, table) in TABLES.iter().zip(tables) {
         file.extend(*name);
-        let words = table
-            .chunks(4)
-            .map(|word| (0..4).fold(0, |sum, i| sum << 8 | u32::from(*word.get(i).unwrap_or(&0))));
+        let byte = |word: &[u8], i: usize| u32::from(*word.get(i).unwrap_or(&0));
+        let words = table.chunks(4).map(|word| (0..4).fold(0, |sum, i| sum << 8 | byte(word, i)));
         file.extend(words.fold(0, u32::wrapping_add).to_be_bytes());
         file.extend((at as u32).to_be_bytes());
         file.extend((table.len() as u32).to_be_bytes());

@@ -2,11 +2,10 @@
 
 use super::axis::PlotAxis;
 use super::cells::{Cell, Cells};
-use super::figure::{Align, Area, Figure, Point, Text};
+use super::figure::{Align, Area, Figure, Point, Text, distance};
 use super::font;
 use super::projection::{AXIS_EDGES, BACK_EDGES, BoxPlace, Face, Projection, SIDES, faces, wall_lines};
 use super::style::{self, Ink, Theme, viridis};
-use crate::numeric::elementary;
 
 /// Largest number of cells that are drawn as faces.
 pub const MAX_SURFACE_CELLS: u64 = 60_000;
@@ -53,7 +52,7 @@ impl SurfaceFrame {
         self.faces(cells).iter().rev().find_map(|face| {
             let corners = face.corners.map(|corner| self.place(corner));
             let under = [[0, 1, 2], [0, 2, 3]].iter().any(|three| is_inside(three.map(|i| corners[i])));
-            let distance = |i: &usize| elementary::hypot(corners[*i].0 - at.0, corners[*i].1 - at.1);
+            let distance = |i: &usize| distance(at, corners[*i]);
             let nearest = (0..4).min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
             let step = [(0, 0), (1, 0), (1, 1), (0, 1)][nearest];
             under.then_some((face.cell.0 + step.0, face.cell.1 + step.1))
@@ -87,8 +86,7 @@ impl SurfaceFrame {
     /// Floor and back walls with the lines of their ticks.
     fn walls(&self, figure: &mut Figure, theme: &Theme) {
         let shares = |axis: &PlotAxis| axis.ticks.iter().map(|tick| axis.share(tick.0)).collect::<Vec<_>>();
-        let [x, y, z] = [&self.x, &self.y, &self.z].map(|axis| shares(axis).into_iter());
-        for line in wall_lines(x, y, z) {
+        for line in wall_lines([&self.x, &self.y, &self.z].map(shares)) {
             self.line(figure, line, style::GRID, theme.grid);
         }
         for line in BACK_EDGES {
@@ -103,15 +101,12 @@ impl SurfaceFrame {
             self.line(figure, line, style::FRAME, theme.ink);
         }
         let canvas = figure.canvas;
-        let text = |words: &str, at: Point, size: f64, align: Align| Text {
-            align,
-            ..Text::new(words, at, size, theme.ink)
-        };
+        let text =
+            |words: &str, at: Point, size: f64, align| Text::new(words, at, size, theme.ink).aligned(align);
         let below = style::TICK * font::CAPITAL + 14.0;
         let mut row = |axis: &PlotAxis, place: &dyn Fn(f64) -> Point, align: Align, out: f64| {
             let places: Vec<Point> = axis.ticks.iter().map(|tick| place(axis.share(tick.0))).collect();
-            let width =
-                axis.ticks.iter().map(|tick| font::width(&tick.1, style::TICK, false)).fold(0.0, f64::max);
+            let width = axis.widest_number();
             let apart = |every: &usize| {
                 let kept: Vec<&Point> = places.iter().step_by(*every).collect();
                 kept.windows(2).all(|pair| {
@@ -130,16 +125,14 @@ impl SurfaceFrame {
         };
         row(&self.x, &|share| self.place((share, 0.0, 0.0)), Align::Left, 10.0);
         row(&self.y, &|share| self.place((0.0, share, 0.0)), Align::Right, -10.0);
-        let mut widest: f64 = 0.0;
         for (value, words) in &self.z.ticks {
             let (x, y) = self.place((0.0, 1.0, self.z.share(*value)));
             figure.line(&[(x - style::TICK_LENGTH, y), (x, y)], style::FRAME, theme.ink, canvas);
-            widest = widest.max(font::width(words, style::TICK, false));
             let at = (x - style::TICK_LENGTH - 7.0, y + 0.5 * style::TICK * font::CAPITAL);
             figure.text(text(words, at, style::TICK, Align::Right));
         }
         let (low, high) = (self.place(left), self.place((0.0, 1.0, 1.0)));
-        let beside = (low.0 - style::TICK_LENGTH - 25.0 - widest).max(style::AXIS);
+        let beside = (low.0 - style::TICK_LENGTH - 25.0 - self.z.widest_number()).max(style::AXIS);
         let fitted =
             |words: &str, room: f64| style::AXIS * (room / font::width(words, style::AXIS, false)).min(1.0);
         let size = fitted(&self.z.label, low.1 - high.1 + 40.0);

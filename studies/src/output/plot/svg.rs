@@ -10,7 +10,6 @@ const FAMILY: &str = "Inter, Helvetica, Arial, sans-serif";
 /// Number of units of the SVG coordinates, which are whole numbers, per unit of the canvas.
 const UNITS: f64 = 8.0;
 
-/// The picture as SVG.
 pub fn svg(figure: &Figure) -> String {
     let Area { left, top, right, bottom } = figure.shown;
     let (width, height) = match (figure.size_mm(), figure.size) {
@@ -30,13 +29,10 @@ pub fn svg(figure: &Figure) -> String {
     );
     // consecutive shapes of the same kind and colour become one path
     for shapes in figure.shapes.chunk_by(|a, b| brush(a).is_some() && brush(a) == brush(b)) {
-        match brush(&shapes[0]) {
-            Some(brush) => path(&mut svg, shapes, brush),
-            None => shapes.iter().for_each(|shape| {
-                if let Shape::Text(text) = shape {
-                    write(&mut svg, text);
-                }
-            }),
+        match (&shapes[0], brush(&shapes[0])) {
+            (Shape::Text(text), _) => write(&mut svg, text),
+            (_, Some(brush)) => path(&mut svg, shapes, brush),
+            _ => {}
         }
     }
     svg += "</svg>\n";
@@ -64,15 +60,14 @@ fn brush(shape: &Shape) -> Option<Brush> {
 }
 
 fn path(svg: &mut String, shapes: &[Shape], brush: Brush) {
-    match brush {
-        Brush::Crisp(ink) => {
-            *svg += &format!("<path shape-rendering=\"crispEdges\" fill=\"{}\" d=\"", hex(ink))
-        }
-        Brush::Fill(ink) => *svg += &format!("<path fill=\"{}\" d=\"", hex(ink)),
+    let painted = match brush {
+        Brush::Crisp(ink) => format!("shape-rendering=\"crispEdges\" fill=\"{}\"", hex(ink)),
+        Brush::Fill(ink) => format!("fill=\"{}\"", hex(ink)),
         Brush::Stroke(ink, width) => {
-            *svg += &format!("<path fill=\"none\" stroke=\"{}\" stroke-width=\"{width}\" d=\"", hex(ink));
+            format!("fill=\"none\" stroke=\"{}\" stroke-width=\"{width}\"", hex(ink))
         }
-    }
+    };
+    *svg += &format!("<path {painted} d=\"");
     for shape in shapes {
         match shape {
             Shape::Rect(Area { left, top, right, bottom }, _) => {
@@ -108,15 +103,9 @@ fn line<'a>(svg: &mut String, points: impl Iterator<Item = &'a Point>) {
             Some((from_x, from_y)) if (x, y) != (from_x, from_y) => {
                 // a sign also separates two numbers
                 let (dx, dy) = (x - from_x, y - from_y);
-                let before = if !moved {
-                    "l"
-                } else if dx < 0 {
-                    ""
-                } else {
-                    " "
-                };
-                let between = if dy < 0 { "" } else { " " };
-                *svg += &format!("{before}{dx}{between}{dy}");
+                let space = |number: i64| if number < 0 { "" } else { " " };
+                let before = if moved { space(dx) } else { "l" };
+                *svg += &format!("{before}{dx}{}{dy}", space(dy));
                 moved = true;
             }
             Some(_) => {}

@@ -4,7 +4,7 @@ use super::axis::PlotAxis;
 use super::cells::{Cell, Cells, Colours};
 use super::chart::{Chart, Column, Layer, Marks, Panel, Side};
 use super::figure::Point;
-use super::map::{cells_panel, map, map_with_cuts, surface};
+use super::map::{cells_panel, map, surface};
 use super::quantity::{Quantity, quantities, words_of};
 use super::role::Role;
 use super::surface::MAX_SURFACE_CELLS;
@@ -31,12 +31,9 @@ pub enum NoPicture {
          --over FIELD=FROM:TO:STEP, or leave --plot out"
     )]
     SingleThreshold,
-    /// Exponents of a single motion, or over several fields.
-    #[error("--plot shows exponents over one field, not over {0}: name it with --over FIELD=FROM:TO:STEP")]
-    Exponents(usize),
-    /// One escape, or over several fields.
-    #[error("--plot shows escapes over one field, not over {0}: name it with --over FIELD=FROM:TO:STEP")]
-    Escapes(usize),
+    /// Exponents or escapes of a single motion, or over several fields.
+    #[error("--plot shows {0} over one field, not over {1}: name it with --over FIELD=FROM:TO:STEP")]
+    OneField(&'static str, usize),
     /// Finer than a picture.
     #[error(
         "--plot shows at most {MAX_PICTURE_CELLS} cells, not {0}: take longer steps, or sweep without --plot"
@@ -122,16 +119,16 @@ pub fn sweep_chart(picture: &SweepPicture) -> Result<Chart, NoPicture> {
     let quantity = can_show(grid, picture.quantity, &picture.view, rows)?;
     let picture = &SweepPicture { quantity, ..picture.clone() };
     let ways = rows.words(DIRECTION);
-    let walked = [Direction::Up, Direction::Down].into_iter().filter(|way| ways.contains(&way.name()));
+    let walked = Direction::ALL.into_iter().filter(|way| ways.contains(&way.name()));
     let walked: Vec<Direction> = walked.collect();
     let mut chart = match (grid.columns(), few_lines(rows, grid)) {
         ([x, y], _) if picture.view == View::Surface => surface(picture, (x, y)),
-        ([x, y], _) if let View::Cuts(cuts) = &picture.view => map_with_cuts(picture, (x, y), cuts),
+        ([x, y], _) if let View::Cuts(cuts) = &picture.view => map(picture, (x, y), cuts),
         ([x], _) if walked.len() == 2 => walked_lines(picture, x),
         ([x, y], _) if walked.len() == 2 => walked_maps(picture, (x, y)),
         ([x], _) => lines(picture, x, None),
         (_, Some((x, each))) => lines(picture, x, Some(each)),
-        ([x, y], None) => map(picture, (x, y)),
+        ([x, y], None) => map(picture, (x, y), &[]),
         (other, None) => return Err(NoPicture::Fields(other.len())),
     };
     chart.subtitle = sweep_about(grid, scene, &walked, until_settled);
@@ -176,12 +173,8 @@ pub(super) fn distinct(values: &[f64]) -> Vec<f64> {
 /// from the one before, and the time in s up to which runs continued until they repeat, if they did.
 pub fn sweep_about(grid: &Grid, scene: &Scene, walked: &[Direction], until_settled: Option<f64>) -> String {
     let lengths = grid.axes().iter().map(|axis| axis.values.len());
-    let counts: Vec<String> = Some(walked.len())
-        .filter(|ways| *ways > 1)
-        .into_iter()
-        .chain(lengths)
-        .map(|n| n.to_string())
-        .collect();
+    let counts = Some(walked.len()).filter(|ways| *ways > 1).into_iter().chain(lengths);
+    let counts: Vec<String> = counts.map(|n| n.to_string()).collect();
     let swept = |field: &str| grid.axes().iter().any(|axis| axis.field == field);
     let mut parts = vec![format!("{} runs", counts.join(" \u{d7} "))];
     if !swept("run.duration_s") {
@@ -215,17 +208,13 @@ fn lines(picture: &SweepPicture, x: &str, series: Option<&str>) -> Chart {
         order.into_iter().map(|row| places[row]).collect()
     };
     let (missing, resting) = (without_value(false), without_value(true));
-    if !resting.is_empty() {
-        panel.layer(Role::Regime(0), "at rest", Marks::Ticks(resting, Side::Bottom));
-    }
-    if !missing.is_empty() {
-        // many full-height lines would hide everything else
-        let marks = match missing.len() <= MAX_LINES {
-            true => Marks::Verticals(missing),
-            false => Marks::Ticks(missing, Side::Bottom),
-        };
-        panel.layer(Role::Missing, quantity.missing(rows), marks);
-    }
+    panel.layer_if_any(Role::Regime(0), "at rest", Marks::Ticks(resting, Side::Bottom));
+    // many full-height lines would hide everything else
+    let marks_missing = match missing.len() <= MAX_LINES {
+        true => Marks::Verticals(missing),
+        false => Marks::Ticks(missing, Side::Bottom),
+    };
+    panel.layer_if_any(Role::Missing, quantity.missing(rows), marks_missing);
     // values between two seeds or two regimes have no meaning
     let joined = !(x == "seed" || x.ends_with(".seed") || quantity.kinds.is_some());
     let mut all = Vec::new();
@@ -280,10 +269,9 @@ pub(super) fn each_line<'a>(rows: &'a Table, series: Option<&str>) -> Vec<Series
     let values = rows.numbers(name).unwrap_or_default();
     let each = distinct(values);
     let last = each.len().saturating_sub(1).max(1) as f64;
-    let line = |(i, (value, name))| SeriesLine {
-        values: Some((values, value)),
-        name,
-        role: Role::Step(i as f64 / last),
+    let line = |(i, (value, name))| {
+        let (values, role) = (Some((values, value)), Role::Step(i as f64 / last));
+        SeriesLine { values, name, role }
     };
     each.iter().copied().zip(of_each(name, &each)).enumerate().map(line).collect()
 }
@@ -309,8 +297,8 @@ fn walked_lines(picture: &SweepPicture, x: &str) -> Chart {
         return Chart::stack(panels.into(), "", data);
     }
     let both = walks[0].2.iter().zip(&walks[1].2);
-    let between = both.map(|(&a, &b)| [places[a], quantity.values[a], quantity.values[b]]);
-    let between: Vec<[f64; 3]> = between.collect();
+    let between: Vec<[f64; 3]> =
+        both.map(|(&a, &b)| [places[a], quantity.values[a], quantity.values[b]]).collect();
     let apart = |row: &[f64; 3]| (panel.y.share(row[1]) - panel.y.share(row[2])).abs() > VISIBLE;
     if between.iter().any(apart) {
         panel.layer(Role::Hysteresis, "hysteresis", Marks::Band(between));

@@ -2,8 +2,7 @@
 
 use std::collections::HashSet;
 
-use super::figure::Point;
-use crate::numeric::elementary;
+use super::figure::{Point, distance};
 
 /// Keeps one of the points in the same half pixel.
 pub(super) fn once(places: &mut Vec<Point>) {
@@ -26,11 +25,8 @@ pub(super) fn extremes(column: &[Point]) -> Vec<Point> {
 pub(super) fn thinned<'a>(marks: &[(Point, &'a str)], apart: f64, close: f64) -> Vec<(Point, &'a str)> {
     let mut kept: Vec<(Point, &str)> = Vec::new();
     for (at, word) in marks {
-        let stands = kept.last().is_none_or(|(last, other)| {
-            elementary::hypot(at.0 - last.0, at.1 - last.1)
-                >= if other == word { apart } else { close.min(apart) }
-        });
-        if stands {
+        let least = |other: &str| if other == *word { apart } else { close.min(apart) };
+        if kept.last().is_none_or(|(last, other)| distance(*last, *at) >= least(other)) {
             kept.push((*at, word));
         }
     }

@@ -2,32 +2,15 @@
 
 use super::axis::{PlotAxis, Ranges};
 use super::chart::{Chart, Marks, Panel, Side};
-use super::drawn::{Drawn, as_numbers};
+use super::drawn::{as_numbers, of_rows};
 use super::figure::Point;
 use super::map::map;
 use super::role::Role;
 use super::sweep::{NoPicture, each_line, few_lines};
-use super::swept::{Overlay, SweepPicture, View, ascending, swept_axis};
+use super::swept::{Overlay, SweepPicture, View, ascending, label, swept_axis};
 use crate::numeric::short;
 use crate::scene::{Scene, column_names};
-use crate::study::{Column, Grid, Onset, Table, Values};
-
-/// The data of the picture of thresholds.
-#[derive(Debug, Clone, Copy)]
-pub struct ThresholdPicture<'a> {
-    /// The rows of [`threshold_table`](crate::study::threshold_table).
-    pub rows: &'a Table,
-    /// The grid of the thresholds.
-    pub grid: &'a Grid,
-    /// The scene.
-    pub scene: &'a Scene,
-    /// Dotted path of the field whose threshold is shown.
-    pub field: &'a str,
-    /// What begins at it.
-    pub onset: Onset,
-    /// Ranges of the axes; over one field, the vertical axis is that of the threshold.
-    pub ranges: Ranges,
-}
+use crate::study::{Grid, Onset, Table, Values};
 
 /// The column of Melnikov's threshold, in the unit of the amplitude.
 const MELNIKOV: [&str; 3] = ["melnikov_g", "melnikov_m_per_s2", "melnikov_n"];
@@ -41,71 +24,55 @@ pub fn can_show_thresholds(grid: &Grid) -> Result<(), NoPicture> {
     }
 }
 
-/// The picture of thresholds: a line over one field; over two fields one line per value of a field with few
-/// values, otherwise a map.
-pub fn threshold_chart(picture: &ThresholdPicture) -> Result<Chart, NoPicture> {
-    can_show_thresholds(picture.grid)?;
-    let ThresholdPicture { rows, grid, scene, onset, ranges, .. } = *picture;
-    let least = format!("least_{}", column_names(&[picture.field]).concat());
+/// The picture of the thresholds of a `field`, given by its dotted path, from the rows of
+/// [`threshold_table`](crate::study::threshold_table): a line over one field; over two fields one line per
+/// value of a field with few values, otherwise a map. Over one field the vertical axis is that of the
+/// threshold.
+pub fn threshold_chart(
+    rows: &Table,
+    grid: &Grid,
+    scene: &Scene,
+    field: &str,
+    onset: Onset,
+    ranges: Ranges,
+) -> Result<Chart, NoPicture> {
+    can_show_thresholds(grid)?;
+    let least = format!("least_{}", column_names(&[field]).concat());
     let values = rows.numbers("value").unwrap_or_default();
-    let quantity = Column { name: least.clone(), values: Values::Numbers(values.to_vec()) };
+    let rows = &rows.clone().with(&least, Values::Numbers(values.to_vec()));
     let mut chart = match (grid.columns(), few_lines(rows, grid)) {
-        ([x], _) => lines(picture, x, None, &quantity.label()),
-        ([_, _], Some((x, each))) => lines(picture, x, Some(each), &quantity.label()),
+        ([x], _) => lines(rows, x, None, &least, ranges),
+        ([_, _], Some((x, each))) => lines(rows, x, Some(each), &least, ranges),
         (columns, _) => {
-            let named = rows.clone().with(&least, quantity.values);
             let (quantity, overlay, view) = (least.as_str(), Overlay::default(), View::Top);
-            let rows = &named;
-            let shown = SweepPicture {
-                rows,
-                grid,
-                scene,
-                until_settled: None,
-                quantity,
-                overlay,
-                view,
-                ranges,
-                draws: "",
-            };
-            map(&shown, (&columns[0], &columns[1]))
+            let (until_settled, draws) = (None, "");
+            let shown =
+                SweepPicture { rows, grid, scene, until_settled, quantity, overlay, view, ranges, draws };
+            map(&shown, (&columns[0], &columns[1]), &[])
         }
     };
-    let names = grid.columns().iter().map(String::as_str);
-    let more: Vec<&str> =
-        ["windows"].into_iter().chain(MELNIKOV).filter(|name| rows.column(name).is_some()).collect();
-    let all = names.chain([&*least, "low", "high"]).chain(more.iter().copied());
-    let mut drawn = Drawn::new(all, &[]);
     let fields = grid.columns().iter().map(String::as_str);
-    let columns = fields.chain(["value", "low", "high"]).chain(more.iter().copied());
-    let columns: Vec<_> = columns.filter_map(|name| rows.column(name).and_then(as_numbers)).collect();
-    for row in 0..rows.rows() {
-        let numbers: Vec<f64> = columns.iter().map(|column| column[row]).collect();
-        drawn.put("threshold", &numbers, &[]);
-    }
-    chart.data = drawn.table();
+    let more = ["windows"].into_iter().chain(MELNIKOV).filter(|name| rows.column(name).is_some());
+    let names: Vec<&str> = fields.chain([&*least, "low", "high"]).chain(more).collect();
+    chart.data = of_rows("threshold", rows, &names, |_| true);
     chart.subtitle = match rows.numbers("probability").and_then(|shares| shares.first()) {
         Some(share) => format!("the value at which {} % of the runs under noise cross", short(100.0 * share)),
-        None => about(onset).to_owned(),
+        None => {
+            let what = match onset {
+                Onset::Release => "the mass is released from the stop that it rests on",
+                Onset::Crossing => "the motion from rest, once it has settled, crosses",
+                Onset::Interwell => "the motion from rest, once it has settled, is interwell",
+            };
+            format!("the least value at which {what}")
+        }
     };
     Ok(chart)
 }
 
-/// What begins at the threshold.
-fn about(onset: Onset) -> &'static str {
-    match onset {
-        Onset::Release => "the least value at which the mass is released from the stop that it rests on",
-        Onset::Crossing => "the least value at which the motion from rest, once it has settled, crosses",
-        Onset::Interwell => {
-            "the least value at which the motion from rest, once it has settled, is interwell"
-        }
-    }
-}
-
-/// The threshold over the field `x`; a line for each value of `series`.
-fn lines(picture: &ThresholdPicture, x: &str, series: Option<&str>, up: &str) -> Chart {
-    let ThresholdPicture { rows, ranges, .. } = *picture;
-    let numbers = |name: &str| rows.numbers(name).unwrap_or_default();
-    let (places, values, low, high) = (numbers(x), numbers("value"), numbers("low"), numbers("high"));
+/// The threshold, which is the column `least`, over the field `x`; a line for each value of `series`.
+fn lines(rows: &Table, x: &str, series: Option<&str>, least: &str, ranges: Ranges) -> Chart {
+    let [places, values, low, high] =
+        [x, least, "low", "high"].map(|name| rows.numbers(name).unwrap_or_default());
     let windows = rows.column("windows").and_then(as_numbers).unwrap_or_default();
     let has_gaps = |row: usize| windows.get(row).is_some_and(|count| *count > 0.0);
     let (undecided, estimated) = (rows.words("undecided"), rows.column("probability").is_some());
@@ -117,20 +84,15 @@ fn lines(picture: &ThresholdPicture, x: &str, series: Option<&str>, up: &str) ->
     let melnikov = MELNIKOV.iter().find_map(|name| rows.numbers(name)).unwrap_or_default();
     let ends = bars.iter().flat_map(|bar| [bar[1], bar[2]]);
     let from_zero = values.iter().copied().chain(ends).chain(melnikov.iter().copied()).chain([0.0]);
-    let upward = PlotAxis::around(from_zero, 0.05, up).or_given(ranges.y);
+    let upward = PlotAxis::around(from_zero, 0.05, &label(rows, least)).or_given(ranges.y);
     let mut panel = Panel::new(swept_axis(rows, x, ranges.x), upward);
-    if !bars.is_empty() {
-        let (role, name) = match estimated {
-            true => (Role::Interval, "95 % interval"),
-            false => (Role::Joined, "undecided between"),
-        };
-        panel.layer(role, name, Marks::Intervals(bars));
-    }
-    let missing = ascending(places, |row| !values[row].is_finite());
-    if !missing.is_empty() {
-        let at = missing.iter().map(|row| places[*row]).collect();
-        panel.layer(Role::Missing, "none in the range", Marks::Ticks(at, Side::Bottom));
-    }
+    let (role, name) = match estimated {
+        true => (Role::Interval, "95 % interval"),
+        false => (Role::Joined, "undecided between"),
+    };
+    panel.layer_if_any(role, name, Marks::Intervals(bars));
+    let missing = ascending(places, |row| !values[row].is_finite()).into_iter().map(|row| places[row]);
+    panel.layer_if_any(Role::Missing, "none in the range", Marks::Ticks(missing.collect(), Side::Bottom));
     let any_gap = (0..rows.rows()).any(has_gaps);
     if any_gap {
         panel.layer(Role::Curve, "no gap found above", Marks::Points(Vec::new()));
