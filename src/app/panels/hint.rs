@@ -1,10 +1,10 @@
 //! Hint line of the first minute: what to try next, and what the last try showed.
 
-use eframe::egui::{Align, Color32, FontFamily, Layout, RichText, Role, Ui, UiBuilder, WidgetInfo, vec2};
+use eframe::egui::{Align, Color32, FontFamily, Layout, RichText, Role, Ui, UiBuilder, vec2};
 
 use crate::app::session::Session;
 use crate::app::ui::style::{BODY, strong_family};
-use crate::app::ui::widgets::fitting;
+use crate::app::ui::widgets::{fitting, tell};
 use crate::app::words::numbers::unbroken;
 use crate::app::words::status::grams;
 use crate::dynamics::EventKind;
@@ -177,8 +177,7 @@ pub fn guide_ui<R>(
         if !heading.is_empty() {
             ui.label(RichText::new(heading).heading().size(size));
         }
-        let label = ui.label(RichText::new(unbroken(text)).size(size).color(color));
-        label.widget_info(|| WidgetInfo::labeled(Role::Label, true, text));
+        tell(&ui.label(RichText::new(unbroken(text)).size(size).color(color)), Role::Label, text);
         answer
     });
     row.inner

@@ -6,8 +6,7 @@ use eframe::egui::{
 };
 
 use crate::app::session::lesson::{OpenLesson, Outcome};
-use crate::app::ui::style::BODY;
-use crate::app::ui::widgets::{close_ui, dialog, dialog_width, prose, prose_ui};
+use crate::app::ui::widgets::{close_ui, dialog_ui, prose, prose_ui};
 use crate::app::words::lesson::{letter, plain, script};
 use crate::app::words::meanings::{GLOSSARY, meaning};
 use crate::scene::Scene;
@@ -41,13 +40,13 @@ pub fn notes_ui(ui: &mut Ui, scene: &Scene, is_changed: bool, bottom: f32) -> bo
     ui.label(RichText::new(heading).heading());
     let width = ui.available_width();
     let fits = |text: &str| {
-        let mut job = prose(ui, text, BODY);
+        let mut job = prose(ui, text);
         job.wrap.max_width = width;
         ui.fonts_mut(|fonts| fonts.layout_job(job)).size().y <= room - HEADING - MORE
     };
     let shown = [2, 1].map(|count| beginning(notes, count)).into_iter().find(|text| fits(text));
     if let Some(text) = shown {
-        prose_ui(ui, text, BODY);
+        prose_ui(ui, text);
     }
     shown != Some(notes) && ui.link("Read on").on_hover_text(hover).clicked()
 }
@@ -61,10 +60,7 @@ fn beginning(text: &str, count: usize) -> &str {
 
 /// Shows the glossary. Returns `false` once it is to be closed.
 pub fn glossary_ui(ui: &Ui) -> bool {
-    let answer = dialog(ui.ctx(), "glossary").show(ui.ctx(), |ui| {
-        ui.set_max_width(dialog_width(ui, 640.0));
-        ui.heading("Glossary");
-        ui.add_space(4.0);
+    let (is_read, is_closed) = dialog_ui(ui, ("glossary", 640.0), ("Glossary", 4.0), |ui| {
         let room = (ui.ctx().content_rect().height() - 130.0).max(80.0);
         ScrollArea::vertical().max_height(room).show(ui, |ui| {
             for word in GLOSSARY {
@@ -77,7 +73,7 @@ pub fn glossary_ui(ui: &Ui) -> bool {
         close_ui(ui)
     });
     let toggled = ui.input_mut(|input| input.consume_key(Modifiers::NONE, Key::F2));
-    !(answer.inner || answer.should_close() || toggled)
+    !(is_read || is_closed || toggled)
 }
 
 /// What was done in the lecturer's notes.

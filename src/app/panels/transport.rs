@@ -9,7 +9,7 @@ use eframe::egui::{
 use crate::app::session::Session;
 use crate::app::session::player::{Goal, SPEEDS};
 use crate::app::ui::style::Style;
-use crate::app::ui::widgets::{Icon, arrows, icon_button_ui, polygon};
+use crate::app::ui::widgets::{Icon, arrows, icon_button_ui, polygon, tell};
 use crate::app::words::meanings::explained;
 use crate::app::words::status::{Kind, speed};
 use crate::dynamics::{Event, EventKind};
@@ -108,7 +108,6 @@ fn two_lines_ui(ui: &mut Ui, session: &mut Session, style: &Style, (note, covere
     }
 }
 
-/// The time that is shown.
 fn clock_ui(ui: &mut Ui, session: &Session) {
     ui.set_min_width(TIME.0);
     ui.label(format!("{:.3} s", session.player.time()));
@@ -125,7 +124,7 @@ fn speed_ui(ui: &mut Ui, session: &mut Session) {
         }
     });
     let response = combo.response.on_hover_text("Speed of the motion on the screen (keys 1 to 7)");
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, "speed"));
+    tell(&response, egui::Role::ComboBox, "speed");
 }
 
 /// The row of an event's sign: crossings above releases above the bar, impacts below it.

@@ -1,20 +1,14 @@
 //! View of the last change: the scene and its motion before it and now.
 
-use eframe::egui::{self, Button, RichText, ScrollArea, Ui};
+use eframe::egui::{Button, RichText, Ui};
 
 use crate::app::session::pins::{FULL, PinKind};
 
-use super::ViewContext;
 use super::table::{Column, table_ui};
+use super::{ViewContext, page_ui};
 
 pub fn before_now_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
-    let style = context.style;
-    let ground = egui::Frame::new().fill(style.ground()).inner_margin(10.0);
-    ground.show(ui, |ui| {
-        ui.set_min_size(ui.available_size());
-        // scrolls where not all rows fit
-        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| card_ui(ui, context));
-    });
+    page_ui(ui, |ui| card_ui(ui, context));
 }
 
 fn card_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {

@@ -1,60 +1,49 @@
 //! Table of the present motion and the pinned ones, with differences.
 
 use eframe::egui::TextWrapMode::Extend;
-use eframe::egui::{self, Button, RichText, ScrollArea, Ui};
+use eframe::egui::{self, Button, RichText, Ui};
 
 use crate::app::session::Card;
 use crate::app::session::pins::{FULL, Pin, PinKind};
 use crate::scene::Stops;
 
 use super::table::{Column, WIDE_COLUMN, table_ui};
-use super::{ViewContext, empty_ui};
+use super::{ViewContext, empty_ui, page_ui};
 
-/// An action on a pin.
 enum PinAction {
     TakeBack(char),
     Unpin(char),
 }
 
 pub fn compare_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
-    let style = context.style;
-    let ground = egui::Frame::new().fill(style.ground()).inner_margin(10.0);
-    ground.show(ui, |ui| {
-        ui.set_min_size(ui.available_size());
-        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-            buttons_ui(ui, context);
-            if context.session.pins.all().is_empty() {
-                let text = "Nothing is pinned. A pinned motion goes on beside the present one, dashed, with \
-                            the drive in step.";
-                let below = ui.available_rect_before_wrap();
-                empty_ui(ui, &style, below, text);
-                return;
-            }
-            match pinned_ui(ui, context) {
-                Some(PinAction::TakeBack(letter)) => _ = context.session.take_back(letter),
-                Some(PinAction::Unpin(letter)) => context.session.pins.unpin(letter),
-                None => {}
-            }
-        });
+    page_ui(ui, |ui| {
+        buttons_ui(ui, context);
+        if context.session.pins.all().is_empty() {
+            let text = "Nothing is pinned. A pinned motion goes on beside the present one, dashed, with the \
+                        drive in step.";
+            let below = ui.available_rect_before_wrap();
+            return empty_ui(ui, &context.style, below, text);
+        }
+        match pinned_ui(ui, context) {
+            Some(PinAction::TakeBack(letter)) => _ = context.session.take_back(letter),
+            Some(PinAction::Unpin(letter)) => context.session.pins.unpin(letter),
+            None => {}
+        }
     });
 }
 
-/// Buttons that pin a motion.
 fn buttons_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let full = context.session.pins.is_full();
     let stops = match context.session.scene().stops {
         Stops::None => "With stops",
         _ => "Without stops",
     };
+    let twin = "From the start again, with a second mass that begins a micrometre beside it. The view \
+                Distance shows how far the two are apart.";
     let all = [
         ("Pin", "The motion as it is, to change the scene beside it (K).", PinKind::Motion),
         (stops, "The motion from here on with its stops switched the other way.", PinKind::OtherStops),
-        (
-            "Twin",
-            "From the start again, with a second mass that begins a micrometre beside it. The view Distance \
-             shows how far the two are apart.",
-            PinKind::Twin,
-        ),
+        ("Twin", twin, PinKind::Twin),
     ];
     ui.horizontal_wrapped(|ui| {
         for (name, hover, kind) in all {

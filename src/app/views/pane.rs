@@ -77,7 +77,6 @@ pub struct Pane {
 }
 
 impl Pane {
-    /// Paints layers over a panel.
     pub fn draw(&self, painter: &Painter, style: &Style, panel: usize, layers: &[Layer]) {
         let Some(frame) = self.painting.frames.get(panel) else { return };
         let (mesh, _) =
@@ -109,27 +108,29 @@ impl Pane {
         Some((value(&frame.x, across), value(&frame.y, (rect.bottom() - at.y) / rect.height())))
     }
 
+    /// The values of the first panel's axes under the pointer, if that is in its frame.
+    pub fn pointed(&self) -> Option<(f64, f64)> {
+        let frame = self.frame(0)?;
+        self.values_at(0, self.response.hover_pos().filter(|at| frame.contains(*at))?)
+    }
+
     /// The place on the screen of a point of a panel.
     pub fn place(&self, panel: usize, point: (f64, f64)) -> Option<Pos2> {
         Some(self.painting.place(self.painting.frames.get(panel)?.place(point)))
     }
 
-    /// The frame of a panel on the screen.
     pub fn frame(&self, panel: usize) -> Option<Rect> {
         Some(self.painting.rect(self.painting.frames.get(panel)?.area))
     }
 
-    /// The axes of a panel.
     pub fn axes(&self, panel: usize) -> Option<[&PlotAxis; 2]> {
         self.painting.frames.get(panel).map(|frame| [&frame.x, &frame.y])
     }
 
-    /// The rectangle of its surface on the screen.
     pub fn surface(&self) -> Option<Rect> {
         Some(self.painting.rect(self.painting.surface.as_ref()?.area))
     }
 
-    /// The place on the screen of a point of its surface.
     pub fn place_on_surface(&self, point: (f64, f64, f64)) -> Option<Pos2> {
         Some(self.painting.place(self.painting.surface.as_ref()?.point(point)))
     }
@@ -251,7 +252,6 @@ pub fn pane_ui(
     pane
 }
 
-/// Paints `chart` in a place.
 pub fn fresh_pane_ui(ui: &mut Ui, style: &Style, place: impl Into<Place>, chart: Chart) -> Pane {
     let place = place.into();
     let painting = Arc::new(Painting::new(ui, style, &place, &chart));

@@ -64,7 +64,6 @@ impl Row {
         self.texts.iter().filter(|text| *text != UNKNOWN)
     }
 
-    /// Whether two known values differ.
     fn differs(&self) -> bool {
         self.known().any(|text| Some(text) != self.known().next())
     }
@@ -204,7 +203,13 @@ fn scene_rows(scenes: &[Option<&Scene>]) -> Vec<Row> {
         let texts = scenes.iter().map(|scene| scene.map_or_else(|| UNKNOWN.to_owned(), bare));
         Row::new(name, unit, texts.collect())
     };
-    let mut rows = vec![row("shaking", "", shaking), row("stops", "mm", stops)];
+    let mut rows = vec![row("shaking", "", |scene| shaking(scene).0), row("stops", "mm", stops)];
+    // the value of the damping has another row
+    let damping = |scene: &Scene| match scene.damping {
+        Damping::None => "none".to_owned(),
+        Damping::Ratio(_) => "by ratio".to_owned(),
+        Damping::Coefficient { .. } => "by coefficient".to_owned(),
+    };
     let others = [
         row("damping", "", damping),
         row("mechanism", "", |scene| mechanism_name(&scene.mechanism)),
@@ -228,11 +233,8 @@ fn scene_rows(scenes: &[Option<&Scene>]) -> Vec<Row> {
         // numbers that a row above contains already
         let in_row_above = match path.split_once('.') {
             Some(("excitation", number)) => {
-                shaking_differs
-                    && scenes
-                        .iter()
-                        .flatten()
-                        .all(|scene| field.get(scene).is_none() || in_shaking(&scene.excitation, number))
+                let is_in = |scene: &&Scene| field.get(scene).is_none() || shaking(scene).1.contains(&number);
+                shaking_differs && scenes.iter().flatten().all(is_in)
             }
             Some(("stops", number)) => stops_differ && number.ends_with("_mm") && number != "radius_mm",
             Some(("start", _)) => start_differs,
@@ -310,7 +312,6 @@ fn number_rows(columns: &[Column], now: usize, with_threshold: bool) -> Vec<Row>
     rows
 }
 
-/// A value less the present one, as text.
 fn difference(value: f64, present: f64, decimals: &dyn Fn(f64) -> usize) -> String {
     let decimals = decimals(value.abs().max(present.abs()));
     let text = format!("{:+.decimals$}", value - present).replace('-', "\u{2212}");
@@ -325,45 +326,35 @@ fn reach_mm(card: &Card, run: &Summary) -> Option<String> {
     run.max_abs_x.map(|reach| mm_beside(reach, stops.into()))
 }
 
-/// Whether the row of the shaking contains this number.
-fn in_shaking(excitation: &Excitation, number: &str) -> bool {
-    let all: &[&str] = match excitation {
-        Excitation::Constant { .. } => &["accel_g"],
-        Excitation::Sine { .. } => &["amplitude_g", "frequency_hz"],
-        Excitation::Cosine { .. } => &["amplitude_m_per_s2", "frequency_rad_per_s"],
-        Excitation::Force { .. } => &["amplitude_n", "frequency_rad_per_s"],
-        Excitation::AmplitudeRamp { .. } => &["from_g", "to_g"],
-        Excitation::Chirp { .. } => &["amplitude_g", "from_hz", "to_hz"],
-        Excitation::Noise { .. } => &["rms_g"],
-        _ => &[],
-    };
-    all.contains(&number)
-}
-
-pub(super) fn shaking(scene: &Scene) -> String {
+/// The shaking in words, and the fields whose numbers these contain.
+pub(super) fn shaking(scene: &Scene) -> (String, &'static [&'static str]) {
     // a difference that this rounding hides has another row, see `scene_rows`
-    let rounded = |value: f64| format!("{value:.3e}").parse().unwrap_or(value);
-    let g = |value: f64| shown(rounded(value), 2);
-    let hz = |value: f64| shown(rounded(value), 1);
+    let rounded = |value: &f64| format!("{value:.3e}").parse().unwrap_or(*value);
+    let g = |value: &f64| shown(rounded(value), 2);
+    let hz = |value: &f64| shown(rounded(value), 1);
     match &scene.excitation {
-        Excitation::None => "none".to_owned(),
-        Excitation::Constant { accel_g } => format!("{} g, constant", g(*accel_g)),
-        Excitation::Sine { amplitude_g, frequency_hz, .. } => {
-            format!("{} g, {} Hz", g(*amplitude_g), hz(*frequency_hz))
+        Excitation::None => ("none".to_owned(), &[]),
+        Excitation::Constant { accel_g } => (format!("{} g, constant", g(accel_g)), &["accel_g"]),
+        Excitation::Sine { amplitude_g, frequency_hz: f, .. } => {
+            (format!("{} g, {} Hz", g(amplitude_g), hz(f)), &["amplitude_g", "frequency_hz"])
         }
-        Excitation::Cosine { amplitude_m_per_s2, frequency_rad_per_s, .. } => {
-            format!("{} m/s\u{b2}, {} rad/s", g(*amplitude_m_per_s2), g(*frequency_rad_per_s))
+        Excitation::Cosine { amplitude_m_per_s2: a, frequency_rad_per_s: f, .. } => {
+            let words = format!("{} m/s\u{b2}, {} rad/s", g(a), g(f));
+            (words, &["amplitude_m_per_s2", "frequency_rad_per_s"])
         }
-        Excitation::Force { amplitude_n, frequency_rad_per_s, .. } => {
-            format!("{} N, {} rad/s", g(*amplitude_n), g(*frequency_rad_per_s))
+        Excitation::Force { amplitude_n: a, frequency_rad_per_s: f, .. } => {
+            (format!("{} N, {} rad/s", g(a), g(f)), &["amplitude_n", "frequency_rad_per_s"])
         }
-        Excitation::AmplitudeRamp { from_g, to_g, .. } => format!("{} to {} g", g(*from_g), g(*to_g)),
+        Excitation::AmplitudeRamp { from_g, to_g, .. } => {
+            (format!("{} to {} g", g(from_g), g(to_g)), &["from_g", "to_g"])
+        }
         Excitation::Chirp { from_hz, to_hz, amplitude_g, .. } => {
-            format!("{} g, {} to {} Hz", g(*amplitude_g), hz(*from_hz), hz(*to_hz))
+            let words = format!("{} g, {} to {} Hz", g(amplitude_g), hz(from_hz), hz(to_hz));
+            (words, &["amplitude_g", "from_hz", "to_hz"])
         }
-        Excitation::Noise { rms_g, .. } => format!("noise, {} g", g(*rms_g)),
-        Excitation::Recorded { .. } => "recorded".to_owned(),
-        Excitation::Sum(terms) => format!("sum of {}", terms.len()),
+        Excitation::Noise { rms_g, .. } => (format!("noise, {} g", g(rms_g)), &["rms_g"]),
+        Excitation::Recorded { .. } => ("recorded".to_owned(), &[]),
+        Excitation::Sum(terms) => (format!("sum of {}", terms.len()), &[]),
     }
 }
 
@@ -384,16 +375,6 @@ pub(super) fn stops(scene: &Scene) -> String {
     }
 }
 
-/// The kind of damping; its value has another row.
-fn damping(scene: &Scene) -> String {
-    match scene.damping {
-        Damping::None => "none",
-        Damping::Ratio(_) => "by ratio",
-        Damping::Coefficient { .. } => "by coefficient",
-    }
-    .to_owned()
-}
-
 fn start(scene: &Scene) -> String {
     match scene.start {
         Start::Rest => "at rest".to_owned(),
@@ -405,10 +386,7 @@ fn start(scene: &Scene) -> String {
 
 /// Symbol and name of the regime; if `small`, the name stands below the symbol in small text.
 fn regime_ui(ui: &mut Ui, context: &ViewContext<'_>, settled: Option<&Summary>, small: bool) {
-    let Some(settled) = settled else {
-        ui.label("-");
-        return;
-    };
+    let Some(settled) = settled else { return drop(ui.label(UNKNOWN)) };
     if settled.outcome != Outcome::Done {
         let text = RichText::new("the run ended early");
         ui.add(Label::new(if small { text.font(context.style.small()) } else { text }).wrap());

@@ -7,7 +7,7 @@ use eframe::egui::{self, Button, ComboBox, Grid, Key, RichText, TextEdit, Ui};
 use crate::app::export::figure::{FigureOrder, Place, Subject, round_times};
 use crate::app::session::Session;
 use crate::app::task::Background;
-use crate::app::ui::widgets::{dialog, dialog_width, primary};
+use crate::app::ui::widgets::{dialog_ui, primary};
 use crate::app::views::{Memory, View, stretch};
 use crate::output::{Format, RunPanel, Sheet, SheetText};
 use crate::system::files;
@@ -104,9 +104,8 @@ impl Figures {
     fn order(&self, view: View, session: &Session, memory: &Memory) -> Result<FigureOrder, String> {
         let path = PathBuf::from(self.path.trim());
         let subject = self.subject(view, session, memory)?;
-        let format = Format::of(&path).map_err(|_| {
-            "The name ends in .pdf, .svg or .png, which says what kind of file it is.".to_owned()
-        })?;
+        let endings = "The name ends in .pdf, .svg or .png, which says what kind of file it is.";
+        let format = Format::of(&path).map_err(|_| endings.to_owned())?;
         let Self { width, font, titled, .. } = self;
         let text = SheetText { width_mm: width, height_mm: None, font_pt: font, dpi: None, titled: *titled };
         let sheet = Sheet::read(&text, format == Format::Png).map_err(|error| {
@@ -139,13 +138,13 @@ impl Figures {
             View::Compare | View::Distance | View::BeforeNow => {
                 Err("There is no figure of this view: it shows several scenes, and a figure one.".to_owned())
             }
-            View::Accuracy => {
-                Err("There is no figure of Accuracy: its processor times differ from run to run.".to_owned())
+            _ => {
+                let why = match view {
+                    View::Accuracy => "its processor times differ from run to run",
+                    _ => "File, Save a picture of the window has it as it stands",
+                };
+                Err(format!("There is no figure of {}: {why}.", view.name()))
             }
-            _ => Err(format!(
-                "There is no figure of {}: File, Save a picture of the window has it as it stands.",
-                view.name()
-            )),
         }
     }
 
@@ -222,14 +221,11 @@ enum Action {
 
 impl Figures {
     fn ui(&mut self, ui: &Ui, view: View, session: &Session, memory: &Memory) -> Option<Action> {
-        let answer = dialog(ui.ctx(), "figure").show(ui.ctx(), |ui| {
-            ui.set_width(dialog_width(ui, 560.0));
-            ui.heading("Save a figure");
-            ui.add_space(4.0);
+        let (action, is_closed) = dialog_ui(ui, ("figure", 560.0), ("Save a figure", 4.0), |ui| {
+            ui.set_min_width(ui.available_width());
             self.contents_ui(ui, view, session, memory)
         });
-        let closed = answer.should_close().then_some(Action::Close);
-        answer.inner.or(closed)
+        action.or(is_closed.then_some(Action::Close))
     }
 
     fn contents_ui(&mut self, ui: &mut Ui, view: View, session: &Session, memory: &Memory) -> Option<Action> {
@@ -369,8 +365,7 @@ impl Window {
             }
             (_, Err(problem)) => self.figures.problem = Some(problem),
             (Action::Copy, Ok(order)) => {
-                ui.ctx().copy_text(order.command_line());
-                self.messages.notify("Copied: the command line of this figure");
+                self.messages.copy(ui.ctx(), order.command_line(), "the command line of this figure");
             }
             (Action::Save, Ok(order)) => {
                 self.figures.problem = None;

@@ -159,8 +159,8 @@ impl Tiling {
         self.tab_after(None).is_some()
     }
 
-    /// The next tab and its group: that of `view`, or else the first group with several tabs.
-    fn tab_after(&self, view: Option<View>) -> Option<(TileId, TileId)> {
+    /// The next tab in the group of `view`, or else in the first group with several tabs.
+    fn tab_after(&self, view: Option<View>) -> Option<TileId> {
         let tiles = &self.tree.tiles;
         view.into_iter().chain(View::ALL).find_map(|view| {
             let place = tiles.parent_of(tiles.find_pane(&view)?)?;
@@ -168,13 +168,18 @@ impl Tiling {
             let shown: Vec<TileId> =
                 tabs.children.iter().copied().filter(|id| tiles.is_visible(*id)).collect();
             let active = shown.iter().position(|id| Some(*id) == tabs.active)?;
-            (shown.len() > 1).then(|| (place, shown[(active + 1) % shown.len()]))
+            (shown.len() > 1).then(|| shown[(active + 1) % shown.len()])
         })
     }
 
     /// Brings the next tab to the front, in the group of `view` or else in the first group with several tabs.
     pub fn next_tab(&mut self, view: Option<View>) {
-        if let Some((place, tab)) = self.tab_after(view)
+        self.bring_to_front(self.tab_after(view));
+    }
+
+    fn bring_to_front(&mut self, tab: Option<TileId>) {
+        if let Some(tab) = tab
+            && let Some(place) = self.tree.tiles.parent_of(tab)
             && let Some(Tile::Container(Container::Tabs(tabs))) = self.tree.tiles.get_mut(place)
         {
             tabs.set_active(tab);
@@ -204,12 +209,8 @@ impl Tiling {
         self.tree.simplify(&simplification());
         let mut behavior = Behavior { titles: self.titles(), context, fill, chosen: None };
         self.tree.ui(&mut behavior, ui);
-        if let Some(id) = behavior.chosen.and_then(|view| self.tree.tiles.find_pane(&view))
-            && let Some(place) = self.tree.tiles.parent_of(id)
-            && let Some(Tile::Container(Container::Tabs(tabs))) = self.tree.tiles.get_mut(place)
-        {
-            tabs.set_active(id);
-        }
+        let chosen = behavior.chosen;
+        self.bring_to_front(chosen.and_then(|view| self.tree.tiles.find_pane(&view)));
     }
 
     /// The titles in the card of each view that is in front.
@@ -247,9 +248,9 @@ impl egui_tiles::Behavior<View> for Behavior<'_, '_> {
 
     fn pane_ui(&mut self, ui: &mut Ui, id: TileId, view: &mut View) -> UiResponse {
         let titles = self.titles.get(&id).map_or(&[][..], Vec::as_slice);
-        let answer = card_ui(ui, ui.max_rect(), titles, *view, self.context);
-        self.chosen = answer.chosen.or(self.chosen);
-        if answer.fills {
+        let (chosen, fills) = card_ui(ui, titles, *view, self.context);
+        self.chosen = chosen.or(self.chosen);
+        if fills {
             *self.fill = Some(*view);
         }
         UiResponse::None

@@ -4,6 +4,7 @@
 
 use std::sync::Arc;
 
+use eframe::CreationContext;
 use eframe::egui::{self, CentralPanel, Panel, RichText, Ui};
 
 use crate::app::panels::hint::guide_ui;
@@ -12,7 +13,8 @@ use crate::app::panels::{controls, notes, transport};
 use crate::app::session::CannotRun;
 use crate::app::session::lesson::Records;
 use crate::app::ui::settings::Settings;
-use crate::app::ui::style::{self, CONTROL, GAP, Style};
+pub use crate::app::ui::style::install as prepare;
+use crate::app::ui::style::{CONTROL, GAP, Style};
 use crate::app::ui::widgets::panel_frame;
 use crate::app::views::{Drawn, ViewContext};
 use crate::app::words::lesson::numbered;
@@ -220,31 +222,23 @@ impl Window {
 
     /// The controls: in a compact window a row, else a column with the notes. Returns the chosen command.
     fn controls_ui(&mut self, ui: &mut Ui, compact: bool) -> Option<Command> {
-        if compact && self.tiling.room() == Room::Narrow {
-            let rows = panel_frame(12, AROUND_BAR.1);
-            Panel::top("controls rows").frame(rows).show_separator_line(false).show(ui, |ui| {
-                controls::rows_ui(ui, &mut self.session, &mut self.more);
-            });
-            if self.more {
-                let below = Panel::bottom("more").frame(rows).show_separator_line(false);
-                below.resizable(false).exact_size(MORE).show(ui, |ui| {
-                    let (session, width) = (&mut self.session, ui.available_width() - 100.0);
-                    egui::ScrollArea::vertical().show(ui, |ui| controls::beside_ui(ui, session, width));
-                });
-            }
-            return None;
-        }
         if compact {
-            let line = panel_frame(12, AROUND_BAR.1);
-            Panel::top("controls row").frame(line).show_separator_line(false).show(ui, |ui| {
+            let (line, is_narrow) = (panel_frame(12, AROUND_BAR.1), self.tiling.room() == Room::Narrow);
+            let row = Panel::top(if is_narrow { "controls rows" } else { "controls row" }).frame(line);
+            row.show_separator_line(false).show(ui, |ui| {
+                if is_narrow {
+                    return controls::rows_ui(ui, &mut self.session, &mut self.more);
+                }
                 ui.set_height(CONTROL);
                 controls::row_ui(ui, &mut self.session, &mut self.more);
             });
             if self.more {
-                let column = Panel::right("more").frame(line).show_separator_line(false);
-                column.resizable(false).exact_size(MORE).show(ui, |ui| {
+                let panel = if is_narrow { Panel::bottom("more") } else { Panel::right("more") };
+                let panel = panel.frame(line).show_separator_line(false).resizable(false);
+                panel.exact_size(MORE).show(ui, |ui| {
+                    let width = if is_narrow { ui.available_width() - 100.0 } else { 150.0 };
                     let session = &mut self.session;
-                    egui::ScrollArea::vertical().show(ui, |ui| controls::beside_ui(ui, session, 150.0));
+                    egui::ScrollArea::vertical().show(ui, |ui| controls::beside_ui(ui, session, width));
                 });
             }
             return None;
@@ -339,7 +333,7 @@ impl Window {
             return;
         };
         let title = Title { view, id: egui::Id::unique("title of the window") };
-        if card_ui(ui, ui.max_rect(), &[title], view, &mut context).fills {
+        if card_ui(ui, &[title], view, &mut context).1 {
             self.filled = None;
         }
     }
@@ -393,11 +387,7 @@ impl eframe::App for Window {
 
 /// The window on a scene, with what was kept from the last time; the first time it is `dark` or light. If the
 /// scene cannot be run, the window says why and opens on the first preset.
-pub fn begin(
-    creation: &eframe::CreationContext<'_>,
-    spec: Option<&str>,
-    dark: bool,
-) -> Result<Window, CannotRun> {
+pub fn begin(creation: &CreationContext<'_>, spec: Option<&str>, dark: bool) -> Result<Window, CannotRun> {
     prepare(&creation.egui_ctx);
     let kept = creation.storage.and_then(|storage| eframe::get_value(storage, eframe::APP_KEY));
     let settings = kept.unwrap_or(Settings { dark, ..Settings::default() });
@@ -408,11 +398,6 @@ pub fn begin(
     }
     window.remember_file();
     Ok(window)
-}
-
-/// Installs fonts and spacing; to be called once for a context.
-pub fn prepare(ctx: &egui::Context) {
-    style::install(ctx);
 }
 
 /// Input that follows the release of a pointer button, deferred to the next frame.

@@ -164,25 +164,22 @@ impl Window {
             Ok(link) => {
                 #[cfg(target_arch = "wasm32")]
                 let link = format!("{}{link}", crate::system::page::address());
-                ctx.copy_text(link);
-                self.messages.notify("Copied: a link that opens this scene");
+                self.messages.copy(ctx, link, "a link that opens this scene");
             }
             Err(error) => self.messages.alert("This scene has no link", error.to_string()),
         }
     }
 
     fn copy_command(&mut self, ctx: &egui::Context) {
-        let Some((line, runs)) = export::command_line(&self.session) else { return self.alert_unnamed() };
-        ctx.copy_text(line);
-        self.messages.notify(format!("Copied: the command line of {runs}"));
+        match export::command_line(&self.session) {
+            Some((line, runs)) => self.messages.copy(ctx, line, &format!("the command line of {runs}")),
+            None => self.alert_unnamed(),
+        }
     }
 
     fn copy_map_command(&mut self, ctx: &egui::Context) {
         match export::map_command_line(&self.session) {
-            Some(line) => {
-                ctx.copy_text(line);
-                self.messages.notify("Copied: the command line of the map");
-            }
+            Some(line) => self.messages.copy(ctx, line, "the command line of the map"),
             None if self.session.map.map().is_some() => self.alert_unnamed(),
             None => {}
         }
@@ -221,13 +218,9 @@ impl Window {
 
     fn hold_axes(&mut self) {
         let view = self.active_view();
-        if view.has_axes() {
-            let what = match self.memory.hold_axes(view) {
-                true => "held: L again lets go of them",
-                false => "by themselves again",
-            };
-            self.messages.notify(format!("{}: its axes are {what}", view.name()));
-        }
+        let is_held = self.memory.hold_axes(view);
+        let what = if is_held { "held: L again lets go of them" } else { "by themselves again" };
+        self.messages.notify(format!("{}: its axes are {what}", view.name()));
     }
 
     /// The view that keys act on: it fills the window, is under the pointer or has the focus.

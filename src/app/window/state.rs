@@ -89,19 +89,18 @@ impl Window {
     /// A window on a scene file, a built-in scene or a lesson file, or with a file of measured data over the
     /// first preset. Without `spec` it opens the first preset.
     pub fn open(spec: Option<&str>, settings: Settings, wake: Wake) -> Result<Self, CannotRun> {
+        let lesson = spec.filter(|spec| lessons::is_lesson(spec)).map(lessons::read).transpose()?;
+        let measured = spec.map(Path::new).filter(|path| lesson.is_none() && is_measured(path));
         let first = PRESETS.first().map_or("paper", |preset| preset.name);
-        if let Some(spec) = spec.filter(|spec| lessons::is_lesson(spec)) {
-            let lesson = lessons::read(spec)?;
-            let mut window = Self::with_editor(Editor::open(first)?, settings, wake)?;
+        let scene = spec.filter(|_| lesson.is_none() && measured.is_none()).unwrap_or(first);
+        let mut window = Self::with_editor(Editor::open(scene)?, settings, wake)?;
+        if let Some(lesson) = lesson {
             window.begin_lesson(lesson)?;
-            return Ok(window);
         }
-        if let Some(path) = spec.map(Path::new).filter(|path| is_measured(path)) {
-            let mut window = Self::with_editor(Editor::open(first)?, settings, wake)?;
+        if let Some(path) = measured {
             window.open_measured(path);
-            return Ok(window);
         }
-        Self::with_editor(Editor::open(spec.unwrap_or(first))?, settings, wake)
+        Ok(window)
     }
 
     /// Like [`Self::open`]; if that fails, a window on the first preset with an alert that says why.

@@ -37,10 +37,10 @@ const LOAD: f32 = 34.0;
 const SCALE_ROOM: f32 = 67.0;
 
 impl Pen<'_> {
-    pub(super) fn transducer(&self, transducer: &Transducer, shapes: &mut Vec<Shape>) {
+    pub(super) fn transducer(&self, shapes: &mut Vec<Shape>) {
         let Places { rect, bottom, body, zero, ref below } = *self.places;
         let height = (bottom - body.bottom() - 12.0).clamp(8.0, 24.0);
-        let (name, part, coupled, (load, unit), words) = match *transducer {
+        let (name, part, coupled, (load, unit), words) = match self.parts.transducer {
             Transducer::None => return,
             Transducer::Electromagnetic { coupling_v_s_per_m, load_ohm, .. } => {
                 let part = self.coil(shapes);
@@ -86,7 +86,7 @@ impl Pen<'_> {
         let length = 2.0 * WINDING.0.min(WINDING.1 * rect.width());
         let row = |top: f32| Rect::from_center_size(pos2(zero, top + 0.5 * WOUND), vec2(length, WOUND));
         let pole = POLE.min(0.5 * (bottom - body.bottom() - CLEAR - 2.0 * WOUND) - 2.5);
-        let hangs = pole >= MIN_POLE && !self.has_magnets;
+        let hangs = pole >= MIN_POLE && !self.parts.has_magnets();
         let rows = match hangs {
             true => [body.bottom() + CLEAR, body.bottom() + CLEAR + WOUND + 2.0 * pole + 3.0],
             false => [bottom - 2.0 * WOUND - 1.0, bottom - WOUND - 1.0],
@@ -139,8 +139,8 @@ impl Pen<'_> {
         let (text, words) = match value {
             0.0 => {
                 wire(&[pos2(begin, y[0]), pos2(begin + LOAD, y[0])]);
-                let words = "A short circuit: the load is 0 and takes no power.";
-                ("short circuit".to_owned(), words.to_owned())
+                let words = "A short circuit: the load is 0 and takes no power.".to_owned();
+                ("short circuit".to_owned(), words)
             }
             f64::INFINITY => {
                 for x in [begin, begin + LOAD] {
@@ -152,9 +152,8 @@ impl Pen<'_> {
             value => {
                 shapes.push(Shape::rect_filled(resistor, 0.0, self.style.ground()));
                 shapes.push(Shape::rect_stroke(resistor, 0.0, self.thin(), StrokeKind::Inside));
-                let text = format!("load {} {unit}", short(value));
-                let words = format!("The load, {} {unit}, which takes the power.", short(value));
-                (text, words)
+                let value = short(value);
+                (format!("load {value} {unit}"), format!("The load, {value} {unit}, which takes the power."))
             }
         };
         let beside = (pos2(end + 6.0, y[1] + 2.0), Align2::LEFT_BOTTOM);
