@@ -118,49 +118,47 @@ pub fn lecturer_ui(ctx: &egui::Context, lesson: &OpenLesson, builder: ViewportBu
 fn lecturer_notes_ui(ui: &mut Ui, open: &OpenLesson) -> Option<LessonAction> {
     let lesson = open.lesson();
     let mut action = None;
-    ScrollArea::vertical().auto_shrink(false).max_height((ui.available_height() - 8.0).max(60.0)).show(
-        ui,
-        |ui| {
-            ui.label(RichText::new(format!("{}, {} min", lesson.title, lesson.minutes)).heading());
-            ui.label(&lesson.goal);
-            let part_ui = |ui: &mut Ui, heading: &str, text: &str| {
-                if !text.trim().is_empty() {
-                    ui.add_space(6.0);
-                    ui.label(RichText::new(heading).heading());
-                    ui.label(plain(text));
-                }
-            };
-            part_ui(ui, "What students think before", &lesson.misconception);
-            if !lesson.lecturer.trim().is_empty() {
+    let room = (ui.available_height() - 8.0).max(60.0);
+    ScrollArea::vertical().auto_shrink(false).max_height(room).show(ui, |ui| {
+        ui.label(RichText::new(format!("{}, {} min", lesson.title, lesson.minutes)).heading());
+        ui.label(&lesson.goal);
+        let part_ui = |ui: &mut Ui, heading: &str, text: &str| {
+            if !text.trim().is_empty() {
                 ui.add_space(6.0);
-                ui.label(RichText::new("What to do").heading());
-                script_ui(ui, open);
+                ui.label(RichText::new(heading).heading());
+                ui.label(plain(text));
             }
-            let heading = format!("Step {} of {}", open.number() + 1, lesson.steps.len());
-            part_ui(ui, &heading, open.step().text());
-            if open.is_covering() {
-                ui.horizontal(|ui| {
-                    ui.label("Votes");
-                    action = votes_ui(ui, open);
-                    if ui.button("Reveal to the class").clicked() {
-                        action = Some(LessonAction::Reveal);
-                    }
-                });
-            }
-            match (open.step(), open.outcome()) {
-                (Step::Predict { .. }, Outcome::Holds(option)) => {
-                    let text = format!("{}: {}", letter(option), open.options()[option].text);
-                    part_ui(ui, "What holds", &text);
+        };
+        part_ui(ui, "What students think before", &lesson.misconception);
+        if !lesson.lecturer.trim().is_empty() {
+            ui.add_space(6.0);
+            ui.label(RichText::new("What to do").heading());
+            script_ui(ui, open);
+        }
+        let heading = format!("Step {} of {}", open.number() + 1, lesson.steps.len());
+        part_ui(ui, &heading, open.step().text());
+        if open.is_covering() {
+            ui.horizontal(|ui| {
+                ui.label("Votes");
+                action = votes_ui(ui, open);
+                if ui.button("Reveal to the class").clicked() {
+                    action = Some(LessonAction::Reveal);
                 }
-                (Step::Do { hint, .. }, _) => {
-                    part_ui(ui, "Hint", hint.as_deref().unwrap_or_default());
-                    let solution = open.solution().iter().map(|(field, value)| format!("{field} = {value}"));
-                    part_ui(ui, "A solution", &solution.collect::<Vec<_>>().join("\n"));
-                }
-                _ => {}
+            });
+        }
+        match (open.step(), open.outcome()) {
+            (Step::Predict { .. }, Outcome::Holds(option)) => {
+                let text = format!("{}: {}", letter(option), open.options()[option].text);
+                part_ui(ui, "What holds", &text);
             }
-        },
-    );
+            (Step::Do { hint, .. }, _) => {
+                part_ui(ui, "Hint", hint.as_deref().unwrap_or_default());
+                let solution = open.solution().iter().map(|(field, value)| format!("{field} = {value}"));
+                part_ui(ui, "A solution", &solution.collect::<Vec<_>>().join("\n"));
+            }
+            _ => {}
+        }
+    });
     action
 }
 

@@ -166,7 +166,6 @@ pub fn arrows(ui: &Ui, id: egui::Id) -> f64 {
     })
 }
 
-/// The icon of a button.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Icon {
     Play,

@@ -1,10 +1,11 @@
-//! Table of the present motion and the pinned ones, with differences.
+//! Tables of the present motion: beside the one before the last change, and beside the pinned ones.
 
 use eframe::egui::TextWrapMode::Extend;
 use eframe::egui::{self, Button, RichText, Ui};
 
 use crate::app::session::Card;
 use crate::app::session::pins::{FULL, Pin, PinKind};
+use crate::app::ui::widgets::tell;
 use crate::scene::Stops;
 
 use super::table::{Column, WIDE_COLUMN, table_ui};
@@ -15,6 +16,36 @@ enum PinAction {
     Unpin(char),
 }
 
+/// Draws the view of the last change.
+pub fn before_now_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
+    let (style, is_full) = (context.style, context.session.pins.is_full());
+    let before = context.session.before_card().cloned();
+    let is_first = before.is_none();
+    let column = |card| Column { card, ended: None, differs: false };
+    let columns = [before, Some(context.session.now_card())].map(column);
+    page_ui(ui, |ui| {
+        let mut pin = false;
+        table_ui(ui, context, (&columns, 1), &mut |ui, column, _| match column {
+            None => {
+                let hover = "This motion goes on, dashed, beside the one that you change from here on (K).";
+                let button = ui.add_enabled(!is_full, Button::new("Pin").small());
+                pin = button.on_hover_text(hover).on_disabled_hover_text(FULL).clicked();
+            }
+            Some(0) => _ = ui.label(RichText::new("before").color(style.faint())),
+            Some(_) => _ = ui.label(RichText::new("now").heading()),
+        });
+        if is_first && ui.available_height() > 28.0 {
+            ui.add_space(6.0);
+            let text = "Change something: the state before it stays here to compare.";
+            ui.label(RichText::new(text).color(style.faint()));
+        }
+        if pin {
+            context.memory.pin = Some(PinKind::Motion);
+        }
+    });
+}
+
+/// Draws the view of the pinned motions.
 pub fn compare_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     page_ui(ui, |ui| {
         buttons_ui(ui, context);
@@ -94,25 +125,17 @@ fn heading_ui(ui: &mut Ui, context: &ViewContext<'_>, pin: &Pin, width: f32) -> 
         let other = pin.scene() != context.session.scene();
         let text = RichText::new(if width < WIDE_COLUMN { "Back" } else { "Take back" }).small();
         let back = ui.add_enabled(other, Button::new(text).small().wrap_mode(Extend));
-        if named(back, other, format!("Take {letter} back"))
-            .on_hover_text(hover)
-            .on_disabled_hover_text("It is the present scene.")
-            .clicked()
-        {
-            action = Some(PinAction::TakeBack(letter));
-        }
+        let spoken = format!("Take {letter} back");
+        back.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, other, &spoken));
+        let back = back.on_hover_text(hover).on_disabled_hover_text("It is the present scene.");
         let unpin = ui.add(Button::new(RichText::new("Unpin").small()).small().wrap_mode(Extend));
-        if named(unpin, true, format!("Unpin {letter}")).clicked() {
-            action = Some(PinAction::Unpin(letter));
-        }
+        tell(&unpin, egui::Role::Button, &format!("Unpin {letter}"));
+        action = match (back.clicked(), unpin.clicked()) {
+            (_, true) => Some(PinAction::Unpin(letter)),
+            (is_back, _) => is_back.then_some(PinAction::TakeBack(letter)),
+        };
     });
     action
-}
-
-/// Gives a button a unique name for screen readers.
-fn named(button: egui::Response, enabled: bool, name: String) -> egui::Response {
-    button.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, enabled, &name));
-    button
 }
 
 fn card(context: &ViewContext<'_>, pin: &Pin) -> Card {

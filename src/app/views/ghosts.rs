@@ -18,7 +18,6 @@ const MAX_DASHES: usize = 300;
 /// Distance in points within which points of a path are merged.
 const NEAR: f32 = 1.0;
 
-/// Letters of the pins.
 pub(super) const PINNED: [&str; 3] = ["A", "B", "C"];
 
 /// Width in points reserved for a letter.

@@ -12,10 +12,8 @@ use super::span::Span;
 use super::view::{Axis, View};
 use super::zoom::Axes;
 
-/// State that the views keep between frames.
 #[derive(Debug, Clone, Default)]
 pub struct Memory {
-    /// Axes that are frozen during a gesture.
     pub(super) frozen: FrozenAxes,
     pub(super) drawing: Drawing,
     /// Whether the first view that shows the mass is to grab it.
@@ -123,7 +121,6 @@ impl FrozenAxis {
     }
 }
 
-/// The axes that are frozen during a gesture.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct FrozenAxes {
     pub span: FrozenAxis,

@@ -7,7 +7,6 @@
 mod accuracy;
 mod axes;
 mod basins;
-mod before_now;
 mod beside;
 mod compare;
 mod context;

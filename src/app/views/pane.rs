@@ -25,7 +25,6 @@ pub const UNIT: f32 = SMALL / TICK as f32;
 /// Width in points from the left edge of a view to its frame, where it stands in line with others.
 pub const GUTTER: f32 = 62.0;
 
-/// Height in points of the row of a legend.
 pub const LEGEND: f32 = LegendRow::HEIGHT;
 
 /// Width in points to the left of a legend below the titles of its card.
@@ -114,7 +113,6 @@ impl Pane {
         self.values_at(0, self.response.hover_pos().filter(|at| frame.contains(*at))?)
     }
 
-    /// The place on the screen of a point of a panel.
     pub fn place(&self, panel: usize, point: (f64, f64)) -> Option<Pos2> {
         Some(self.painting.place(self.painting.frames.get(panel)?.place(point)))
     }

@@ -185,10 +185,9 @@ fn chart(session: &Session, quantity: TraceQuantity, (from, to): Point, (low, hi
     let mut lines = vec![Layer::new(Role::Reference, "", Marks::Verticals(vec![now]))];
     let mut stops = (f64::NAN, f64::NAN);
     if quantity == TraceQuantity::Displacement {
-        match stop_lines(watch, from, to) {
-            Moved::Not(places) => stops = places,
-            Moved::Line(points) => lines.push(Layer::new(Role::Stop, "stop", Marks::Path(points))),
-        }
+        let (places, moved) = stop_lines(watch, from, to);
+        stops = places;
+        lines.extend(moved.map(|points| Layer::new(Role::Stop, "stop", Marks::Path(points))));
     }
     lines.extend(measured);
     for pin in pinned(session, quantity) {
@@ -260,15 +259,9 @@ pub(in crate::app) fn stretch(model: &Model) -> f64 {
         .map_or(SWINGS * model.characteristic_time(), |period| (PERIODS * period).min(limit))
 }
 
-/// Whether stops moved in a range of time.
-enum Moved {
-    /// They stand at these places in mm, NaN where there is none.
-    Not(Point),
-    /// They moved along these lines, parted by points that are not finite.
-    Line(Vec<Point>),
-}
-
-fn stop_lines(watch: &Watch, from: f64, to: f64) -> Moved {
+/// The places in mm of the stops in a range of time, NaN where there is none; and of stops that moved instead
+/// the lines along which they did, parted by points that are not finite.
+fn stop_lines(watch: &Watch, from: f64, to: f64) -> (Point, Option<Vec<Point>>) {
     let mm = |stop: Option<f64>| stop.map_or(f64::NAN, |x| x * 1e3);
     let held: Vec<(f64, f64, [f64; 2])> = watch
         .models_between(from.max(0.0), to)
@@ -276,13 +269,13 @@ fn stop_lines(watch: &Watch, from: f64, to: f64) -> Moved {
         .collect();
     let first = held.first().map_or([f64::NAN; 2], |held| held.2);
     if held.iter().all(|held| held.2.map(f64::to_bits) == first.map(f64::to_bits)) {
-        return Moved::Not(first.into());
+        return (first.into(), None);
     }
     let gap = (f64::NAN, f64::NAN);
     let of_side = |side: usize| {
         held.iter().flat_map(move |(begin, end, mm)| [(*begin, mm[side]), (*end, mm[side]), gap])
     };
-    Moved::Line(of_side(0).chain(of_side(1)).collect())
+    (gap, Some(of_side(0).chain(of_side(1)).collect()))
 }
 
 /// Times between which the mass rests on a stop.

@@ -56,7 +56,7 @@ views! {
     Displacement "Displacement" (0.0, 0.0) |ui, context| trace_ui(ui, TraceQuantity::Displacement, context),
         "Where the mass is, seen from the base, over time. The wheel zooms in time; with Shift, or over \
          the numbers of the axis, in displacement. A double click is back.";
-    BeforeNow "Before / now" (0.0, 0.0) super::before_now::before_now_ui,
+    BeforeNow "Before / now" (0.0, 0.0) super::compare::before_now_ui,
         "What your last change did: the state before it, and the one after it.";
     Compare "Compare" (0.0, 0.0) super::compare::compare_ui,
         "The present motion beside those that are pinned: what each settles to, and by how much it differs. \

@@ -9,7 +9,6 @@ use crate::scene::Layout;
 
 use super::wanted::Wanted;
 
-/// A command of the menus, keys and buttons.
 #[derive(Debug, Clone, PartialEq)]
 #[expect(missing_docs, reason = "the table says what each one does")]
 pub enum Command {

@@ -42,7 +42,6 @@ pub struct Figures {
     pub(super) problem: Option<String>,
     /// Where the mass was when the dialog was opened, in m.
     x: f64,
-    /// Whether the path has had the keyboard focus.
     had_focus: bool,
     job: Background<(), WriteResult>,
 }

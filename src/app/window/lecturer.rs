@@ -94,7 +94,6 @@ impl Window {
         shown.action.into_iter().for_each(|action| self.act_in_lesson(action));
     }
 
-    /// Where the lecturer's notes were last.
     pub fn notes_place(&self) -> Option<Place> {
         self.lessons.notes.place
     }

@@ -171,7 +171,6 @@ impl Window {
         self.recent.truncate(MOST_RECENT);
     }
 
-    /// The title of the window.
     pub fn title(&self) -> &str {
         &self.shown_title
     }

@@ -81,7 +81,6 @@ pub(super) fn path_fault(path: &Path) -> Option<&'static str> {
 pub(super) struct PathDialog {
     pub wanted: Wanted,
     pub path: String,
-    /// Whether the field has had the keyboard focus.
     had_focus: bool,
 }
 

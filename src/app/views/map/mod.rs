@@ -35,6 +35,9 @@ const UPWARD: usize = 2;
 /// Half the diagonal in points of the mark of the best stops.
 const BEST: f32 = 7.0;
 
+/// The values of a scene on both axes of a map; `None` for a field that it lacks.
+type Place = [Option<f64>; 2];
+
 pub fn map_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let style = context.style;
     if context.session.want_map(ui.input(|input| input.time)) {
@@ -105,7 +108,7 @@ pub fn map_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         }
         None => {
             trail::draw(&painter, &pane, &style, &trail);
-            best_stops(&painter, &style, &pane, (map, place), context.session.best.limit_mm());
+            best_stops(&painter, &style, &pane, map, place, context.session.best.limit_mm());
             cut_marks(&painter, &style, &pane, scene);
             marker(&painter, &pane, &style, place)
         }
@@ -118,9 +121,10 @@ pub fn map_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         let over = pane.response.clone().on_hover_cursor(egui::CursorIcon::PointingHand);
         over.on_hover_text_at_pointer(reading(map, quantity, cell));
     }
-    let places = Targets { map, style, cell_at: &cell_at, pane: &pane, rect, scene: (at, scene) };
     let is_enlarged = context.session.map.is_enlarged();
-    let wanted = pointer::action_ui(ui, &mut context.memory.map_pointer, is_enlarged, &places);
+    let targets =
+        Targets { map, is_enlarged, style, cell_at: &cell_at, pane: &pane, rect, scene: (at, scene) };
+    let wanted = pointer::action_ui(ui, &mut context.memory.map_pointer, &targets);
     pointer::perform(context, wanted);
 }
 
@@ -191,13 +195,7 @@ fn veil(painter: &Painter, rect: Rect, style: &Style, current: bool, has_problem
 
 /// Draws a diamond where the scene would stand with its best stops, at `limit` in mm, if the map has an axis
 /// of the travel limit that reaches so far.
-fn best_stops(
-    painter: &Painter,
-    style: &Style,
-    pane: &Pane,
-    (map, place): (&Map, [Option<f64>; 2]),
-    limit: Option<f64>,
-) {
+fn best_stops(painter: &Painter, style: &Style, pane: &Pane, map: &Map, place: Place, limit: Option<f64>) {
     let axis = map.question.axes.iter().position(|axis| axis.field == LIMIT);
     let (Some(axis), Some(limit)) = (axis, limit) else { return };
     let Some(other) = place[1 - axis] else { return };
@@ -225,7 +223,7 @@ fn point_out(painter: &Painter, style: &Style, pane: &Pane, map: &Map, (column, 
 }
 
 /// Whether a scene lies within the map.
-fn is_inside(map: &Map, place: [Option<f64>; 2]) -> bool {
+fn is_inside(map: &Map, place: Place) -> bool {
     place.iter().zip(&map.edges).all(|(value, edges)| value.is_some_and(|value| edges.cell(value).is_some()))
 }
 
@@ -305,7 +303,7 @@ fn reading(map: &Map, quantity: &SummaryField, (column, row): (usize, usize)) ->
 }
 
 /// Marks the scene by a ring, or by an arrow at the edge that it lies beyond. Returns the place.
-fn marker(painter: &Painter, pane: &Pane, style: &Style, place: [Option<f64>; 2]) -> Pos2 {
+fn marker(painter: &Painter, pane: &Pane, style: &Style, place: Place) -> Pos2 {
     let (Some([across, up]), Some(frame)) = (pane.axes(MAP), pane.frame(MAP)) else { return Pos2::ZERO };
     // no stops count as stops far out
     let (x, y) = (place[0].unwrap_or(f64::INFINITY), place[1].unwrap_or(f64::INFINITY));

@@ -34,6 +34,7 @@ pub enum MapAction {
 /// What pointer and keyboard act on.
 pub struct Targets<'a> {
     pub map: &'a Map,
+    pub is_enlarged: bool,
     pub style: Style,
     /// The cell at a screen position.
     pub cell_at: &'a dyn Fn(Pos2) -> Option<(usize, usize)>,
@@ -45,15 +46,10 @@ pub struct Targets<'a> {
 }
 
 /// Handles pointer and keyboard. Returns the action, if any.
-pub fn action_ui(
-    ui: &Ui,
-    state: &mut PointerState,
-    is_enlarged: bool,
-    targets: &Targets<'_>,
-) -> Option<MapAction> {
+pub fn action_ui(ui: &Ui, state: &mut PointerState, targets: &Targets<'_>) -> Option<MapAction> {
     // a double click has a meaning only on an enlarged map
     let second = ui.options(|options| options.input_options.max_double_click_delay);
-    let wait = if is_enlarged { second } else { 0.0 };
+    let wait = if targets.is_enlarged { second } else { 0.0 };
     if let Some(action) = cross_hair_ui(ui, targets) {
         return Some(action);
     }
