@@ -119,8 +119,7 @@ fn speed_ui(ui: &mut Ui, session: &mut Session) {
         SPEEDS.iter().find(|row| row.0 == speed).map_or_else(|| format!("{speed}"), |row| row.1.to_owned());
     let combo = ComboBox::from_id_salt("speed").width(96.0).selected_text(name).show_ui(ui, |ui| {
         for (key, (value, name)) in (1..).zip(SPEEDS) {
-            let text = format!("{name}  ({key})");
-            ui.selectable_value(&mut session.player.speed, value, text);
+            ui.selectable_value(&mut session.player.speed, value, format!("{name}  ({key})"));
         }
     });
     let response = combo.response.on_hover_text("Speed of the motion on the screen (keys 1 to 7)");
@@ -147,8 +146,7 @@ fn ticks(events: &VecDeque<Event>, begin: f64, end: f64, least: f64) -> Vec<Even
     };
     // in the row of impacts a rest would look like an impact, even of a mass that rests from the start
     let has_sign = |event: &&Event| event.kind != EventKind::Rest && (begin..=end).contains(&event.t);
-    let shown = events.iter().filter(has_sign);
-    shown.filter(is_first).copied().collect()
+    events.iter().filter(has_sign).filter(is_first).copied().collect()
 }
 
 /// The sign of an event at `at`: a line for an impact, a triangle for a release, a diamond for a crossing.

@@ -14,8 +14,7 @@ pub fn field_name(path: &str) -> String {
     if name != path {
         return name.trim_end_matches(" ±").to_owned();
     }
-    let column = column_names(&[path]).pop().unwrap_or_default();
-    label_and_unit(&column).0
+    label_and_unit(&column_names(&[path]).pop().unwrap_or_default()).0
 }
 
 /// Offers the `known` fields for the axis named by its `role`. Returns the new field if it changed.

@@ -79,8 +79,7 @@ fn buttons_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     ui.horizontal_wrapped(|ui| {
         for (name, hover, kind) in all {
             let button = ui.add_enabled(!full, Button::new(name));
-            let button = button.on_hover_text(hover).on_disabled_hover_text(FULL);
-            if button.clicked() {
+            if button.on_hover_text(hover).on_disabled_hover_text(FULL).clicked() {
                 context.memory.pin = Some(kind);
             }
         }

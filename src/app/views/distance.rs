@@ -29,7 +29,14 @@ const PRESENT: f64 = 0.94;
 pub fn distance_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let (area, style) = (ui.max_rect(), context.style);
     if context.session.pins.all().is_empty() {
-        return nothing_ui(ui, context, area);
+        ui.scope_builder(UiBuilder::new().max_rect(area.shrink(10.0)), |ui| {
+            let text = "Nothing is pinned. A twin begins a micrometre beside the mass, from the start.";
+            ui.label(RichText::new(text).color(style.faint()));
+            if ui.button("Twin start").clicked() {
+                context.memory.pin = Some(PinKind::Twin);
+            }
+        });
+        return;
     }
     let (session, now) = (&context.session, context.session.player.time());
     let pins = session.pins.all();
@@ -92,15 +99,4 @@ pub fn distance_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
 fn millimetres(metres: f64) -> String {
     let mm = 1e3 * metres;
     if mm >= 0.01 { format!("{} mm", three(mm)) } else { format!("{mm:.1e} mm") }
-}
-
-fn nothing_ui(ui: &mut Ui, context: &mut ViewContext<'_>, area: egui::Rect) {
-    let faint = context.style.faint();
-    ui.scope_builder(UiBuilder::new().max_rect(area.shrink(10.0)), |ui| {
-        let text = "Nothing is pinned. A twin begins a micrometre beside the mass, from the start.";
-        ui.label(RichText::new(text).color(faint));
-        if ui.button("Twin start").clicked() {
-            context.memory.pin = Some(PinKind::Twin);
-        }
-    });
 }

@@ -176,23 +176,21 @@ impl Painting {
         let (mut mesh, mut texts) = (Mesh::default(), Vec::new());
         for shape in shapes {
             let places = |points: &[(f64, f64)]| points.iter().map(|point| self.place(*point)).collect();
+            let mut add = |shape: Shape| tessellator.tessellate_shape(shape, &mut mesh);
             match shape {
                 // without a soft edge, so that neighbouring cells leave no seam
                 Drawn::Rect(area, ink) => mesh.add_colored_rect(self.rect(area), colour(ink)),
                 Drawn::Line(points, width, ink) => {
                     // frame and grid are as thin by a projector
                     let width = if is_fine(width) { width as f32 * UNIT } else { style.line(width) };
-                    let stroke = Stroke::new(width, colour(ink));
-                    tessellator.tessellate_shape(Shape::line(places(&points), stroke), &mut mesh);
+                    add(Shape::line(places(&points), Stroke::new(width, colour(ink))));
                 }
                 Drawn::Polygon(points, ink) => {
-                    let shape = Shape::convex_polygon(places(&points), colour(ink), Stroke::NONE);
-                    tessellator.tessellate_shape(shape, &mut mesh);
+                    add(Shape::convex_polygon(places(&points), colour(ink), Stroke::NONE));
                 }
                 Drawn::Disc(centre, radius, ink) => {
                     let radius = style.dot((radius as f32 * UNIT).max(LEAST_DOT));
-                    let disc = Shape::circle_filled(self.place(centre), radius, colour(ink));
-                    tessellator.tessellate_shape(disc, &mut mesh);
+                    add(Shape::circle_filled(self.place(centre), radius, colour(ink)));
                 }
                 Drawn::Text(text) => texts.push(text),
             }

@@ -21,7 +21,16 @@ pub fn side_by_side_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let area = ui.max_rect();
     let count = context.session.pins.all().len();
     if count == 0 {
-        return nothing_ui(ui, context, area);
+        let text =
+            "Nothing is pinned. A pinned motion goes on here beside the present one, with the drive in step.";
+        let name = match context.session.scene().stops {
+            Stops::None => "Beside it with stops",
+            _ => "Beside it without stops",
+        };
+        if offer_ui(ui, &context.style, area, text, name) {
+            context.memory.pin = Some(PinKind::OtherStops);
+        }
+        return;
     }
     let place = context.memory.beside_place.min(count - 1);
     let width = 0.5 * (area.width() - GAP);
@@ -79,16 +88,4 @@ fn heading_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     };
     let text = RichText::new(description(scene)).font(context.style.small()).color(context.style.faint());
     ui.add(Label::new(text).truncate());
-}
-
-fn nothing_ui(ui: &mut Ui, context: &mut ViewContext<'_>, area: Rect) {
-    let text =
-        "Nothing is pinned. A pinned motion goes on here beside the present one, with the drive in step.";
-    let name = match context.session.scene().stops {
-        Stops::None => "Beside it with stops",
-        _ => "Beside it without stops",
-    };
-    if offer_ui(ui, &context.style, area, text, name) {
-        context.memory.pin = Some(PinKind::OtherStops);
-    }
 }

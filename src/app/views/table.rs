@@ -45,6 +45,12 @@ pub(super) struct Column {
     pub differs: bool,
 }
 
+impl Column {
+    fn settled(&self) -> Option<&Summary> {
+        self.card.as_ref()?.settled.as_ref()
+    }
+}
+
 #[derive(Debug, Clone, PartialEq)]
 struct Row {
     name: String,
@@ -78,16 +84,11 @@ pub(super) fn table_ui(
     heading: &mut dyn FnMut(&mut Ui, Option<usize>, f32),
 ) {
     let style = context.style;
-    let (share, least, most) = NAMES;
-    let names = (share * ui.available_width()).clamp(least, most);
-    let left = ui.available_width() - names;
-    let (width, names) = match left / columns.len() as f32 - COLUMN_GAP {
-        width if width >= WIDE_COLUMN => (width, names),
-        _ => {
-            let width = (ui.available_width() - least) / columns.len() as f32 - COLUMN_GAP;
-            (width.max(MIN_COLUMN), least)
-        }
-    };
+    let ((share, least, most), room) = (NAMES, ui.available_width());
+    let width_beside = |names: f32| (room - names) / columns.len() as f32 - COLUMN_GAP;
+    let names = (share * room).clamp(least, most);
+    let names = if width_beside(names) >= WIDE_COLUMN { names } else { least };
+    let width = width_beside(names).max(MIN_COLUMN);
     let small = width < WIDE_COLUMN;
     ui.spacing_mut().interact_size.y = ROW;
     if small {
@@ -107,20 +108,18 @@ pub(super) fn table_ui(
     let seen = (room / (ROW + ROW_GAP.1)).floor().clamp(1.0, count);
     let gaps = if seen < count { seen } else { count - 1.0 };
     let gap = ((room - seen * ROW) / gaps).clamp(ROW_GAP.1, ROW_GAP.0);
-    let settled = columns[now].card.as_ref().and_then(|card| card.settled.as_ref());
+    let settled = columns[now].settled();
+    let faint = |text: &str| RichText::new(text).color(style.faint());
     let row_ui = |ui: &mut Ui, row: &Row| {
-        cell_ui(ui, names, |ui| {
-            ui.horizontal_wrapped(|ui| {
-                ui.spacing_mut().item_spacing.x = 4.0;
-                let name = ui.label(RichText::new(&row.name).color(style.faint()));
-                match settled.filter(|_| row.name == RMS) {
-                    Some(settled) => name.on_hover_text(rms_words(settled)),
-                    None => explained(name, &row.name),
-                };
-                if !row.unit.is_empty() {
-                    ui.label(RichText::new(row.unit).font(style.small()).color(style.faint()));
-                }
-            });
+        words_ui(ui, names, 4.0, |ui| {
+            let name = ui.label(faint(&row.name));
+            match settled.filter(|_| row.name == RMS) {
+                Some(settled) => name.on_hover_text(rms_words(settled)),
+                None => explained(name, &row.name),
+            };
+            if !row.unit.is_empty() {
+                ui.label(faint(row.unit).font(style.small()));
+            }
         });
         for (i, (text, apart)) in row.texts.iter().zip(&row.apart).enumerate() {
             let written = RichText::new(text);
@@ -129,15 +128,11 @@ pub(super) fn table_ui(
                 true => written.color(style.faint()),
                 false => written,
             };
-            cell_ui(ui, width, |ui| {
-                ui.horizontal_wrapped(|ui| {
-                    ui.spacing_mut().item_spacing.x = 6.0;
-                    ui.add(Label::new(written).wrap());
-                    if let Some(apart) = apart {
-                        let text = format!("({apart})");
-                        ui.label(RichText::new(text).font(style.small()).color(style.faint()));
-                    }
-                });
+            words_ui(ui, width, 6.0, |ui| {
+                ui.add(Label::new(written).wrap());
+                if let Some(apart) = apart {
+                    ui.label(faint(&format!("({apart})")).font(style.small()));
+                }
             });
         }
         ui.end_row();
@@ -149,13 +144,9 @@ pub(super) fn table_ui(
         }
         ui.end_row();
         before.iter().for_each(|row| row_ui(ui, row));
-        cell_ui(ui, names, |ui| {
-            ui.horizontal_wrapped(|ui| {
-                ui.spacing_mut().item_spacing.x = 4.0;
-                ui.label(RichText::new("motion").color(style.faint()));
-                let settled = RichText::new(SETTLED).font(style.small()).color(style.faint());
-                ui.label(settled).on_hover_text(SETTLED_HOVER);
-            });
+        words_ui(ui, names, 4.0, |ui| {
+            ui.label(faint("motion"));
+            ui.label(faint(SETTLED).font(style.small())).on_hover_text(SETTLED_HOVER);
         });
         for column in columns {
             cell_ui(ui, width, |ui| match column.ended {
@@ -163,10 +154,7 @@ pub(super) fn table_ui(
                     let text = format!("ended at {}, stays there", seconds(at));
                     ui.add(Label::new(RichText::new(text).font(style.small())).wrap());
                 }
-                None => {
-                    let settled = column.card.as_ref().and_then(|card| card.settled.as_ref());
-                    regime_ui(ui, context, settled, small);
-                }
+                None => regime_ui(ui, context, column.settled(), small),
             });
         }
         ui.end_row();
@@ -178,12 +166,21 @@ pub(super) fn table_ui(
 const SETTLED: &str = "once settled";
 const SETTLED_HOVER: &str = "What the motion settles to, whether or not it has been played so far.";
 
-fn cell_ui<R>(ui: &mut Ui, width: f32, contents: impl FnOnce(&mut Ui) -> R) -> R {
-    let cell = ui.vertical(|ui| {
+fn cell_ui(ui: &mut Ui, width: f32, contents: impl FnOnce(&mut Ui)) {
+    ui.vertical(|ui| {
         ui.set_width(width);
-        contents(ui)
+        contents(ui);
     });
-    cell.inner
+}
+
+/// A cell with texts side by side, so many points apart.
+fn words_ui(ui: &mut Ui, width: f32, gap: f32, contents: impl FnOnce(&mut Ui)) {
+    cell_ui(ui, width, |ui| {
+        ui.horizontal_wrapped(|ui| {
+            ui.spacing_mut().item_spacing.x = gap;
+            contents(ui);
+        });
+    });
 }
 
 /// Meaning of the RMS velocity, and the time over which it was taken.
@@ -217,8 +214,7 @@ fn scene_rows(scenes: &[Option<&Scene>]) -> Vec<Row> {
     ];
     rows.extend(others.into_iter().filter(Row::differs));
     let differs = |name: &str| rows.iter().any(|row| row.name == name && row.differs());
-    let (shaking_differs, stops_differ, start_differs) =
-        (differs("shaking"), differs("stops"), differs("start"));
+    let [shaking_differs, stops_differ, start_differs] = ["shaking", "stops", "start"].map(differs);
     let mut paths: Vec<String> = Vec::new();
     for path in scenes.iter().flatten().flat_map(|scene| numeric_fields(scene)) {
         if !paths.contains(&path) {
@@ -260,12 +256,11 @@ fn number_rows(columns: &[Column], now: usize, with_threshold: bool) -> Vec<Row>
                text: &dyn Fn(&Card, &Summary) -> Option<String>,
                value: &dyn Fn(&Summary) -> Option<f64>,
                decimals: &dyn Fn(f64) -> usize| {
-        let settled = |column: &Column| column.card.as_ref().and_then(|card| card.settled);
-        let written = |column: &Column| text(column.card.as_ref()?, &settled(column)?);
+        let written = |column: &Column| text(column.card.as_ref()?, column.settled()?);
         let texts = columns.iter().map(|column| written(column).unwrap_or_else(|| UNKNOWN.to_owned()));
-        let present = settled(&columns[now]).and_then(|settled| value(&settled));
+        let present = columns[now].settled().and_then(value);
         let apart = |column: &Column| {
-            let number = settled(column).filter(|_| column.differs).and_then(|settled| value(&settled))?;
+            let number = column.settled().filter(|_| column.differs).and_then(value)?;
             Some(difference(number, present?, decimals))
         };
         Row { apart: columns.iter().map(apart).collect(), ..Row::new(name, unit, texts.collect()) }
@@ -273,7 +268,7 @@ fn number_rows(columns: &[Column], now: usize, with_threshold: bool) -> Vec<Row>
     let tenths = |below: f64| move |size: f64| usize::from(size < below);
     let velocity = |run: &Summary| run.rms_velocity;
     let in_mm = |run: &Summary| velocity(run).map(|v| v * 1e3);
-    let reaches = columns.iter().filter_map(|column| column.card.as_ref()?.settled?.max_abs_x);
+    let reaches = columns.iter().filter_map(|column| column.settled()?.max_abs_x);
     let (per_metre, length) = length_unit(reaches.fold(0.0, f64::max));
     let reach_in = |run: &Summary| run.max_abs_x.map(|x| x * per_metre);
     let reach = |card: &Card, run: &Summary| match length {
@@ -295,7 +290,7 @@ fn number_rows(columns: &[Column], now: usize, with_threshold: bool) -> Vec<Row>
         |column: &Column| column.card.as_ref().is_some_and(|card| card.scene.transducer != Transducer::None);
     if columns.iter().any(has_load) {
         let watt = |run: &Summary| run.harvest?.mean_load_power;
-        let all = columns.iter().filter_map(|column| watt(&column.card.as_ref()?.settled?));
+        let all = columns.iter().filter_map(|column| watt(column.settled()?));
         let (factor, unit) = power_unit(all.fold(0.0, f64::max));
         let text = |_: &Card, run: &Summary| watt(run).map(|watt| three(watt * factor));
         rows.push(row("power into the load", unit, &text, &|run| Some(watt(run)? * factor), &decimals_for));

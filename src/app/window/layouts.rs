@@ -82,12 +82,8 @@ impl Tiling {
     /// The tiles of the custom arrangement as they were saved; in a compact window, the same views as tabs.
     pub fn custom(saved: &Tree<View>, room: Room) -> Self {
         let tree = if room.is_compact() {
-            let view = |(id, tile): (&TileId, &Tile<View>)| match tile {
-                Tile::Pane(view) => saved.is_visible(*id).then_some(*view),
-                Tile::Container(_) => None,
-            };
-            let shown: Vec<View> = saved.tiles.iter().filter_map(view).collect();
-            let views: Vec<View> = View::ALL.into_iter().filter(|view| shown.contains(view)).collect();
+            let is_shown = |view: &View| saved.tiles.find_pane(view).is_some_and(|id| saved.is_visible(id));
+            let views: Vec<View> = View::ALL.into_iter().filter(is_shown).collect();
             compact_tree(&views, room)
         } else {
             saved.clone()

@@ -45,8 +45,7 @@ pub fn digits_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         }
         let rest = ui.available_rect_before_wrap();
         if rest.height() > PICTURE && rest.width() > 200.0 {
-            let chart = chart(&known, tolerance, stepped.as_ref());
-            let pane = fresh_pane_ui(ui, &style, rest, chart);
+            let pane = fresh_pane_ui(ui, &style, rest, chart(&known, tolerance, stepped.as_ref()));
             tell(&pane.response, egui::Role::Image, "error over processor time");
         }
     });
