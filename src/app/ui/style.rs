@@ -92,6 +92,7 @@ impl Style {
 
     /// The colours of pictures in this appearance: those on paper, on the ground of a card.
     pub fn theme(&self) -> Theme {
+        let ink_of = |colour: Color32| Ink(colour.r(), colour.g(), colour.b());
         let [paper, ink, soft, grid] = [self.ground(), self.ink(), self.faint(), self.grid()].map(ink_of);
         Theme { paper, ink, soft, grid, ..Theme::of(self.dark, None) }
     }
@@ -246,10 +247,6 @@ const fn gray(level: u8) -> Color32 {
 const fn hex(code: u32) -> Color32 {
     let [_, red, green, blue] = code.to_be_bytes();
     rgb(red, green, blue)
-}
-
-fn ink_of(colour: Color32) -> Ink {
-    Ink(colour.r(), colour.g(), colour.b())
 }
 
 const fn rgb(red: u8, green: u8, blue: u8) -> Color32 {

@@ -47,6 +47,11 @@ pub fn panel_frame(x: i8, y: i8) -> egui::Frame {
     egui::Frame::new().inner_margin(egui::Margin::symmetric(x, y))
 }
 
+/// A panel with this frame and no line beside it.
+pub fn bare(panel: egui::Panel, x: i8, y: i8) -> egui::Panel {
+    panel.frame(panel_frame(x, y)).show_separator_line(false)
+}
+
 /// A text for a label: code between backticks has letters of one width, and lines are not broken between a
 /// number and its unit.
 pub fn prose(ui: &Ui, text: &str) -> LayoutJob {

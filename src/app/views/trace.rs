@@ -130,7 +130,12 @@ pub fn trace_ui(ui: &mut Ui, quantity: TraceQuantity, context: &mut ViewContext<
     let ends = with_room(context.session, quantity.measured(), ends);
     let (low, high) = context.memory.axes.ends(Axis::Up(view), ends);
     let now = context.session.player.time();
-    let (from, to) = time_ends(context, now);
+    let timeline = &mut context.memory.timeline;
+    timeline.default_window = stretch(context.session.shown());
+    let window = timeline.window.unwrap_or(timeline.default_window);
+    // the present is near the end of the time axis
+    let from = (now - PRESENT * window).max(-0.02 * window);
+    let (from, to) = context.memory.axes.ends(Axis::Time, (from, from + window));
     let (window, end) = (to - from, now.min(to));
     let (area, digits) = (ui.max_rect(), 1 + decimals_for(high - low));
     let watch = context.session.player.watch();
@@ -172,7 +177,9 @@ pub fn trace_ui(ui: &mut Ui, quantity: TraceQuantity, context: &mut ViewContext<
 /// The picture from `from` to `to` in s over this vertical axis.
 fn chart(session: &Session, quantity: TraceQuantity, (from, to): Point, (low, high): Point) -> Chart {
     let (watch, now) = (session.player.watch(), session.player.time());
-    let samples = shown_samples(session, from, to);
+    // up to the present, or to what is known at the end
+    let state = if now <= to { session.player.state() } else { watch.state_at(to) };
+    let samples: Vec<Sample> = thinned(watch, (from, now.min(to)), MAX_POINTS, state).collect();
     let line = |watch: &Watch, samples: &mut dyn Iterator<Item = Sample>| {
         let points = samples.map(|sample| (sample.t, quantity.value_in(watch, &sample)));
         Marks::Trace(points.filter(|point| !point.1.is_nan()).collect())
@@ -213,22 +220,6 @@ fn chart(session: &Session, quantity: TraceQuantity, (from, to): Point, (low, hi
 fn pinned(session: &Session, quantity: TraceQuantity) -> &[Pin] {
     let is_drawn = matches!(quantity, TraceQuantity::Displacement | TraceQuantity::Velocity);
     if is_drawn { session.pins.all() } else { &[] }
-}
-
-/// The ends of the time axis in s, which shows the present near its end.
-fn time_ends(context: &mut ViewContext<'_>, now: f64) -> (f64, f64) {
-    let timeline = &mut context.memory.timeline;
-    timeline.default_window = stretch(context.session.shown());
-    let window = timeline.window.unwrap_or(timeline.default_window);
-    let from = (now - PRESENT * window).max(-0.02 * window);
-    context.memory.axes.ends(Axis::Time, (from, from + window))
-}
-
-/// The states from `from` to `to` in s, thinned, up to the present or to what is known at `to`.
-fn shown_samples(session: &Session, from: f64, to: f64) -> Vec<Sample> {
-    let (watch, now) = (session.player.watch(), session.player.time());
-    let state = if now <= to { session.player.state() } else { watch.state_at(to) };
-    thinned(watch, (from, now.min(to)), MAX_POINTS, state).collect()
 }
 
 /// The samples of a motion from before `from` to `to` in s, thinned to about the number `most`, and its

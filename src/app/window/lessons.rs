@@ -13,7 +13,7 @@ use crate::app::session::explore::WalkQuantity;
 use crate::app::session::lesson::{OpenLesson, Records, Turn, answers_text};
 use crate::app::session::{CannotRun, Session};
 use crate::app::ui::style::Style;
-use crate::app::ui::widgets::{close_ui, dialog_ui, panel_frame, primary};
+use crate::app::ui::widgets::{bare, close_ui, dialog_ui, panel_frame, primary};
 use crate::app::views::{Cover, Memory, View};
 use crate::app::words::capital;
 use crate::app::words::fields::name_and_unit;
@@ -398,8 +398,7 @@ impl Window {
         else {
             return;
         };
-        let row = Panel::top("controls of the lesson").frame(panel_frame(12, around));
-        row.show_separator_line(false).show(ui, |ui| {
+        bare(Panel::top("controls of the lesson"), 12, around).show(ui, |ui| {
             if lesson.is_covering() {
                 ui.disable();
             }

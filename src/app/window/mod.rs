@@ -15,7 +15,7 @@ use crate::app::session::lesson::Records;
 use crate::app::ui::settings::Settings;
 pub use crate::app::ui::style::install as prepare;
 use crate::app::ui::style::{CONTROL, GAP, Style};
-use crate::app::ui::widgets::panel_frame;
+use crate::app::ui::widgets::{bare, panel_frame};
 use crate::app::views::{Drawn, ViewContext};
 use crate::app::words::lesson::numbered;
 use crate::scene::lesson::LESSONS;
@@ -129,8 +129,8 @@ impl Window {
             self.session.follow_best();
             is_over_views = compact && !self.hint.has_line;
             if !is_over_views {
-                let panel = Panel::top("guide").frame(panel_frame(12, 0)).exact_size(GUIDE);
-                let line = panel.show_separator_line(false).show(ui, |ui| self.guide_line_ui(ui, &style));
+                let panel = bare(Panel::top("guide"), 12, 0).exact_size(GUIDE);
+                let line = panel.show(ui, |ui| self.guide_line_ui(ui, &style));
                 commands.extend(line.inner);
             }
         }
@@ -174,7 +174,7 @@ impl Window {
     /// that were chosen.
     fn bars_ui(&mut self, ui: &mut Ui, style: &Style, compact: bool) -> Vec<Command> {
         let around = if compact { AROUND_BAR.1 } else { AROUND_BAR.0 };
-        let (line, covered) = (panel_frame(12, around), self.motion_is_covered());
+        let covered = self.motion_is_covered();
         let chosen = match self.filled {
             None => self.head_ui(ui, style, compact),
             Some(_) if covered => Vec::new(),
@@ -183,8 +183,8 @@ impl Window {
                 Vec::new()
             }
         };
-        let bar = Panel::bottom("transport").frame(line).show_separator_line(false);
-        bar.exact_size(if compact { TRANSPORT.1 } else { TRANSPORT.0 }).show(ui, |ui| {
+        let height = if compact { TRANSPORT.1 } else { TRANSPORT.0 };
+        bare(Panel::bottom("transport"), 12, around).exact_size(height).show(ui, |ui| {
             if self.lesson_covers() {
                 ui.disable();
             }
@@ -199,14 +199,12 @@ impl Window {
     /// commands that were chosen.
     fn head_ui(&mut self, ui: &mut Ui, style: &Style, compact: bool) -> Vec<Command> {
         let (height, around) = if compact { (MENU.1, 1) } else { (MENU.0, 2) };
-        let bar = Panel::top("menu").frame(panel_frame(8, around)).exact_size(height);
-        let bar = bar
-            .show_separator_line(false)
-            .show(ui, |ui| menu::Menus { window: self, chosen: Vec::new() }.ui(ui));
+        let bar = bare(Panel::top("menu"), 8, around).exact_size(height);
+        let bar = bar.show(ui, |ui| menu::Menus { window: self, chosen: Vec::new() }.ui(ui));
         let covered = self.motion_is_covered();
-        let status = Panel::top("status").frame(panel_frame(12, 2)).exact_size(status_line::height(ui));
+        let status = bare(Panel::top("status"), 12, 2).exact_size(status_line::height(ui));
         let leads = compact && has_column(ui) && self.lessons.open.is_some();
-        status.show_separator_line(false).show(ui, |ui| {
+        status.show(ui, |ui| {
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 if leads {
                     self.lesson_navigation_ui(ui, style);
@@ -223,9 +221,9 @@ impl Window {
     /// The controls: in a compact window a row, else a column with the notes. Returns the chosen command.
     fn controls_ui(&mut self, ui: &mut Ui, compact: bool) -> Option<Command> {
         if compact {
-            let (line, is_narrow) = (panel_frame(12, AROUND_BAR.1), self.tiling.room() == Room::Narrow);
-            let row = Panel::top(if is_narrow { "controls rows" } else { "controls row" }).frame(line);
-            row.show_separator_line(false).show(ui, |ui| {
+            let is_narrow = self.tiling.room() == Room::Narrow;
+            let row = Panel::top(if is_narrow { "controls rows" } else { "controls row" });
+            bare(row, 12, AROUND_BAR.1).show(ui, |ui| {
                 if is_narrow {
                     return controls::rows_ui(ui, &mut self.session, &mut self.more);
                 }
@@ -234,8 +232,8 @@ impl Window {
             });
             if self.more {
                 let panel = if is_narrow { Panel::bottom("more") } else { Panel::right("more") };
-                let panel = panel.frame(line).show_separator_line(false).resizable(false);
-                panel.exact_size(MORE).show(ui, |ui| {
+                let panel = bare(panel, 12, AROUND_BAR.1).resizable(false).exact_size(MORE);
+                panel.show(ui, |ui| {
                     let width = if is_narrow { ui.available_width() - 100.0 } else { 150.0 };
                     let session = &mut self.session;
                     egui::ScrollArea::vertical().show(ui, |ui| controls::beside_ui(ui, session, width));
@@ -244,8 +242,8 @@ impl Window {
             return None;
         }
         let width = if ui.ctx().content_rect().width() > 1600.0 { 300.0 } else { 250.0 };
-        let column = Panel::left("controls").frame(panel_frame(12, 10)).resizable(false).exact_size(width);
-        let column = column.show_separator_line(false).show(ui, |ui| {
+        let column = bare(Panel::left("controls"), 12, 10).resizable(false).exact_size(width);
+        let column = column.show(ui, |ui| {
             let bottom = ui.max_rect().bottom();
             let contents = egui::ScrollArea::vertical().show(ui, |ui| {
                 controls::column_ui(ui, &mut self.session, &mut self.more);

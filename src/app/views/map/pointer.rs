@@ -70,7 +70,11 @@ pub fn action_ui(ui: &Ui, state: &mut PointerState, targets: &Targets<'_>) -> Op
             if response.drag_stopped() {
                 state.corner = None;
                 let large = dragged.width() >= MIN_BOX && dragged.height() >= MIN_BOX;
-                return targets.part(dragged).filter(|_| large);
+                let (left, low) = targets.pane.values_at(MAP, dragged.left_bottom())?;
+                let (right, high) = targets.pane.values_at(MAP, dragged.right_top())?;
+                let [across, up] = &targets.map.question.axes;
+                let axes = [part(across, left, right), part(up, low, high)];
+                return large.then_some(MapAction::Part(axes));
             }
         }
     } else {
@@ -91,15 +95,6 @@ pub fn action_ui(ui: &Ui, state: &mut PointerState, targets: &Targets<'_>) -> Op
     }
     state.clicked = None;
     Some(MapAction::Cell(column, row))
-}
-
-impl Targets<'_> {
-    fn part(&self, dragged: Rect) -> Option<MapAction> {
-        let (left, low) = self.pane.values_at(MAP, dragged.left_bottom())?;
-        let (right, high) = self.pane.values_at(MAP, dragged.right_top())?;
-        let [across, up] = &self.map.question.axes;
-        Some(MapAction::Part([part(across, left, right), part(up, low, high)]))
-    }
 }
 
 /// Handles the cross-hair: dragging, moving by the arrow keys, and enlarging around it.
