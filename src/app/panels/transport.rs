@@ -227,14 +227,10 @@ fn scrub_ui(ui: &mut Ui, session: &mut Session, style: &Style, covered: bool, no
     let now = pos2(screen_from_time(session.player.time()), bar.center().y);
     painter.circle(now, 7.0, style.mass(), Stroke::new(1.5, style.mass_edge()));
     let by_key = if response.has_focus() { arrows(ui, response.id) } else { 0.0 };
-    let mut wanted = None;
     if let Some(pointer) = response.interact_pointer_pos() {
-        wanted = Some(begin + f64::from((pointer.x - bar.left()) / bar.width()) * span);
+        session.player.seek(begin + f64::from((pointer.x - bar.left()) / bar.width()) * span);
     } else if by_key != 0.0 {
-        wanted = Some(session.player.time() + by_key * KEY_SHARE * span);
-    }
-    if let Some(t) = wanted {
-        session.player.seek(t);
+        session.player.seek(session.player.time() + by_key * KEY_SHARE * span);
     }
     let Some(note) = note else { return };
     let below = whole.with_min_y(rect.bottom());

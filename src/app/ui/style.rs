@@ -142,11 +142,6 @@ impl Style {
         if self.projector { points.max(3.0 / PROJECTOR_ZOOM) } else { points }
     }
 
-    /// The radius of a point in a picture.
-    pub fn dot(&self, points: f32) -> f32 {
-        if self.projector { 1.4 * points } else { points }
-    }
-
     /// The mark of the scene on a map, in the colour of the mass: outline and mark.
     pub fn marker_strokes(&self) -> [Stroke; 2] {
         let width = self.width(2.4);

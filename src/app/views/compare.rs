@@ -89,10 +89,11 @@ fn buttons_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
 /// The table of the present motion and the pinned ones. Returns the action clicked.
 fn pinned_ui(ui: &mut Ui, context: &ViewContext<'_>) -> Option<PinAction> {
     let pins = context.session.pins.all();
-    let pinned = |pin: &Pin| Column {
-        card: Some(card(context, pin)),
-        ended: pin.ended().and_then(|outcome| outcome.ended_at()),
-        differs: true,
+    let pinned = |pin: &Pin| {
+        let thresholds = pin.thresholds().copied().filter(|_| !context.session.keeps_remedy);
+        let card = Card { scene: pin.scene().clone(), settled: pin.settled().copied(), thresholds };
+        let ended = pin.ended().and_then(|outcome| outcome.ended_at());
+        Column { card: Some(card), ended, differs: true }
     };
     let now = Column { card: Some(context.session.now_card()), ended: None, differs: false };
     let columns: Vec<Column> = std::iter::once(now).chain(pins.iter().map(pinned)).collect();
@@ -135,9 +136,4 @@ fn heading_ui(ui: &mut Ui, context: &ViewContext<'_>, pin: &Pin, width: f32) -> 
         };
     });
     action
-}
-
-fn card(context: &ViewContext<'_>, pin: &Pin) -> Card {
-    let thresholds = pin.thresholds().copied().filter(|_| !context.session.keeps_remedy);
-    Card { scene: pin.scene().clone(), settled: pin.settled().copied(), thresholds }
 }

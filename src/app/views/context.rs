@@ -12,7 +12,6 @@ use crate::app::session::pins::Pin;
 use crate::app::ui::style::{CONTROL, CORNER, Style, strong_family};
 use crate::app::ui::widgets::tell;
 use crate::dynamics::{Model, Sample};
-use crate::study::Watch;
 
 use super::memory::Memory;
 use super::span::Span;
@@ -49,12 +48,7 @@ impl Drawn {
         }
     }
 
-    /// The recorded motion that is drawn.
-    pub(super) fn watch(self, session: &Session) -> &Watch {
-        self.pin(session).map_or(session.player.watch(), Pin::watch)
-    }
-
-    /// Its state at the time that is shown.
+    /// The state of the motion that is drawn, at the time that is shown.
     pub(super) fn state(self, session: &Session) -> Sample {
         self.pin(session).map_or_else(|| session.player.state(), |pin| pin.state_at(session.player.time()))
     }

@@ -44,32 +44,20 @@ type Row = (&'static str, &'static str, fn(&LiveLedger) -> f64, fn(&Style) -> Co
 
 const STORED: &str = "stored";
 const OF_WORK: &str = "The share of the work of the base that is taken so.";
+const BY_HAND: &str = "Put in or taken out by you: a stop dragged over the mass, a mass put elsewhere, \
+                       another potential under it.";
+const IN_IMPACTS: &str = "Taken by impacts: (1 - e²) of the kinetic energy each.";
+const IN_TRANSDUCER: &str = "Taken by the load and the coil of the transducer.";
 
 /// The row that only a scene with a transducer has.
 const TRANSDUCER: &str = "transducer";
 
 const LEDGER: [Row; 6] = [
     ("work in", "Work of the base on the mass.", |ledger| ledger.work_j, Style::base),
-    (
-        "by hand",
-        "Put in or taken out by you: a stop dragged over the mass, a mass put elsewhere, another potential \
-         under it.",
-        |ledger| ledger.by_hand_j,
-        Style::mass,
-    ),
+    ("by hand", BY_HAND, |ledger| ledger.by_hand_j, Style::mass),
     ("damping", "Taken by damping.", |ledger| -ledger.damping_j, Style::faint),
-    (
-        "impacts",
-        "Taken by impacts: (1 - e²) of the kinetic energy each.",
-        |ledger| -ledger.impact_j,
-        Style::impact,
-    ),
-    (
-        TRANSDUCER,
-        "Taken by the load and the coil of the transducer.",
-        |ledger| -(ledger.harvested_j + ledger.coil_j),
-        Style::ink,
-    ),
+    ("impacts", IN_IMPACTS, |ledger| -ledger.impact_j, Style::impact),
+    (TRANSDUCER, IN_TRANSDUCER, |ledger| -(ledger.harvested_j + ledger.coil_j), Style::ink),
     (STORED, "What that leaves in the mass and its mechanism.", |ledger| ledger.stored_j, Style::ink),
 ];
 

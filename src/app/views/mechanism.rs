@@ -8,6 +8,7 @@
 
 use eframe::egui::{self, Align2, Color32, Pos2, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
 
+use crate::app::session::pins::Pin;
 use crate::app::ui::style::{BALL, RING_SECONDS};
 use crate::app::words::meanings::explained;
 use crate::app::words::numbers::{decimals_for, three};
@@ -22,7 +23,7 @@ use super::memory::Ring;
 use super::pane::GUTTER;
 use super::schematic::Schematic;
 use super::stops::{WALL, stops_ui};
-use super::{Cover, Drawn, LegendRow, Span, ViewContext};
+use super::{Cover, Drawn, LegendRow, ViewContext};
 
 /// Height in points of the name of a stop above the foot of the stop, clear of the rail.
 const CLEAR: f32 = 6.0;
@@ -102,12 +103,11 @@ fn drawing_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect) {
 /// The walls of the stops between these heights.
 fn walls(context: &ViewContext<'_>, rect: Rect, (top, bottom): (f32, f32)) -> impl Iterator<Item = Rect> {
     let (left, right) = context.drawn.model(context.session).stop_positions();
-    let wall = move |(x, side): (f64, f32), span: Span| {
+    let (span, stops) = (context.span, [left.map(|x| (x, -1.0)), right.map(|x| (x, 1.0))]);
+    stops.into_iter().flatten().map(move |(x, side)| {
         let face = span.screen_from_world(x, rect) + side * BALL;
         Rect::from_two_pos(pos2(face, top), pos2(face + side * WALL, bottom))
-    };
-    let (span, stops) = (context.span, [left.map(|x| (x, -1.0)), right.map(|x| (x, 1.0))]);
-    stops.into_iter().flatten().map(move |stop| wall(stop, span))
+    })
 }
 
 /// A text of the row above the drawing, its colour and its priority: the lowest is left out first.
@@ -293,7 +293,8 @@ fn rings(ui: &Ui, context: &mut ViewContext<'_>, rect: Rect, y: f32) {
     let model = context.drawn.model(context.session);
     let (left, right) = model.stop_positions();
     if to > from && !context.reduce_motion {
-        let watch = context.drawn.watch(context.session);
+        let pin = context.drawn.pin(context.session);
+        let watch = pin.map_or(context.session.player.watch(), Pin::watch);
         let first = watch.events().partition_point(|event| event.t <= from);
         let scale = model.scales().speed * model.scales().speed;
         for event in watch.events().range(first..).take_while(|event| event.t <= to) {

@@ -189,7 +189,8 @@ impl Painting {
                     add(Shape::convex_polygon(places(&points), colour(ink), Stroke::NONE));
                 }
                 Drawn::Disc(centre, radius, ink) => {
-                    let radius = style.dot((radius as f32 * UNIT).max(LEAST_DOT));
+                    let larger = if style.projector { 1.4 } else { 1.0 };
+                    let radius = larger * (radius as f32 * UNIT).max(LEAST_DOT);
                     add(Shape::circle_filled(self.place(centre), radius, colour(ink)));
                 }
                 Drawn::Text(text) => texts.push(text),

@@ -166,21 +166,16 @@ fn points_ui(ui: &mut Ui, area: egui::Rect, points_only: &mut bool) {
 fn start_ui(ui: &Ui, context: &mut ViewContext<'_>, pane: &Pane, beside: f32) {
     let Some((mm, speed)) = pane.pointed() else { return };
     if pane.response.clicked() {
-        let inside = within(context, mm / 1e3);
-        context.session.player.place(mm / 1e3, if inside { speed / 1e3 } else { 0.0 });
+        let (x, model) = (mm / 1e3, context.session.shown());
+        let ((left, right), (low, high)) = (model.stop_positions(), model.mechanism().curve.domain());
+        let is_inside = x >= left.unwrap_or(low).max(low) && x <= right.unwrap_or(high).min(high);
+        context.session.player.place(x, if is_inside { speed / 1e3 } else { 0.0 });
         context.session.moved_by_hand();
     }
     pane.reading(ui, &context.style, beside, &format!("{} mm, {} mm/s", three(mm), three(speed)));
     if pointer_rests(ui) {
         pane.response.clone().on_hover_text_at_pointer("Click: the motion goes on from here.");
     }
-}
-
-/// Whether the mass can be at `x` in m.
-fn within(context: &ViewContext<'_>, x: f64) -> bool {
-    let model = context.session.shown();
-    let ((left, right), domain) = (model.stop_positions(), model.mechanism().curve.domain());
-    x >= left.unwrap_or(domain.0).max(domain.0) && x <= right.unwrap_or(domain.1).min(domain.1)
 }
 
 /// The recent path, fading with age. An impact is a dashed jump; moving the mass by hand leaves a gap.

@@ -137,9 +137,8 @@ fn chart(branches: &Branches<'_>, shown: Shown, axes: (PlotAxis, PlotAxis), here
     let differing = differing(branches, panel.y.high - panel.y.low);
     panel.layer(Role::Closer, "the two differ", Marks::Spans(differing));
     panel.draw(Role::Drive, Marks::Verticals(here.into_iter().collect()));
-    for (branch, role, name) in
-        [(&branches[0], Role::Motion, "turned up"), (&branches[1], Role::Down, "turned down")]
-    {
+    let [up, down] = branches;
+    for (branch, role, name) in [(up, Role::Motion, "turned up"), (down, Role::Down, "turned down")] {
         let of_visit = |visit: &&Visit| (visit.value, number(visit, shown));
         let strobed = |visit: &&Visit| {
             let value = visit.value;

@@ -172,11 +172,6 @@ impl View {
         matches!(self, Displacement | Velocity | BaseAcceleration | Power | Distance)
     }
 
-    /// Whether its axes can be zoomed and held.
-    pub fn has_axes(self) -> bool {
-        self.axes().is_some()
-    }
-
     /// Whether its horizontal axis is the displacement.
     pub fn is_along_x(self) -> bool {
         matches!(self, Self::Mechanism | Self::Well | Self::PhasePortrait | Self::Section | Self::ForceCurve)

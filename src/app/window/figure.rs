@@ -20,7 +20,7 @@ use super::wanted::{Wanted, path_fault};
 const LEAST_SHARE: f64 = 0.05;
 
 /// The requested figure. Its layout is kept for the next one.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Figures {
     /// The view; `None` while no figure is requested.
     view: Option<View>,
@@ -46,27 +46,12 @@ pub struct Figures {
     job: Background<(), WriteResult>,
 }
 
-impl Default for Figures {
-    fn default() -> Self {
-        Self {
-            view: None,
-            path: String::new(),
-            width: "85".to_owned(),
-            font: "8".to_owned(),
-            titled: true,
-            data: false,
-            times: <[String; 2]>::default(),
-            panels: [false; RunPanel::ALL.len()],
-            before: <[String; 2]>::default(),
-            problem: None,
-            x: 0.0,
-            had_focus: false,
-            job: Background::default(),
-        }
-    }
-}
-
 impl Figures {
+    /// No figure, and the layout with which the first one begins.
+    pub(super) fn new() -> Self {
+        Self { width: "85".to_owned(), font: "8".to_owned(), titled: true, ..Self::default() }
+    }
+
     pub(super) fn is_open(&self) -> bool {
         self.view.is_some()
     }

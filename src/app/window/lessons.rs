@@ -319,19 +319,13 @@ impl Window {
     }
 
     fn take_turn(&mut self, turn: Turn) {
-        let Some(lesson) = &self.lessons.open else { return };
-        match turn {
-            Turn::Stay | Turn::Same => {}
-            Turn::Show(scene, plays) => match self.session_on(lesson, *scene, plays) {
-                Ok(session) => {
-                    self.session = session;
-                    self.memory = Memory::default();
-                }
-                Err(error) => {
-                    self.messages.alert("This step of the lesson cannot be shown", error.to_string());
-                    self.leave_lesson();
-                }
-            },
+        let (Some(lesson), Turn::Show(scene, plays)) = (&self.lessons.open, turn) else { return };
+        match self.session_on(lesson, *scene, plays) {
+            Ok(session) => (self.session, self.memory) = (session, Memory::default()),
+            Err(error) => {
+                self.messages.alert("This step of the lesson cannot be shown", error.to_string());
+                self.leave_lesson();
+            }
         }
     }
 

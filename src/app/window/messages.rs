@@ -61,12 +61,7 @@ impl Messages {
         }
     }
 
-    pub fn ui(&mut self, ui: &Ui) {
-        self.alert_ui(ui);
-        self.notice_ui(ui);
-    }
-
-    fn notice_ui(&mut self, ui: &Ui) {
+    pub fn notice_ui(&mut self, ui: &Ui) {
         let Some(notice) = &mut self.notice else { return };
         let now = ui.input(|input| input.time);
         let left = *notice.since.get_or_insert(now) + SHOWN_FOR - now;
@@ -87,7 +82,7 @@ impl Messages {
         }
     }
 
-    fn alert_ui(&mut self, ui: &Ui) {
+    pub fn alert_ui(&mut self, ui: &Ui) {
         let Some((title, text)) = &self.alert else { return };
         let (is_read, is_closed) = dialog_ui(ui, ("message", 560.0), (title, 6.0), |ui| {
             let room = (ui.ctx().content_rect().height() - 160.0).clamp(80.0, 420.0);

@@ -77,7 +77,7 @@ impl Window {
         let is_close = |a: f32, b: f32| (a - b).abs() < 0.01 * b;
         if !zoom.zip(self.zoom).map_or(zoom == self.zoom, |(zoom, applied)| is_close(zoom, applied)) {
             self.zoom = zoom;
-            ctx.set_zoom_factor(self.natural_zoom());
+            ctx.set_zoom_factor(zoom.unwrap_or(1.0));
         }
         self.window_size.follow(ctx);
         self.take_choice(ctx);
@@ -300,7 +300,8 @@ impl Window {
         self.glossary = self.glossary && notes::glossary_ui(ui);
         let projector = self.settings.projector;
         self.shortcuts = self.shortcuts.filter(|opened| keys::list_ui(ui, *opened, projector));
-        self.messages.ui(ui);
+        self.messages.alert_ui(ui);
+        self.messages.notice_ui(ui);
     }
 
     fn views_ui(&mut self, ui: &mut Ui, style: Style) {

@@ -118,7 +118,7 @@ impl Window {
             Command::Cover => self.covered = !self.covered,
             Command::Magnify(1) => gui_zoom::zoom_in(ctx),
             Command::Magnify(-1) => gui_zoom::zoom_out(ctx),
-            Command::Magnify(_) => ctx.set_zoom_factor(self.natural_zoom()),
+            Command::Magnify(_) => ctx.set_zoom_factor(self.zoom.unwrap_or(1.0)),
             Command::FullScreen => {
                 let full = ctx.input(|input| input.viewport().fullscreen.unwrap_or(false));
                 ctx.send_viewport_cmd(egui::ViewportCommand::Fullscreen(!full));

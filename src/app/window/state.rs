@@ -144,7 +144,7 @@ impl Window {
             file_dialog: Background::default(),
             opens_dialogs: true,
             path_dialog: None,
-            figures: Figures::default(),
+            figures: Figures::new(),
             columns: None,
             deferred: DeferredInput::default(),
             lessons: Lessons::default(),
@@ -178,11 +178,6 @@ impl Window {
     /// What the status line says; nothing while a lesson covers the motion.
     pub fn status(&self) -> String {
         if self.motion_is_covered() { String::new() } else { self.session.sentence().text }
-    }
-
-    /// The zoom to which Ctrl+0 returns.
-    pub(super) fn natural_zoom(&self) -> f32 {
-        self.zoom.unwrap_or(1.0)
     }
 
     pub fn message(&self) -> Option<&str> {

@@ -122,18 +122,14 @@ impl Attachments {
         parts
     }
 
-    pub fn has_magnets(&self) -> bool {
-        self.magnets.is_some()
-    }
-
     /// Whether a part stands on a clamp below the mass.
     pub fn stands_below(&self) -> bool {
-        self.has_magnets() || self.transducer != Transducer::None
+        self.magnets.is_some() || self.transducer != Transducer::None
     }
 
     /// Whether there is a spring or magnets.
     pub fn is_drawn(&self) -> bool {
-        self.stiffness != 0.0 || self.has_magnets()
+        self.stiffness != 0.0 || self.magnets.is_some()
     }
 
     /// Height of the arrow of the push above the middle of the mass, in half heights: clear of the spring.

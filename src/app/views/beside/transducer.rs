@@ -86,7 +86,7 @@ impl Pen<'_> {
         let length = 2.0 * WINDING.0.min(WINDING.1 * rect.width());
         let row = |top: f32| Rect::from_center_size(pos2(zero, top + 0.5 * WOUND), vec2(length, WOUND));
         let pole = POLE.min(0.5 * (bottom - body.bottom() - CLEAR - 2.0 * WOUND) - 2.5);
-        let hangs = pole >= MIN_POLE && !self.parts.has_magnets();
+        let hangs = pole >= MIN_POLE && self.parts.magnets.is_none();
         let rows = match hangs {
             true => [body.bottom() + CLEAR, body.bottom() + CLEAR + WOUND + 2.0 * pole + 3.0],
             false => [bottom - 2.0 * WOUND - 1.0, bottom - WOUND - 1.0],
