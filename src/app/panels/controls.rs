@@ -55,7 +55,7 @@ const CIRCUIT: [&str; 3] = ["transducer.coil_ohm", "transducer.inductance_mh", "
 
 pub fn column_ui(ui: &mut Ui, session: &mut Session, more: &mut bool) {
     let width = (ui.available_width() - 84.0).max(80.0);
-    heading_ui(ui, "Shaking");
+    ui.heading("Shaking");
     shaking_ui(ui, session, width);
     fields_ui(ui, session, &FREQUENCY, width);
     ui.add_space(14.0);
@@ -64,7 +64,7 @@ pub fn column_ui(ui: &mut Ui, session: &mut Session, more: &mut bool) {
     best_stops_ui(ui, session, "Find the best stops");
     if session.scene().transducer != Transducer::None {
         ui.add_space(14.0);
-        heading_ui(ui, "Load");
+        ui.heading("Load");
         fields_ui(ui, session, &LOAD, width);
     }
     ui.add_space(14.0);
@@ -122,7 +122,7 @@ pub fn row_ui(ui: &mut Ui, session: &mut Session, more: &mut bool) {
             let has_search = !is_narrow && slider_width(SEARCH) >= LEAST_BESIDE;
             let width = slider_width(if has_search { SEARCH } else { 0.0 }).clamp(30.0, 260.0);
             if !is_narrow {
-                heading_ui(ui, "Shaking");
+                ui.heading("Shaking");
             }
             shaking_ui(ui, session, width);
             ui.separator();
@@ -173,10 +173,6 @@ pub fn named_ui(ui: &mut Ui, session: &mut Session, controls: &[String]) -> Vec<
         });
     }
     places
-}
-
-fn heading_ui(ui: &mut Ui, text: &str) {
-    ui.label(RichText::new(text).heading());
 }
 
 fn shaking_ui(ui: &mut Ui, session: &mut Session, width: f32) {

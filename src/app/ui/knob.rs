@@ -202,13 +202,8 @@ impl Knob<'_> {
         // the present value is always allowed
         let (low, high) = (self.typed.0.min(present), self.typed.1.max(present));
         if !(low..=high).contains(&value) {
-            return Err(format!(
-                "{}{unit} was not taken: {} may be {} to {}{unit}.",
-                shown(value, 0),
-                self.name,
-                shown(low, 0),
-                shown(high, 0)
-            ));
+            let ([value, low, high], name) = ([value, low, high].map(|number| shown(number, 0)), self.name);
+            return Err(format!("{value}{unit} was not taken: {name} may be {low} to {high}{unit}."));
         }
         Ok(value)
     }

@@ -278,12 +278,11 @@ fn present_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect, (unit, nam
         let at = pos2(x, track.top() - 2.0);
         painter.text(at, Align2::CENTER_BOTTOM, "barrier", style.small(), style.faint());
     }
+    let (potential, kinetic) = (short(potential / unit), short(kinetic / unit));
     response.on_hover_text(format!(
-        "Now: potential {} and kinetic energy {} {name}, counted from the bottom of the deeper well, or \
-         without one from the lower stop. Without shaking the mass crosses only where their sum passes the \
-         barrier.",
-        short(potential / unit),
-        short(kinetic / unit)
+        "Now: potential {potential} and kinetic energy {kinetic} {name}, counted from the bottom of the deeper \
+         well, or without one from the lower stop. Without shaking the mass crosses only where their sum \
+         passes the barrier."
     ));
 }
 

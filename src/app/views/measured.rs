@@ -71,15 +71,9 @@ fn head_ui(ui: &mut Ui, context: &mut ViewContext<'_>, over: &Overlay) {
         let name = egui::Label::new(RichText::new(&record.name).heading()).truncate();
         ui.scope(|ui| {
             ui.set_max_width((ui.available_width() - 180.0).max(60.0));
-            let columns = format!(
-                "{} from `{}`, {} from `{}`. {}",
-                record.across.quantity.name(),
-                record.across.column,
-                record.values.quantity.name(),
-                record.values.column,
-                record.describe()
-            );
-            ui.add(name).on_hover_text(columns);
+            let [across, values] = [&record.across, &record.values]
+                .map(|channel| format!("{} from `{}`", channel.quantity.name(), channel.column));
+            ui.add(name).on_hover_text(format!("{across}, {values}. {}", record.describe()));
         });
         if record.timing.is_some() {
             let fitting = context.session.measured.is_fitting();

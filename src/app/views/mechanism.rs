@@ -14,7 +14,7 @@ use crate::app::words::meanings::explained;
 use crate::app::words::numbers::{decimals_for, three};
 use crate::dynamics::{EventKind, STANDARD_GRAVITY, Side};
 
-use super::beside::{Attachments, LowerFlexures, MIN_LABELLED, Places};
+use super::beside::{Attachments, MIN_LABELLED, Places};
 use super::flexures::{CLAMP, DrawingArea, DrawingScale, Sketch, bulge_words, state_at};
 use super::ghosts::ghosts;
 use super::labels::{Taken, ago};
@@ -56,11 +56,11 @@ fn drawing_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect) {
     let beside = Attachments::of(context.drawn.model(context.session));
     let behind = painter.add(Shape::Noop);
     let mut sketch = Sketch { painter, rect, style, area, taken: Taken::default() };
-    let (middle, words, below) = match sketch.bent(context, state.x) {
-        Some((middle, words, below)) => (middle, words, Some(below)),
+    let (middle, words, along, feet) = match sketch.bent(context, state.x) {
+        Some((middle, words, along, feet)) => (middle, words, Some(along), feet),
         None => {
             let mass = pos2(context.span.screen_from_world(state.x, rect), 0.5 * (top + bottom));
-            (mass.y, sketch.schematic(context, mass, &beside), None)
+            (mass.y, sketch.schematic(context, mass, &beside), None, Vec::new())
         }
     };
     let x = context.span.screen_from_world(state.x, rect);
@@ -70,7 +70,7 @@ fn drawing_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect) {
     sketch.taken.places.push(body);
     sketch.taken.places.extend(walls(context, rect, heights));
     sketch.bulge_ui(ui, context);
-    beside.draw(ui, &mut sketch, behind, &Places { rect, bottom, body, zero, below });
+    beside.draw(ui, &mut sketch, behind, &Places { rect, bottom, body, zero, along, feet });
     let painter = sketch.painter.clone();
     for ghost in ghosts(context) {
         let walls = rect.with_min_y(heights.0).with_max_y(heights.1);
@@ -162,9 +162,9 @@ impl Sketch {
         self.taken.write(&self.painter, self.rect, look, places);
     }
 
-    /// Draws the bent flexures. Returns the height of the middle of the body, the text on the scale and the
-    /// flexures below the body. `None` if the mechanism has no flexures.
-    fn bent(&mut self, context: &mut ViewContext<'_>, x: f64) -> Option<(f32, String, LowerFlexures)> {
+    /// Draws the bent flexures. Returns the height of the middle of the body, the text on the scale, the points
+    /// per m along the flexures and the lines of the lower feet. `None` if the mechanism has no flexures.
+    fn bent(&mut self, context: &mut ViewContext<'_>, x: f64) -> Option<(f32, String, f32, Vec<Vec<Pos2>>)> {
         let (bent, rect, DrawingArea { top, bottom, .. }) = (state_at(context, x)?, self.rect, self.area);
         let mechanism = &context.drawn.model(context.session).mechanism();
         let geometry = mechanism.flexures.as_ref()?.geometry();
@@ -185,8 +185,7 @@ impl Sketch {
         }
         let corner = pos2(rect.right() - 18.0, bottom - 8.0);
         self.taken.places.extend(scale.bar(&self.painter, &self.style, corner));
-        let below = LowerFlexures { along: scale.along as f32, feet };
-        Some((scale.middle(&bent), scale.words(context.span, rect), below))
+        Some((scale.middle(&bent), scale.words(context.span, rect), scale.along as f32, feet))
     }
 
     /// Writes the bulge of the flexures in the lower left corner, where nothing is drawn.

@@ -273,7 +273,11 @@ fn number_rows(columns: &[Column], now: usize, with_threshold: bool) -> Vec<Row>
     let reach_in = |run: &Summary| run.max_abs_x.map(|x| x * per_metre);
     let reach = |card: &Card, run: &Summary| match length {
         "m" => reach_in(run).map(three),
-        _ => reach_mm(card, run),
+        // on its side of the stops
+        _ => {
+            let stops = card.scene.stops.positions_mm().map(|stop| stop.map(|mm| mm * 1e-3));
+            run.max_abs_x.map(|reach| mm_beside(reach, stops.into()))
+        }
     };
     let of_reach = |size: f64| match length {
         "m" => decimals_for(size),
@@ -313,12 +317,6 @@ fn difference(value: f64, present: f64, decimals: &dyn Fn(f64) -> usize) -> Stri
     // a difference that rounds to zero has no sign
     let is_zero = text.trim_start_matches(['+', '\u{2212}', '0', '.']).is_empty();
     if is_zero { "same".to_owned() } else { text }
-}
-
-/// The reach in mm, on its side of the stops.
-fn reach_mm(card: &Card, run: &Summary) -> Option<String> {
-    let stops = card.scene.stops.positions_mm().map(|stop| stop.map(|mm| mm * 1e-3));
-    run.max_abs_x.map(|reach| mm_beside(reach, stops.into()))
 }
 
 /// The shaking in words, and the fields whose numbers these contain.

@@ -7,7 +7,7 @@ use crate::output::{Chart, Marks, Panel, PlotAxis, Role};
 use crate::scene::read_number;
 use crate::study::Table;
 use crate::study::accuracy::methods::Scheme;
-use crate::study::accuracy::scene::{StepSize, step_name};
+use crate::study::accuracy::scene::{StepSize, duration, step_name};
 
 use super::super::pane::pane_ui;
 use super::super::{View, ViewContext};
@@ -88,13 +88,11 @@ pub fn steps_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
 
 /// Description of the run and of the comparison.
 fn about(known: &StepSize) -> String {
+    let (span, count, step) = (duration(known.span), known.stepped.steps, step_name(known.step));
     format!(
-        "The first {} of the scene from its start, {} steps of {}. A step that ends beyond a stop is put \
-         onto it, and the mass bounces from there (clamp and bounce). The true run locates each impact; it \
-         counts those down to a millionth of the scene's speed, and the rest of a chatter in one sum.",
-        crate::study::accuracy::scene::duration(known.span),
-        known.stepped.steps,
-        step_name(known.step)
+        "The first {span} of the scene from its start, {count} steps of {step}. A step that ends beyond a stop \
+         is put onto it, and the mass bounces from there (clamp and bounce). The true run locates each impact; \
+         it counts those down to a millionth of the scene's speed, and the rest of a chatter in one sum."
     )
 }
 

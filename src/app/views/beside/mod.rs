@@ -90,16 +90,9 @@ pub(super) struct Places {
     pub body: Rect,
     /// Position of x = 0.
     pub zero: f32,
-    /// The flexures below the mass, if any.
-    pub below: Option<LowerFlexures>,
-}
-
-/// The flexures below the mass.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct LowerFlexures {
-    /// Points per m along the flexures.
-    pub along: f32,
-    /// The lines of their feet, next to the clamp.
+    /// Points per m along the flexures, if there are any.
+    pub along: Option<f32>,
+    /// The lines of the feet of the flexures below the mass, next to the clamp.
     pub feet: Vec<Vec<Pos2>>,
 }
 
@@ -199,16 +192,16 @@ impl Pen<'_> {
         let line = coil((from, to), HALF_TURNS, SPRING, (END / (to.x - from.x)).min(0.25));
         shapes.push(Shape::line(line.clone(), self.style.flexure_stroke()));
         self.taken.borrow_mut().lines.push(line);
-        let text = format!("spring {} N/m", short(stiffness));
+        let n_per_m = short(stiffness);
+        let text = format!("spring {n_per_m} N/m");
         // below the stops, or above them
         let below = (text.as_str(), pos2(from.x + 6.0, body.bottom() + 7.0), Align2::LEFT_TOP);
         let above = (text.as_str(), pos2(from.x + 6.0, body.top() - 7.0), Align2::LEFT_BOTTOM);
         self.name(&[below, above], (rect.left(), rect.right()));
         let effect = if stiffness > 0.0 { "draws the mass there" } else { "pushes the mass away from there" };
         let words = format!(
-            "A spring of {} N/m between the frame and the mass. It has no force at x = 0 and {effect}, \
-             harder the further out the mass is.",
-            short(stiffness)
+            "A spring of {n_per_m} N/m between the frame and the mass. It has no force at x = 0 and {effect}, \
+             harder the further out the mass is."
         );
         let place = Rect::from_two_pos(from - vec2(0.0, SPRING), to + vec2(0.0, SPRING));
         self.explain(place, "spring", &words);
@@ -216,7 +209,7 @@ impl Pen<'_> {
 
     fn magnets(&self, pair: Pair, shapes: &mut Vec<Shape>) {
         let Pair { strength, gap, moments } = pair;
-        let Places { rect, bottom, body, zero, ref below } = *self.places;
+        let Places { rect, bottom, body, zero, along, .. } = *self.places;
         let room = bottom - body.bottom();
         let pole = POLE.min((room - 6.0) / 4.0);
         if pole < MIN_POLE {
@@ -224,7 +217,7 @@ impl Pen<'_> {
         }
         // distance between the middles of the two magnets
         let (closest, farthest) = (2.0 * pole + 3.0, (room - 2.0 * pole - 3.0).max(2.0 * pole + 3.0));
-        let wanted = below.as_ref().map_or(0.5 * (closest + farthest), |lower| lower.along * gap as f32);
+        let wanted = along.map_or(0.5 * (closest + farthest), |along| along * gap as f32);
         let distance = wanted.clamp(closest, farthest);
         let attract = pair.stiffness() > 0.0;
         let hung = pos2(body.center().x, body.bottom() + pole);
@@ -248,7 +241,7 @@ impl Pen<'_> {
         let sides = if is_right { [right, left] } else { [left, right] };
         self.name(&sides, (rect.left() + WORDS_ROOM, rect.right()));
         let effect = if attract { "draw the mass to x = 0" } else { "push the mass away from x = 0" };
-        let mm = |metres: f64| three(1e3 * metres);
+        let [mm, twice_mm] = [gap, 2.0 * gap].map(|metres| three(1e3 * metres));
         let stiffest = "pairs of magnets this one is the stiffest there; the others are not drawn.";
         let more = match self.parts.pairs {
             1 => String::new(),
@@ -257,15 +250,12 @@ impl Pen<'_> {
         let strength = three((1e12 * strength).abs());
         let words = match moments {
             Moments::Facing => format!(
-                "Two magnets, {} mm apart where they face each other at x = 0, with a strength of {strength} \
-                 N mm⁴. They {effect} up to {} mm from it, and further out the other way.{more}",
-                mm(gap),
-                mm(2.0 * gap)
+                "Two magnets, {mm} mm apart where they face each other at x = 0, with a strength of {strength} \
+                 N mm⁴. They {effect} up to {twice_mm} mm from it, and further out the other way.{more}"
             ),
             Moments::Transverse => format!(
-                "Two magnets, {} mm apart at x = 0 and magnetised across the drawing, with a strength of \
-                 {strength} N mm⁴. They {effect}.{more}",
-                mm(gap)
+                "Two magnets, {mm} mm apart at x = 0 and magnetised across the drawing, with a strength of \
+                 {strength} N mm⁴. They {effect}.{more}"
             ),
         };
         self.explain(Rect::from_center_size(stood, vec2(2.0 * MAGNET, 2.0 * pole)), "magnets", &words);
