@@ -44,11 +44,10 @@ pub fn status_ui(ui: &mut Ui, session: &mut Session, announcer: &mut Announcer, 
     let has_column = column && has_column(ui);
     let sentence = session.sentence();
     announcer.say(ui, &sentence);
-    let size = STATUS;
     ui.horizontal_centered(|ui| {
-        let (rect, _) = ui.allocate_exact_size(Vec2::splat(size + 6.0), Sense::hover());
+        let (rect, _) = ui.allocate_exact_size(Vec2::splat(STATUS + 6.0), Sense::hover());
         let (kind, color) = (sentence.kind, style.kind(sentence.kind));
-        ui.painter().extend(kind_shapes(kind, rect.center(), size * 0.42, color));
+        ui.painter().extend(kind_shapes(kind, rect.center(), STATUS * 0.42, color));
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             stop_ui(ui, session);
             if has_column {
@@ -60,7 +59,7 @@ pub fn status_ui(ui: &mut Ui, session: &mut Session, announcer: &mut Announcer, 
                 // the name of the motion is read first
                 let (name, rest) = text.split_at(text.find(':').map_or(0, |at| at + 1));
                 let parts = [(name, strong_family()), (rest, egui::FontFamily::Proportional)];
-                let (size, _) = fitting(ui, &parts, room, size);
+                let (size, _) = fitting(ui, &parts, room, STATUS);
                 let label = parts_ui(ui, &parts, size);
                 if label.hovered() {
                     let kind = meaning(&sentence.text).map_or_else(String::new, |text| format!("{text}\n\n"));

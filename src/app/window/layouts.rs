@@ -137,11 +137,9 @@ impl Tiling {
         self.tree.simplify(&simplification());
         let tiles = &mut self.tree.tiles;
         let shown = tiles.find_pane(&other).filter(|id| tiles.is_visible(*id));
-        let place = shown.and_then(|id| tiles.parent_of(id));
-        if tiles.find_pane(&view).is_none()
-            && let Some(place) =
-                place.filter(|id| matches!(tiles.get_container(*id), Some(Container::Tabs(_))))
-        {
+        let is_tabs = |id: &TileId| matches!(tiles.get_container(*id), Some(Container::Tabs(_)));
+        let place = shown.and_then(|id| tiles.parent_of(id)).filter(is_tabs);
+        if let Some(place) = place.filter(|_| tiles.find_pane(&view).is_none()) {
             let id = tiles.insert_pane(view);
             if let Some(Tile::Container(container)) = tiles.get_mut(place) {
                 container.add_child(id);
