@@ -91,14 +91,12 @@ pub struct Lectured {
 pub fn lecturer_ui(ctx: &egui::Context, lesson: &OpenLesson, builder: ViewportBuilder) -> Lectured {
     let mut done = Lectured::default();
     ctx.show_viewport_immediate(ViewportId::from_hash_of("lecturer"), builder, |ui, class| {
-        let is_separate = class != ViewportClass::EmbeddedWindow;
-        if is_separate {
-            CentralPanel::default_margins().show(ui, |ui| done.action = lecturer_notes_ui(ui, lesson));
-        } else {
+        if class == ViewportClass::EmbeddedWindow {
             done.action = lecturer_notes_ui(ui, lesson);
             done.is_closed |= ui.button("Close").clicked();
             return;
         }
+        CentralPanel::default_margins().show(ui, |ui| done.action = lecturer_notes_ui(ui, lesson));
         ui.input_mut(|input| {
             let view = input.viewport();
             done.is_closed |= view.close_requested();

@@ -120,8 +120,7 @@ pub fn energy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let count = COUNT + if model.has_transducer() { 1.0 } else { 0.0 };
     let row = (area.height() / count).clamp(ROWS.0, ROWS.1);
     let shaken = model.forcing_period().is_some();
-    let columns = if shaken { 2.0 } else { 1.0 };
-    let column = (area.width() - NAMES) / columns;
+    let column = (area.width() - NAMES) / if shaken { 2.0 } else { 1.0 };
     let [since_start, last_period] = ledgers(watch);
     let mut heads = [
         (since_start, "since the start", "From the start of the motion up to the time that is shown."),
@@ -280,9 +279,9 @@ fn present_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect, (unit, nam
     }
     let (potential, kinetic) = (short(potential / unit), short(kinetic / unit));
     response.on_hover_text(format!(
-        "Now: potential {potential} and kinetic energy {kinetic} {name}, counted from the bottom of the deeper \
-         well, or without one from the lower stop. Without shaking the mass crosses only where their sum \
-         passes the barrier."
+        "Now: potential {potential} and kinetic energy {kinetic} {name}, counted from the bottom of the \
+         deeper well, or without one from the lower stop. Without shaking the mass crosses only where their \
+         sum passes the barrier."
     ));
 }
 

@@ -122,15 +122,13 @@ impl Sketch {
         }
         let (rect, mechanism) = (self.rect, context.drawn.model(context.session).mechanism());
         let barrier = mechanism.landscape.barrier.map_or(0.0, |barrier| barrier.x);
-        let named = if mechanism.flexures.is_some() {
-            Some(("flexure", context.span.screen_from_world(0.0, rect)))
-        } else if Schematic::of(mechanism, context.span) == Schematic::Spring {
-            Some(("spring", context.span.screen_from_world(barrier, rect)))
-        } else {
-            None
+        let is_spring = || Schematic::of(mechanism, context.span) == Schematic::Spring;
+        let named = match mechanism.flexures {
+            Some(_) => Some(("flexure", 0.0)),
+            None => is_spring().then_some(("spring", barrier)),
         };
-        if let Some((name, foot)) = named {
-            let top = self.area.top + 5.0;
+        if let Some((name, x)) = named {
+            let (foot, top) = (context.span.screen_from_world(x, rect), self.area.top + 5.0);
             let aside = [16.0, 26.0, 40.0].into_iter().flat_map(|aside| [aside, -aside]);
             self.name(aside.map(|aside| {
                 let align = if aside > 0.0 { Align2::LEFT_TOP } else { Align2::RIGHT_TOP };
@@ -162,8 +160,8 @@ impl Sketch {
         self.taken.write(&self.painter, self.rect, look, places);
     }
 
-    /// Draws the bent flexures. Returns the height of the middle of the body, the text on the scale, the points
-    /// per m along the flexures and the lines of the lower feet. `None` if the mechanism has no flexures.
+    /// Draws the bent flexures. Returns the height of the middle of the body, the text on the scale, the
+    /// points per m along the flexures and the lines of the lower feet. `None` if there are no flexures.
     fn bent(&mut self, context: &mut ViewContext<'_>, x: f64) -> Option<(f32, String, f32, Vec<Vec<Pos2>>)> {
         let (bent, rect, DrawingArea { top, bottom, .. }) = (state_at(context, x)?, self.rect, self.area);
         let mechanism = &context.drawn.model(context.session).mechanism();

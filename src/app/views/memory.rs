@@ -102,8 +102,7 @@ impl FrozenAxis {
         let spare = SPARE * (wanted.1 - wanted.0);
         let contains = |old: &(f64, f64)| old.0 <= wanted.0 + spare && old.1 >= wanted.1 - spare;
         let ends = self.0.filter(|old| in_gesture && contains(old)).unwrap_or(wanted);
-        self.0 = Some(ends);
-        ends
+        *self.0.insert(ends)
     }
 
     /// The `wanted` ends of the axis, or the previous ones while they contain these and are no longer than
@@ -116,8 +115,7 @@ impl FrozenAxis {
             contains && old.1 - old.0 <= MOST * length
         };
         let ends = self.0.filter(holds).unwrap_or(wanted);
-        self.0 = Some(ends);
-        ends
+        *self.0.insert(ends)
     }
 }
 

@@ -42,11 +42,9 @@ pub enum Command {
     KeepOwn,
     Show(View, bool),
     NextTab,
-    /// Fill the window with one view, or show all again.
     Fill,
     Cover,
     Cursors,
-    /// Hold the axes of the active view, or release them.
     HoldAxes,
     FreeAxes,
     /// Zoom the vertical or the horizontal axis of the active view, in or out.

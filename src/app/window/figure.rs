@@ -204,16 +204,9 @@ enum Action {
 }
 
 impl Figures {
-    fn ui(&mut self, ui: &Ui, view: View, session: &Session, memory: &Memory) -> Option<Action> {
-        let (action, is_closed) = dialog_ui(ui, ("figure", 560.0), ("Save a figure", 4.0), |ui| {
-            ui.set_min_width(ui.available_width());
-            self.contents_ui(ui, view, session, memory)
-        });
-        action.or(is_closed.then_some(Action::Close))
-    }
-
     fn contents_ui(&mut self, ui: &mut Ui, view: View, session: &Session, memory: &Memory) -> Option<Action> {
         let mut action = None;
+        ui.set_min_width(ui.available_width());
         let entered = Grid::new("figure").num_columns(2).spacing([12.0, 6.0]).show(ui, |ui| {
             self.view_choice_ui(ui, view, session, memory);
             self.fields_ui(ui, view, &mut action)
@@ -335,7 +328,10 @@ impl Figures {
 impl Window {
     pub(super) fn figure_ui(&mut self, ui: &Ui) {
         let Some(view) = self.figures.view else { return };
-        let Some(action) = self.figures.ui(ui, view, &self.session, &self.memory) else { return };
+        let (action, is_closed) = dialog_ui(ui, ("figure", 560.0), ("Save a figure", 4.0), |ui| {
+            self.figures.contents_ui(ui, view, &self.session, &self.memory)
+        });
+        let Some(action) = action.or(is_closed.then_some(Action::Close)) else { return };
         // the dialog may have chosen another view
         let view = self.figures.view.unwrap_or(view);
         let order = self.figures.order(view, &self.session, &self.memory);

@@ -90,9 +90,10 @@ pub fn steps_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
 fn about(known: &StepSize) -> String {
     let (span, count, step) = (duration(known.span), known.stepped.steps, step_name(known.step));
     format!(
-        "The first {span} of the scene from its start, {count} steps of {step}. A step that ends beyond a stop \
-         is put onto it, and the mass bounces from there (clamp and bounce). The true run locates each impact; \
-         it counts those down to a millionth of the scene's speed, and the rest of a chatter in one sum."
+        "The first {span} of the scene from its start, {count} steps of {step}. A step that ends beyond a \
+         stop is put onto it, and the mass bounces from there (clamp and bounce). The true run locates each \
+         impact; it counts those down to a millionth of the scene's speed, and the rest of a chatter in one \
+         sum."
     )
 }
 

@@ -200,8 +200,8 @@ impl Pen<'_> {
         self.name(&[below, above], (rect.left(), rect.right()));
         let effect = if stiffness > 0.0 { "draws the mass there" } else { "pushes the mass away from there" };
         let words = format!(
-            "A spring of {n_per_m} N/m between the frame and the mass. It has no force at x = 0 and {effect}, \
-             harder the further out the mass is."
+            "A spring of {n_per_m} N/m between the frame and the mass. It has no force at x = 0 and \
+             {effect}, harder the further out the mass is."
         );
         let place = Rect::from_two_pos(from - vec2(0.0, SPRING), to + vec2(0.0, SPRING));
         self.explain(place, "spring", &words);
@@ -250,8 +250,9 @@ impl Pen<'_> {
         let strength = three((1e12 * strength).abs());
         let words = match moments {
             Moments::Facing => format!(
-                "Two magnets, {mm} mm apart where they face each other at x = 0, with a strength of {strength} \
-                 N mm⁴. They {effect} up to {twice_mm} mm from it, and further out the other way.{more}"
+                "Two magnets, {mm} mm apart where they face each other at x = 0, with a strength of \
+                 {strength} N mm⁴. They {effect} up to {twice_mm} mm from it, and further out the other \
+                 way.{more}"
             ),
             Moments::Transverse => format!(
                 "Two magnets, {mm} mm apart at x = 0 and magnetised across the drawing, with a strength of \
