@@ -55,8 +55,7 @@ impl Drawn {
 
     /// Its model at that time.
     pub(super) fn model(self, session: &Session) -> &Arc<Model> {
-        let of_pin = |pin| Pin::watch(pin).model_at(session.player.time());
-        self.pin(session).map_or(session.shown(), |pin| of_pin(pin))
+        self.pin(session).map_or(session.shown(), |pin| pin.watch().model_at(session.player.time()))
     }
 }
 

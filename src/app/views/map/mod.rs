@@ -113,7 +113,14 @@ pub fn map_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
             marker(&painter, &pane, &style, place)
         }
     };
-    veil(&painter, rect, &style, current, context.session.map.problem().is_some());
+    if !current {
+        // a veil over a map that is not that of the scene
+        painter.rect_filled(rect, 0.0, style.veil());
+        let has_problem = context.session.map.problem().is_some();
+        let words = if has_problem { "not of this scene" } else { "of the scene before" };
+        let at = rect.center_top() + vec2(0.0, 8.0);
+        painter.text(at, Align2::CENTER_TOP, words, style.body(), style.ink());
+    }
     let cell_at = |at: Pos2| cell_at(&pane, map, scene, at);
     let pointed = pane.response.hover_pos().filter(|_| !pane.response.dragged()).and_then(cell_at);
     if let Some(cell) = pointed {
@@ -180,17 +187,6 @@ fn cut_marks(painter: &Painter, style: &Style, pane: &Pane, scene: (usize, usize
             }
         }
     }
-}
-
-/// Draws a veil over a map that is not that of the scene.
-fn veil(painter: &Painter, rect: Rect, style: &Style, current: bool, has_problem: bool) {
-    if current {
-        return;
-    }
-    painter.rect_filled(rect, 0.0, style.veil());
-    let words = if has_problem { "not of this scene" } else { "of the scene before" };
-    let at = rect.center_top() + vec2(0.0, 8.0);
-    painter.text(at, Align2::CENTER_TOP, words, style.body(), style.ink());
 }
 
 /// Draws a diamond where the scene would stand with its best stops, at `limit` in mm, if the map has an axis
