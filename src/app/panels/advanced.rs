@@ -20,7 +20,6 @@ pub fn advanced_ui(ui: &mut Ui, session: &mut Session, width: f32) {
     run_ui(ui, session, width);
 }
 
-/// Name of the kind of shaking.
 fn kind_name(excitation: &Excitation) -> &'static str {
     match excitation {
         Excitation::None => "none",
@@ -81,20 +80,12 @@ fn kind_ui(ui: &mut Ui, session: &mut Session) {
                 wanted = Some(choice);
             }
         }
-        for (is_present, name, why) in [
-            (
-                matches!(present, Excitation::Recorded { .. }),
-                "recorded",
-                "Open measured data with an acceleration (File menu), or name a record in the scene file: \
-                 excitation: Recorded(path: ..).",
-            ),
-            (
-                matches!(present, Excitation::Sum(_)),
-                "sum",
-                "A sum of several is written in the scene file: excitation: Sum([..]).",
-            ),
-        ] {
-            ui.add_enabled(false, egui::Button::selectable(is_present, name)).on_disabled_hover_text(why);
+        let recorded = "Open measured data with an acceleration (File menu), or name a record in the scene \
+                        file: excitation: Recorded(path: ..).";
+        let sum = "A sum of several is written in the scene file: excitation: Sum([..]).";
+        for (name, why) in [("recorded", recorded), ("sum", sum)] {
+            let choice = egui::Button::selectable(kind_name(present) == name, name);
+            ui.add_enabled(false, choice).on_disabled_hover_text(why);
         }
     });
     combo.response.labelled_by(name.id).on_hover_text("What moves the base.");

@@ -55,7 +55,7 @@ const CIRCUIT: [&str; 3] = ["transducer.coil_ohm", "transducer.inductance_mh", "
 
 pub fn column_ui(ui: &mut Ui, session: &mut Session, more: &mut bool) {
     let width = (ui.available_width() - 84.0).max(80.0);
-    heading_ui(ui, "Shaking");
+    ui.heading("Shaking");
     shaking_ui(ui, session, width);
     fields_ui(ui, session, &FREQUENCY, width);
     ui.add_space(14.0);
@@ -64,32 +64,28 @@ pub fn column_ui(ui: &mut Ui, session: &mut Session, more: &mut bool) {
     best_stops_ui(ui, session, "Find the best stops");
     if session.scene().transducer != Transducer::None {
         ui.add_space(14.0);
-        heading_ui(ui, "Load");
+        ui.heading("Load");
         fields_ui(ui, session, &LOAD, width);
     }
     ui.add_space(14.0);
     let name = RichText::new(if *more { "Less" } else { "More" }).strong();
-    if ui.selectable_label(*more, name).on_hover_text(MORE_HOVER).clicked() {
-        *more = !*more;
-    }
+    ui.toggle_value(more, name).on_hover_text(MORE_HOVER);
     if *more {
         fields_below_ui(ui, session, width);
     }
 }
 
-/// What opens beside the views in a compact window, whose row has no room for the frequency.
+/// What opens beside the views in a compact window, whose row has no room for the frequency and the load.
 pub fn beside_ui(ui: &mut Ui, session: &mut Session, width: f32) {
     fields_ui(ui, session, &FREQUENCY, width);
-    more_ui(ui, session, width);
+    fields_ui(ui, session, &LOAD, width);
+    fields_below_ui(ui, session, width);
 }
 
 /// A button at the right end of a row, which opens further controls.
 fn more_button_ui(ui: &mut Ui, more: &mut bool) {
-    let button = ui.selectable_label(*more, "More").on_hover_text(MORE_HOVER);
-    let escaped = *more && ui.input(|input| input.key_pressed(egui::Key::Escape));
-    if button.clicked() || escaped {
-        *more = !*more;
-    }
+    ui.toggle_value(more, "More").on_hover_text(MORE_HOVER);
+    *more &= !ui.input(|input| input.key_pressed(egui::Key::Escape));
 }
 
 /// Shaking and stops in a row each, for a narrow window; More opens further ones below the views.
@@ -126,7 +122,7 @@ pub fn row_ui(ui: &mut Ui, session: &mut Session, more: &mut bool) {
             let has_search = !is_narrow && slider_width(SEARCH) >= LEAST_BESIDE;
             let width = slider_width(if has_search { SEARCH } else { 0.0 }).clamp(30.0, 260.0);
             if !is_narrow {
-                heading_ui(ui, "Shaking");
+                ui.heading("Shaking");
             }
             shaking_ui(ui, session, width);
             ui.separator();
@@ -179,10 +175,6 @@ pub fn named_ui(ui: &mut Ui, session: &mut Session, controls: &[String]) -> Vec<
     places
 }
 
-fn heading_ui(ui: &mut Ui, text: &str) {
-    ui.label(RichText::new(text).heading());
-}
-
 fn shaking_ui(ui: &mut Ui, session: &mut Session, width: f32) {
     let text = match &session.scene().excitation {
         Excitation::Sine { .. }
@@ -219,12 +211,6 @@ fn stops_switch_ui(ui: &mut Ui, session: &mut Session) {
     }
 }
 
-/// The fields under More beside a row of controls, which has no room for the load.
-fn more_ui(ui: &mut Ui, session: &mut Session, width: f32) {
-    fields_ui(ui, session, &LOAD, width);
-    fields_below_ui(ui, session, width);
-}
-
 fn fields_below_ui(ui: &mut Ui, session: &mut Session, width: f32) {
     fields_ui(ui, session, &COUPLING, width);
     restitution_ui(ui, session, width);
@@ -232,8 +218,10 @@ fn fields_below_ui(ui: &mut Ui, session: &mut Session, width: f32) {
     for path in sliders(session).into_iter().filter(|path| is_balancing(path)) {
         field_ui(ui, session, &path, width);
     }
-    damping_ui(ui, session, width);
-    field_ui(ui, session, "mass_g", width);
+    if session.scene().damping == Damping::None {
+        absent_ui(ui, "no damping", "The scene has none.");
+    }
+    fields_ui(ui, session, &["damping.xi", "damping.c_n_s_per_m", "mass_g"], width);
     ui.add_space(8.0);
     let hover = "What is changed seldom: sizes of the flexures, kind of shaking, uneven stops, run.";
     let heading = RichText::new("Advanced").strong();
@@ -256,13 +244,6 @@ fn restitution_ui(ui: &mut Ui, session: &mut Session, width: f32) {
         Stops::Uneven { .. } => "The two stops have a restitution each, under Advanced.",
     };
     absent_ui(ui, "restitution", why);
-}
-
-fn damping_ui(ui: &mut Ui, session: &mut Session, width: f32) {
-    if session.scene().damping == Damping::None {
-        absent_ui(ui, "no damping", "The scene has none.");
-    }
-    fields_ui(ui, session, &["damping.xi", "damping.c_n_s_per_m"], width)
 }
 
 /// A button labelled `name` that starts the search; there is none in a lesson, and where nothing shakes the

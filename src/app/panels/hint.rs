@@ -1,10 +1,10 @@
 //! Hint line of the first minute: what to try next, and what the last try showed.
 
-use eframe::egui::{Align, Color32, FontFamily, Layout, RichText, Role, Ui, UiBuilder, WidgetInfo, vec2};
+use eframe::egui::{Align, Color32, FontFamily, Layout, RichText, Role, Ui, UiBuilder, vec2};
 
 use crate::app::session::Session;
 use crate::app::ui::style::{BODY, strong_family};
-use crate::app::ui::widgets::fitting;
+use crate::app::ui::widgets::{fitting, tell};
 use crate::app::words::numbers::unbroken;
 use crate::app::words::status::as_set;
 use crate::dynamics::EventKind;
@@ -63,16 +63,13 @@ impl Hint {
             && !session.by_hand
             && last.any(|event| event.kind == EventKind::Crossing && event.t >= since);
         let as_opened = self.is_as_opened(session);
+        let is_tried = |from: f64, to: f64| (to - from).abs() >= TRIED_MM && !session.editor.in_gesture();
         self.stage = match (self.stage, session.scene().stops.travel_limit_mm()) {
             (Stage::Cross | Stage::Compare, Some(from_mm)) if crossed && as_opened => Stage::Move { from_mm },
             (Stage::Cross, _) if crossed => Stage::Compare,
             (Stage::Move { .. }, None) => Stage::Compare,
             (Stage::Answer, None) => Stage::Done,
-            (Stage::Move { from_mm }, Some(mm))
-                if (mm - from_mm).abs() >= TRIED_MM && !session.editor.in_gesture() =>
-            {
-                Stage::Answer
-            }
+            (Stage::Move { from_mm }, Some(mm)) if is_tried(from_mm, mm) => Stage::Answer,
             (stage, _) => stage,
         };
         self.stage != Stage::Done
@@ -90,13 +87,12 @@ impl Hint {
         let (as_opened, fair) = (self.is_as_opened(session), self.is_fair_comparison(session));
         let wait = "Wait for it, or press X to go there.";
         let outward = "Then move the stops outward: how far does that help?";
+        let two_things = "Two things help: shake harder, or put stops near the middle.";
+        let undo = "What did your last change do? Undo it (Ctrl+Z), or move the stops.";
         let has_limit = session.scene().stops.travel_limit_mm().is_some();
         let (first, then): (_, &str) = match (self.stage, has_limit, as_opened, crosses) {
             (Stage::Cross, _, _, Some(true)) => ("Now it will cross.", wait),
-            (Stage::Cross, ..) => (
-                "Make it cross to the other side.",
-                "Two things help: shake harder, or put stops near the middle.",
-            ),
+            (Stage::Cross, ..) => ("Make it cross to the other side.", two_things),
             (Stage::Compare | Stage::Move { .. }, false, false, _) => {
                 let (first, now) = match crosses {
                     Some(true) if fair => ("Harder shaking made it cross.", "Now go"),
@@ -120,10 +116,7 @@ impl Hint {
             (Stage::Compare, true, true, None) => {
                 ("Now with stops.", "Does it cross, and what does it cost?")
             }
-            (Stage::Move { .. }, true, true, Some(false)) => (
-                "Now it does not cross.",
-                "What did your last change do? Undo it (Ctrl+Z), or move the stops.",
-            ),
+            (Stage::Move { .. }, true, true, Some(false)) => ("Now it does not cross.", undo),
             (Stage::Move { .. }, true, true, crosses) => {
                 let first = match crosses {
                     Some(_) if fair => "Between these stops it crossed, without more shaking.",
@@ -177,8 +170,7 @@ pub fn guide_ui<R>(
         if !heading.is_empty() {
             ui.label(RichText::new(heading).heading().size(size));
         }
-        let label = ui.label(RichText::new(unbroken(text)).size(size).color(color));
-        label.widget_info(|| WidgetInfo::labeled(Role::Label, true, text));
+        tell(&ui.label(RichText::new(unbroken(text)).size(size).color(color)), Role::Label, text);
         answer
     });
     row.inner

@@ -9,7 +9,7 @@ use eframe::egui::{
 use crate::app::session::Session;
 use crate::app::session::lesson::{MOST_VOTES, OpenLesson, Outcome, TaskState};
 use crate::app::ui::style::{BODY, CONTROL, Style, strong_family};
-use crate::app::ui::widgets::primary;
+use crate::app::ui::widgets::{primary, tell};
 use crate::app::words::lesson::{expected, judged_by, letter, not_yet, numbered, pieces, plain, tally};
 use crate::app::words::meanings::{meaning, terms};
 use crate::scene::lesson::{Choice, Step};
@@ -55,7 +55,6 @@ pub fn lesson_ui(
     style: &Style,
     urged: Option<bool>,
 ) -> Option<LessonAction> {
-    let (size, buttons) = (BODY, Layout::right_to_left(Align::Center));
     let mut action = None;
     ui.spacing_mut().item_spacing.y = SPACE;
     let text = spoken(lesson, session);
@@ -63,18 +62,19 @@ pub fn lesson_ui(
     let beside = urged.map_or((0.0, 0.0), |_| (NAVIGATION + 16.0, LEAST));
     let width = (ui.available_width() - beside.0).max(120.0);
     let steps = lesson.lesson().steps.iter();
-    let height = steps.map(|step| height_of(ui, style, step, size, (width, beside.1))).fold(0.0, f32::max);
+    let height = steps.map(|step| height_of(ui, style, step, (width, beside.1))).fold(0.0, f32::max);
     ui.set_min_height(height);
     ui.horizontal_top(|ui| {
         ui.allocate_ui_with_layout(vec2(width, 0.0), Layout::top_down(Align::Min), |ui| {
             ui.set_width(width);
             let step = lesson.step();
-            text_ui(ui, style, heading(step), step.text(), size);
-            action = below_ui(ui, lesson, session, style, size);
+            text_ui(ui, style, heading(step), step.text());
+            action = below_ui(ui, lesson, session, style);
         });
         if let Some(urged) = urged {
             ui.allocate_ui_with_layout(vec2(NAVIGATION, 0.0), Layout::top_down(Align::Max), |ui| {
                 dots_ui(ui, lesson, style);
+                let buttons = Layout::right_to_left(Align::Center);
                 ui.allocate_ui_with_layout(vec2(NAVIGATION, CONTROL), buttons, |ui| {
                     action = action.or(buttons_ui(ui, lesson, urged));
                 });
@@ -82,7 +82,7 @@ pub fn lesson_ui(
         }
     });
     if lesson.is_covering() {
-        action = action.or(options_ui(ui, lesson, size));
+        action = action.or(options_ui(ui, lesson));
     }
     action
 }
@@ -102,20 +102,21 @@ pub fn votes_ui(ui: &mut Ui, lesson: &OpenLesson) -> Option<LessonAction> {
 
 /// Height in points of the strip in a step, with all that can come below its text, which is this wide and
 /// over options has this least height.
-fn height_of(ui: &Ui, style: &Style, step: &Step, size: f32, (width, least): (f32, f32)) -> f32 {
+fn height_of(ui: &Ui, style: &Style, step: &Step, (width, least): (f32, f32)) -> f32 {
     let of = |heading: &str, text: &str| {
-        let mut job = job(style, heading, text, size);
+        let mut job = job(style, heading, text);
         job.wrap.max_width = width;
         ui.painter().layout_job(job).size().y
     };
-    let (text, row) = (of(heading(step), step.text()), ui.spacing().interact_size.y.max(1.4 * size));
+    let (text, row) = (of(heading(step), step.text()), ui.spacing().interact_size.y.max(1.4 * BODY));
     match step {
         Step::Say(_) | Step::Explain(_) => text,
         Step::Predict { options, .. } => {
             let longest = options.iter().map(|option| option.text.as_str()).max_by_key(|text| text.len());
             let verdict = expected(longest, longest.map(|text| format!("{text} ")).as_deref());
-            let covered = text.max(least) + SPACE + options_height(ui, options, size);
-            covered.max(text + of(&verdict, "") + row + 2.0 * SPACE)
+            let rows = rows_of(options.len()) as f32;
+            let below = option_size(ui, options).y * rows + SPACE * (rows - 1.0);
+            (text.max(least) + SPACE + below).max(text + of(&verdict, "") + row + 2.0 * SPACE)
         }
         Step::Do { hint, .. } => {
             let hint = hint.as_deref().map_or(0.0, |hint| of(HINT, hint) + SPACE);
@@ -160,37 +161,32 @@ fn verdict(lesson: &OpenLesson) -> String {
 }
 
 /// A text with bold words, and terms of the glossary underlined.
-fn job(style: &Style, heading: &str, text: &str, size: f32) -> LayoutJob {
+fn job(style: &Style, heading: &str, text: &str) -> LayoutJob {
     let mut job = LayoutJob::default();
-    let strong = FontId::new(size, strong_family());
-    let format = |font: &FontId, color: Color32, underline: Stroke| TextFormat {
-        font_id: font.clone(),
-        color,
-        underline,
-        ..TextFormat::default()
-    };
-    job.append(heading, 0.0, format(&strong, style.accent(), Stroke::NONE));
-    let (regular, line) = (FontId::proportional(size), Stroke::new(1.0, style.faint()));
+    let strong = FontId::new(BODY, strong_family());
+    job.append(heading, 0.0, TextFormat::simple(strong.clone(), style.accent()));
     for piece in pieces(text) {
-        let font = if piece.bold { &strong } else { &regular };
+        let font = if piece.bold { strong.clone() } else { style.body() };
+        let plain = TextFormat::simple(font, style.ink());
+        let underlined = TextFormat { underline: Stroke::new(1.0, style.faint()), ..plain.clone() };
         let mut from = 0;
         for (range, _) in terms(piece.text) {
-            job.append(&piece.text[from..range.start], 0.0, format(font, style.ink(), Stroke::NONE));
-            job.append(&piece.text[range.clone()], 0.0, format(font, style.ink(), line));
+            job.append(&piece.text[from..range.start], 0.0, plain.clone());
+            job.append(&piece.text[range.clone()], 0.0, underlined.clone());
             from = range.end;
         }
-        job.append(&piece.text[from..], 0.0, format(font, style.ink(), Stroke::NONE));
+        job.append(&piece.text[from..], 0.0, plain);
     }
     job
 }
 
 /// Draws a text; hovering or a click on a term of the glossary shows its meaning.
-fn text_ui(ui: &mut Ui, style: &Style, heading: &str, text: &str, size: f32) {
-    let job = job(style, heading, text, size);
+fn text_ui(ui: &mut Ui, style: &Style, heading: &str, text: &str) {
+    let job = job(style, heading, text);
     let whole = job.text.clone();
     let (at, galley, response) =
         Label::new(job).wrap().selectable(false).sense(Sense::CLICK).layout_in_ui(ui);
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, whole.as_str()));
+    tell(&response, egui::Role::Label, &whole);
     ui.painter().galley(at, galley.clone(), style.ink());
     let word_at = |pointer: Pos2| {
         let letter = galley.cursor_from_pos(pointer - at).index.0;
@@ -216,24 +212,18 @@ fn text_ui(ui: &mut Ui, style: &Style, heading: &str, text: &str, size: f32) {
 }
 
 /// Below the text: the outcome of a prediction, or the state of a task.
-fn below_ui(
-    ui: &mut Ui,
-    lesson: &mut OpenLesson,
-    session: &Session,
-    style: &Style,
-    size: f32,
-) -> Option<LessonAction> {
+fn below_ui(ui: &mut Ui, lesson: &mut OpenLesson, session: &Session, style: &Style) -> Option<LessonAction> {
     let mut action = None;
     match lesson.step() {
         Step::Say(_) | Step::Explain(_) => {}
         Step::Predict { .. } if lesson.is_covering() => {}
         Step::Predict { .. } => {
             ui.horizontal_wrapped(|ui| {
-                ui.label(RichText::new(verdict(lesson)).size(size).font(FontId::new(size, strong_family())));
+                ui.label(RichText::new(verdict(lesson)).heading());
                 if lesson.votes().iter().any(|votes| *votes > 0) {
-                    ui.label(RichText::new(tally(lesson.votes())).size(size).color(style.faint()));
+                    ui.label(RichText::new(tally(lesson.votes())).color(style.faint()));
                 } else if lesson.answer().choice.is_some() {
-                    reason_ui(ui, lesson, style, size);
+                    reason_ui(ui, lesson, style);
                 }
             });
         }
@@ -247,20 +237,16 @@ fn below_ui(
                 TaskState::Judging => (format!("Being judged. {how}"), style.faint()),
             };
             ui.horizontal_wrapped(|ui| {
-                ui.label(RichText::new(state).size(size).color(color)).on_hover_text(how);
+                ui.label(RichText::new(state).color(color)).on_hover_text(how);
                 if lesson.offered_hint().is_some() && lesson.hint().is_none() {
-                    let (name, hover) = match lesson.offers_hint() {
-                        true => ("Would a hint help? (H)", "Shows the hint"),
-                        false => ("Hint (H)", "Shows the hint"),
-                    };
-                    let button = Button::new(name).small().selected(lesson.offers_hint());
-                    if ui.add(button).on_hover_text(hover).clicked() {
-                        action = Some(LessonAction::Hint);
-                    }
+                    let name = if lesson.offers_hint() { "Would a hint help? (H)" } else { "Hint (H)" };
+                    let button = ui.add(Button::new(name).small().selected(lesson.offers_hint()));
+                    let is_wanted = button.on_hover_text("Shows the hint").clicked();
+                    action = is_wanted.then_some(LessonAction::Hint);
                 }
             });
             if let Some(hint) = lesson.hint() {
-                text_ui(ui, style, HINT, hint, size);
+                text_ui(ui, style, HINT, hint);
             }
         }
     }
@@ -274,14 +260,14 @@ fn is_on_stops(session: &Session) -> bool {
     well.zip(model.stop_positions().1).is_some_and(|(well, stop)| stop < well)
 }
 
-fn reason_ui(ui: &mut Ui, lesson: &mut OpenLesson, style: &Style, size: f32) {
+fn reason_ui(ui: &mut Ui, lesson: &mut OpenLesson, style: &Style) {
     let text = "Why, in one word?";
-    let galley = ui.painter().layout_no_wrap(text.to_owned(), FontId::proportional(size), style.faint());
+    let galley = ui.painter().layout_no_wrap(text.to_owned(), style.body(), style.faint());
     // the field stays in one row with its label
     if galley.size().x + REASON + 3.0 * ui.spacing().item_spacing.x > ui.available_size_before_wrap().x {
         ui.end_row();
     }
-    let name = ui.label(RichText::new(text).size(size).color(style.faint()));
+    let name = ui.label(RichText::new(text).color(style.faint()));
     let word = lesson.why_mut();
     let field = TextEdit::singleline(word).desired_width(REASON).char_limit(MAX_REASON);
     ui.add(field.hint_text("if you like")).labelled_by(name.id);
@@ -293,7 +279,7 @@ fn dots_ui(ui: &mut Ui, lesson: &OpenLesson, style: &Style) {
     let spacing = DOT_SPACING.min((NAVIGATION - 2.0 * DOT) / count as f32);
     let (rect, response) = ui.allocate_exact_size(vec2(spacing * count as f32, 18.0), Sense::hover());
     let name = format!("step {} of {count}", lesson.number() + 1);
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, name.as_str()));
+    tell(&response, egui::Role::Label, &name);
     for number in 0..count {
         let at = egui::pos2(rect.left() + (number as f32 + 0.5) * spacing, rect.center().y);
         let is_behind = number < lesson.number() || number == lesson.number() && lesson.may_go_on();
@@ -321,9 +307,7 @@ fn buttons_ui(ui: &mut Ui, lesson: &OpenLesson, urged: bool) -> Option<LessonAct
     if let Some(name) = following {
         let next = ui.add(primary(ui, &numbered(name))).on_hover_text("The lesson that comes after this one");
         urge(&next, urged);
-        if next.clicked() {
-            action = Some(LessonAction::NextLesson(name));
-        }
+        action = next.clicked().then_some(LessonAction::NextLesson(name));
     }
     let (name, chosen) = match lesson.is_last() {
         true => ("Finish", LessonAction::Finish),
@@ -377,12 +361,12 @@ fn option_text(option: usize, choice: &Choice, votes: u32) -> String {
 }
 
 /// Width and height in points of each option.
-fn option_size(ui: &Ui, options: &[Choice], size: f32) -> Vec2 {
+fn option_size(ui: &Ui, options: &[Choice]) -> Vec2 {
     let columns = options.len().div_ceil(rows_of(options.len())) as f32;
     let (space, padding) = (ui.spacing().item_spacing.x, ui.spacing().button_padding);
     let width = (ui.available_width() - space * (columns - 1.0)) / columns;
     let height = |(option, choice): (usize, &Choice)| {
-        let (room, font) = (width - 2.0 * padding.x, FontId::proportional(size));
+        let (room, font) = (width - 2.0 * padding.x, FontId::proportional(BODY));
         let text = option_text(option, choice, MOST_VOTES);
         ui.painter().layout(text, font, Color32::PLACEHOLDER, room).size().y
     };
@@ -390,25 +374,18 @@ fn option_size(ui: &Ui, options: &[Choice], size: f32) -> Vec2 {
     vec2(width, tallest + 2.0 * padding.y + 4.0)
 }
 
-fn options_height(ui: &Ui, options: &[Choice], size: f32) -> f32 {
-    let rows = rows_of(options.len()) as f32;
-    option_size(ui, options, size).y * rows + SPACE * (rows - 1.0)
-}
-
 /// The options side by side, all of one height.
-fn options_ui(ui: &mut Ui, lesson: &OpenLesson, size: f32) -> Option<LessonAction> {
+fn options_ui(ui: &mut Ui, lesson: &OpenLesson) -> Option<LessonAction> {
     let mut action = None;
     let options = lesson.options();
     let columns = options.len().div_ceil(rows_of(options.len())).max(1);
-    let each = option_size(ui, options, size);
+    let each = option_size(ui, options);
     for (row, choices) in options.chunks(columns).enumerate() {
         ui.horizontal(|ui| {
             for (i, choice) in choices.iter().enumerate() {
                 let option = row * columns + i;
                 let votes = *lesson.votes().get(option).unwrap_or(&0);
-                let text = RichText::new(option_text(option, choice, votes));
-                let text = text.font(FontId::proportional(size));
-                let button = ui.add_sized(each, Button::new(text).wrap());
+                let button = ui.add_sized(each, Button::new(option_text(option, choice, votes)).wrap());
                 let letter = letter(option);
                 let hover = format!(
                     "Choose this: nothing is scored (key {letter}). Right button or Shift+{letter}: count a \

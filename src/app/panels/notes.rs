@@ -6,8 +6,7 @@ use eframe::egui::{
 };
 
 use crate::app::session::lesson::{OpenLesson, Outcome};
-use crate::app::ui::style::BODY;
-use crate::app::ui::widgets::{close_ui, dialog, dialog_width, prose, prose_ui};
+use crate::app::ui::widgets::{close_ui, dialog_ui, prose, prose_ui};
 use crate::app::words::lesson::{letter, plain, script};
 use crate::app::words::meanings::{GLOSSARY, meaning};
 use crate::scene::Scene;
@@ -41,13 +40,13 @@ pub fn notes_ui(ui: &mut Ui, scene: &Scene, is_changed: bool, bottom: f32) -> bo
     ui.label(RichText::new(heading).heading());
     let width = ui.available_width();
     let fits = |text: &str| {
-        let mut job = prose(ui, text, BODY);
+        let mut job = prose(ui, text);
         job.wrap.max_width = width;
         ui.fonts_mut(|fonts| fonts.layout_job(job)).size().y <= room - HEADING - MORE
     };
     let shown = [2, 1].map(|count| beginning(notes, count)).into_iter().find(|text| fits(text));
     if let Some(text) = shown {
-        prose_ui(ui, text, BODY);
+        prose_ui(ui, text);
     }
     shown != Some(notes) && ui.link("Read on").on_hover_text(hover).clicked()
 }
@@ -61,10 +60,7 @@ fn beginning(text: &str, count: usize) -> &str {
 
 /// Shows the glossary. Returns `false` once it is to be closed.
 pub fn glossary_ui(ui: &Ui) -> bool {
-    let answer = dialog(ui.ctx(), "glossary").show(ui.ctx(), |ui| {
-        ui.set_max_width(dialog_width(ui, 640.0));
-        ui.heading("Glossary");
-        ui.add_space(4.0);
+    let (is_read, is_closed) = dialog_ui(ui, ("glossary", 640.0), ("Glossary", 4.0), |ui| {
         let room = (ui.ctx().content_rect().height() - 130.0).max(80.0);
         ScrollArea::vertical().max_height(room).show(ui, |ui| {
             for word in GLOSSARY {
@@ -77,7 +73,7 @@ pub fn glossary_ui(ui: &Ui) -> bool {
         close_ui(ui)
     });
     let toggled = ui.input_mut(|input| input.consume_key(Modifiers::NONE, Key::F2));
-    !(answer.inner || answer.should_close() || toggled)
+    !(is_read || is_closed || toggled)
 }
 
 /// What was done in the lecturer's notes.
@@ -95,14 +91,12 @@ pub struct Lectured {
 pub fn lecturer_ui(ctx: &egui::Context, lesson: &OpenLesson, builder: ViewportBuilder) -> Lectured {
     let mut done = Lectured::default();
     ctx.show_viewport_immediate(ViewportId::from_hash_of("lecturer"), builder, |ui, class| {
-        let is_separate = class != ViewportClass::EmbeddedWindow;
-        if is_separate {
-            CentralPanel::default_margins().show(ui, |ui| done.action = lecturer_notes_ui(ui, lesson));
-        } else {
+        if class == ViewportClass::EmbeddedWindow {
             done.action = lecturer_notes_ui(ui, lesson);
             done.is_closed |= ui.button("Close").clicked();
             return;
         }
+        CentralPanel::default_margins().show(ui, |ui| done.action = lecturer_notes_ui(ui, lesson));
         ui.input_mut(|input| {
             let view = input.viewport();
             done.is_closed |= view.close_requested();
@@ -122,49 +116,47 @@ pub fn lecturer_ui(ctx: &egui::Context, lesson: &OpenLesson, builder: ViewportBu
 fn lecturer_notes_ui(ui: &mut Ui, open: &OpenLesson) -> Option<LessonAction> {
     let lesson = open.lesson();
     let mut action = None;
-    ScrollArea::vertical().auto_shrink(false).max_height((ui.available_height() - 8.0).max(60.0)).show(
-        ui,
-        |ui| {
-            ui.label(RichText::new(format!("{}, {} min", lesson.title, lesson.minutes)).heading());
-            ui.label(&lesson.goal);
-            let part_ui = |ui: &mut Ui, heading: &str, text: &str| {
-                if !text.trim().is_empty() {
-                    ui.add_space(6.0);
-                    ui.label(RichText::new(heading).heading());
-                    ui.label(plain(text));
-                }
-            };
-            part_ui(ui, "What students think before", &lesson.misconception);
-            if !lesson.lecturer.trim().is_empty() {
+    let room = (ui.available_height() - 8.0).max(60.0);
+    ScrollArea::vertical().auto_shrink(false).max_height(room).show(ui, |ui| {
+        ui.label(RichText::new(format!("{}, {} min", lesson.title, lesson.minutes)).heading());
+        ui.label(&lesson.goal);
+        let part_ui = |ui: &mut Ui, heading: &str, text: &str| {
+            if !text.trim().is_empty() {
                 ui.add_space(6.0);
-                ui.label(RichText::new("What to do").heading());
-                script_ui(ui, open);
+                ui.label(RichText::new(heading).heading());
+                ui.label(plain(text));
             }
-            let heading = format!("Step {} of {}", open.number() + 1, lesson.steps.len());
-            part_ui(ui, &heading, open.step().text());
-            if open.is_covering() {
-                ui.horizontal(|ui| {
-                    ui.label("Votes");
-                    action = votes_ui(ui, open);
-                    if ui.button("Reveal to the class").clicked() {
-                        action = Some(LessonAction::Reveal);
-                    }
-                });
-            }
-            match (open.step(), open.outcome()) {
-                (Step::Predict { .. }, Outcome::Holds(option)) => {
-                    let text = format!("{}: {}", letter(option), open.options()[option].text);
-                    part_ui(ui, "What holds", &text);
+        };
+        part_ui(ui, "What students think before", &lesson.misconception);
+        if !lesson.lecturer.trim().is_empty() {
+            ui.add_space(6.0);
+            ui.label(RichText::new("What to do").heading());
+            script_ui(ui, open);
+        }
+        let heading = format!("Step {} of {}", open.number() + 1, lesson.steps.len());
+        part_ui(ui, &heading, open.step().text());
+        if open.is_covering() {
+            ui.horizontal(|ui| {
+                ui.label("Votes");
+                action = votes_ui(ui, open);
+                if ui.button("Reveal to the class").clicked() {
+                    action = Some(LessonAction::Reveal);
                 }
-                (Step::Do { hint, .. }, _) => {
-                    part_ui(ui, "Hint", hint.as_deref().unwrap_or_default());
-                    let solution = open.solution().iter().map(|(field, value)| format!("{field} = {value}"));
-                    part_ui(ui, "A solution", &solution.collect::<Vec<_>>().join("\n"));
-                }
-                _ => {}
+            });
+        }
+        match (open.step(), open.outcome()) {
+            (Step::Predict { .. }, Outcome::Holds(option)) => {
+                let text = format!("{}: {}", letter(option), open.options()[option].text);
+                part_ui(ui, "What holds", &text);
             }
-        },
-    );
+            (Step::Do { hint, .. }, _) => {
+                part_ui(ui, "Hint", hint.as_deref().unwrap_or_default());
+                let solution = open.solution().iter().map(|(field, value)| format!("{field} = {value}"));
+                part_ui(ui, "A solution", &solution.collect::<Vec<_>>().join("\n"));
+            }
+            _ => {}
+        }
+    });
     action
 }
 

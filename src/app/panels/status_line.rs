@@ -44,11 +44,10 @@ pub fn status_ui(ui: &mut Ui, session: &mut Session, announcer: &mut Announcer, 
     let has_column = column && has_column(ui);
     let sentence = session.sentence();
     announcer.say(ui, &sentence);
-    let size = STATUS;
     ui.horizontal_centered(|ui| {
-        let (rect, _) = ui.allocate_exact_size(Vec2::splat(size + 6.0), Sense::hover());
+        let (rect, _) = ui.allocate_exact_size(Vec2::splat(STATUS + 6.0), Sense::hover());
         let (kind, color) = (sentence.kind, style.kind(sentence.kind));
-        ui.painter().extend(kind_shapes(kind, rect.center(), size * 0.42, color));
+        ui.painter().extend(kind_shapes(kind, rect.center(), STATUS * 0.42, color));
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             stop_ui(ui, session);
             if has_column {
@@ -60,7 +59,7 @@ pub fn status_ui(ui: &mut Ui, session: &mut Session, announcer: &mut Announcer, 
                 // the name of the motion is read first
                 let (name, rest) = text.split_at(text.find(':').map_or(0, |at| at + 1));
                 let parts = [(name, strong_family()), (rest, egui::FontFamily::Proportional)];
-                let (size, _) = fitting(ui, &parts, room, size);
+                let (size, _) = fitting(ui, &parts, room, STATUS);
                 let label = parts_ui(ui, &parts, size);
                 if label.hovered() {
                     let kind = meaning(&sentence.text).map_or_else(String::new, |text| format!("{text}\n\n"));
@@ -97,17 +96,15 @@ fn beside_ui(ui: &mut Ui, session: &Session, style: &Style) {
     if trust.is_none() && moved.is_none() {
         return;
     }
-    let lines = usize::from(trust.is_some()) + usize::from(moved.is_some());
-    let height = lines as f32 * LINE;
+    let height = if trust.is_some() && moved.is_some() { 2.0 * LINE } else { LINE };
     ui.allocate_ui_with_layout(Vec2::new(BESIDE, height), egui::Layout::top_down(egui::Align::Max), |ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
         let mut line = |text: &str| {
             ui.add(egui::Label::new(RichText::new(text).size(SMALL).color(style.faint())).extend())
         };
         if let Some((short, long)) = trust {
-            let words =
-                meaning(&short).map_or_else(|| long.clone(), |meaning| format!("{meaning}\n\n{long}"));
-            line(&short).on_hover_text(words);
+            let meaning = meaning(&short).map_or_else(String::new, |meaning| format!("{meaning}\n\n"));
+            line(&short).on_hover_text(format!("{meaning}{long}"));
         }
         if let Some(moved) = moved {
             line(moved).on_hover_text("A stop that was moved or switched on would have gone through it.");
@@ -117,13 +114,11 @@ fn beside_ui(ui: &mut Ui, session: &Session, style: &Style) {
 
 /// The text in place of the sentence while the results are covered, by a key or by a prediction.
 pub fn covered_ui(ui: &mut Ui, by_lesson: bool) {
-    ui.horizontal_centered(|ui| {
-        let text = match by_lesson {
-            true => "Covered until you choose: what do you expect?",
-            false => "Covered: what do you expect? C shows it again.",
-        };
-        ui.label(RichText::new(text).size(STATUS));
-    });
+    let text = match by_lesson {
+        true => "Covered until you choose: what do you expect?",
+        false => "Covered: what do you expect? C shows it again.",
+    };
+    ui.horizontal_centered(|ui| ui.label(RichText::new(text).size(STATUS)));
 }
 
 /// Time in s for which a sentence has to stay unchanged before it is spoken.
@@ -165,12 +160,15 @@ impl Announcer {
         Some(since + STILL - now)
     }
 
-    /// Speaks the sentence of the frame once it is to be spoken.
+    /// Speaks the sentence of the frame once it is to be spoken: what was spoken last is in the accessibility
+    /// tree.
     pub fn say(&mut self, ui: &mut Ui, sentence: &Sentence) {
         if let Some(seconds) = self.take(sentence, ui.input(|input| input.time)) {
             ui.ctx().request_repaint_after_secs(seconds as f32);
         }
-        self.ui(ui);
+        if let Some((count, text)) = self.spoken() {
+            spoken_ui(ui, Id::unique(("announcement", count)), text);
+        }
     }
 
     fn speak(&mut self, kind: Kind, text: String) {
@@ -181,12 +179,6 @@ impl Announcer {
     /// The sentence that was spoken last, with its sequence number.
     pub fn spoken(&self) -> Option<(u64, &str)> {
         self.spoken.as_ref().map(|(_, text)| (self.count, text.as_str()))
-    }
-
-    /// Adds the sentence that was spoken last to the accessibility tree.
-    pub fn ui(&self, ui: &mut Ui) {
-        let Some((count, text)) = self.spoken() else { return };
-        spoken_ui(ui, Id::unique(("announcement", count)), text);
     }
 }
 

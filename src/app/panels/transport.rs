@@ -9,7 +9,7 @@ use eframe::egui::{
 use crate::app::session::Session;
 use crate::app::session::player::{Goal, SPEEDS};
 use crate::app::ui::style::Style;
-use crate::app::ui::widgets::{Icon, arrows, icon_button_ui, polygon};
+use crate::app::ui::widgets::{Icon, arrows, icon_button_ui, polygon, tell};
 use crate::app::words::meanings::explained;
 use crate::app::words::status::{Kind, speed};
 use crate::dynamics::{Event, EventKind};
@@ -108,7 +108,6 @@ fn two_lines_ui(ui: &mut Ui, session: &mut Session, style: &Style, (note, covere
     }
 }
 
-/// The time that is shown.
 fn clock_ui(ui: &mut Ui, session: &Session) {
     ui.set_min_width(TIME.0);
     ui.label(format!("{:.3} s", session.player.time()));
@@ -120,12 +119,11 @@ fn speed_ui(ui: &mut Ui, session: &mut Session) {
         SPEEDS.iter().find(|row| row.0 == speed).map_or_else(|| format!("{speed}"), |row| row.1.to_owned());
     let combo = ComboBox::from_id_salt("speed").width(96.0).selected_text(name).show_ui(ui, |ui| {
         for (key, (value, name)) in (1..).zip(SPEEDS) {
-            let text = format!("{name}  ({key})");
-            ui.selectable_value(&mut session.player.speed, value, text);
+            ui.selectable_value(&mut session.player.speed, value, format!("{name}  ({key})"));
         }
     });
     let response = combo.response.on_hover_text("Speed of the motion on the screen (keys 1 to 7)");
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, "speed"));
+    tell(&response, egui::Role::ComboBox, "speed");
 }
 
 /// The row of an event's sign: crossings above releases above the bar, impacts below it.
@@ -148,8 +146,7 @@ fn ticks(events: &VecDeque<Event>, begin: f64, end: f64, least: f64) -> Vec<Even
     };
     // in the row of impacts a rest would look like an impact, even of a mass that rests from the start
     let has_sign = |event: &&Event| event.kind != EventKind::Rest && (begin..=end).contains(&event.t);
-    let shown = events.iter().filter(has_sign);
-    shown.filter(is_first).copied().collect()
+    events.iter().filter(has_sign).filter(is_first).copied().collect()
 }
 
 /// The sign of an event at `at`: a line for an impact, a triangle for a release, a diamond for a crossing.
@@ -230,14 +227,10 @@ fn scrub_ui(ui: &mut Ui, session: &mut Session, style: &Style, covered: bool, no
     let now = pos2(screen_from_time(session.player.time()), bar.center().y);
     painter.circle(now, 7.0, style.mass(), Stroke::new(1.5, style.mass_edge()));
     let by_key = if response.has_focus() { arrows(ui, response.id) } else { 0.0 };
-    let mut wanted = None;
     if let Some(pointer) = response.interact_pointer_pos() {
-        wanted = Some(begin + f64::from((pointer.x - bar.left()) / bar.width()) * span);
+        session.player.seek(begin + f64::from((pointer.x - bar.left()) / bar.width()) * span);
     } else if by_key != 0.0 {
-        wanted = Some(session.player.time() + by_key * KEY_SHARE * span);
-    }
-    if let Some(t) = wanted {
-        session.player.seek(t);
+        session.player.seek(session.player.time() + by_key * KEY_SHARE * span);
     }
     let Some(note) = note else { return };
     let below = whole.with_min_y(rect.bottom());

@@ -76,8 +76,11 @@ impl Knob<'_> {
             .horizontal(|ui| {
                 let slider = ui.scope(|ui| self.slider_ui(ui, &mut turned, decimals)).inner;
                 let slider = slider.labelled_by(name.id);
-                let slid = turned != value;
-                let (field, typed) = self.number_ui(ui, &mut turned, (decimals, NUMBER), !slid);
+                let slid = turned;
+                let (field, typed) = self.number_ui(ui, &mut turned, (decimals, NUMBER));
+                if slid != value {
+                    turned = slid;
+                }
                 (slider, field.labelled_by(name.id), typed)
             })
             .inner;
@@ -99,7 +102,7 @@ impl Knob<'_> {
     /// Draws the number alone, without a slider. Returns the new number if one was typed or dragged to.
     pub fn alone_ui(&self, ui: &mut Ui, value: f64) -> Option<f64> {
         let mut turned = value;
-        let (field, _) = self.number_ui(ui, &mut turned, (0, 0.0), true);
+        let (field, _) = self.number_ui(ui, &mut turned, (0, 0.0));
         ui.ctx().accesskit_node_builder(field.id, |node| node.set_label(self.name));
         refusal_ui(ui, self.id, &field);
         let changed = turned != value && !turned.is_nan();
@@ -133,13 +136,7 @@ impl Knob<'_> {
 
     /// Draws the number, in a field of at least `width` points. Returns its response, and whether an
     /// acceptable number was typed.
-    fn number_ui(
-        &self,
-        ui: &mut Ui,
-        value: &mut f64,
-        (decimals, width): (usize, f32),
-        free: bool,
-    ) -> (Response, bool) {
+    fn number_ui(&self, ui: &mut Ui, value: &mut f64, (decimals, width): (usize, f32)) -> (Response, bool) {
         let present = *value;
         let editing = ui.memory(|memory| memory.has_focus(ui.next_auto_id()));
         let write = |number: f64| match editing {
@@ -169,7 +166,7 @@ impl Knob<'_> {
         let typed = matches!(entered, Some(Ok(_)));
         match entered {
             Some(Err(why)) => refuse(ui, self.id, why),
-            _ if edited != present && free => {
+            _ if edited != present => {
                 let multiple = decimal((edited / self.reach.step).round() * self.reach.step);
                 *value = if typed { edited } else { multiple };
             }
@@ -205,13 +202,8 @@ impl Knob<'_> {
         // the present value is always allowed
         let (low, high) = (self.typed.0.min(present), self.typed.1.max(present));
         if !(low..=high).contains(&value) {
-            return Err(format!(
-                "{}{unit} was not taken: {} may be {} to {}{unit}.",
-                shown(value, 0),
-                self.name,
-                shown(low, 0),
-                shown(high, 0)
-            ));
+            let ([value, low, high], name) = ([value, low, high].map(|number| shown(number, 0)), self.name);
+            return Err(format!("{value}{unit} was not taken: {name} may be {low} to {high}{unit}."));
         }
         Ok(value)
     }

@@ -90,19 +90,11 @@ impl Style {
         if self.dark { dark } else { light }
     }
 
-    pub fn mass(&self) -> Color32 {
-        ORANGE
-    }
-
     /// The colours of pictures in this appearance: those on paper, on the ground of a card.
     pub fn theme(&self) -> Theme {
+        let ink_of = |colour: Color32| Ink(colour.r(), colour.g(), colour.b());
         let [paper, ink, soft, grid] = [self.ground(), self.ink(), self.faint(), self.grid()].map(ink_of);
         Theme { paper, ink, soft, grid, ..Theme::of(self.dark, None) }
-    }
-
-    /// The frame of a card.
-    pub fn card_stroke(&self) -> Stroke {
-        Stroke::new(1.0, self.border())
     }
 
     /// The colours of text, each with the grounds that it stands on.
@@ -145,40 +137,9 @@ impl Style {
         }
     }
 
-    pub fn stop(&self) -> Color32 {
-        self.colour(Role::Stop)
-    }
-
-    /// The base, its acceleration and its push.
-    pub fn base(&self) -> Color32 {
-        self.colour(Role::Drive)
-    }
-
-    /// Time at rest on a stop.
-    pub fn rest_shade(&self) -> Color32 {
-        self.colour(Role::Rest)
-    }
-
-    pub fn impact(&self) -> Color32 {
-        self.colour(Role::Impact)
-    }
-
     pub fn width(&self, points: f32) -> f32 {
         // three pixels at the zoom of the projector mode
         if self.projector { points.max(3.0 / PROJECTOR_ZOOM) } else { points }
-    }
-
-    /// The radius of a point in a picture.
-    pub fn dot(&self, points: f32) -> f32 {
-        if self.projector { 1.4 * points } else { points }
-    }
-
-    pub fn cursor_stroke(&self) -> Stroke {
-        Stroke::new(self.width(1.3), self.kind(Kind::Irregular))
-    }
-
-    pub fn grid_stroke(&self) -> Stroke {
-        Stroke::new(1.0, self.grid())
     }
 
     /// The mark of the scene on a map, in the colour of the mass: outline and mark.
@@ -192,113 +153,86 @@ impl Style {
         let width = self.width(1.8);
         [Stroke::new(width + 1.8, Color32::BLACK), Stroke::new(width, ORANGE)]
     }
-
-    pub fn small(&self) -> FontId {
-        FontId::proportional(SMALL)
-    }
-
-    pub fn body(&self) -> FontId {
-        FontId::proportional(BODY)
-    }
 }
 
-/// Methods of [`Style`] that return a colour: its name, the colour in light mode and that in dark mode.
-macro_rules! colours {
-    ($($(#[$doc:meta])* $name:ident: $light:expr, $dark:expr;)+) => {
+/// Methods of [`Style`] of one expression: name, type and value.
+macro_rules! methods {
+    ($($(#[$doc:meta])* $name:ident($style:ident) -> $type:ty = $value:expr;)+) => {
         impl Style {
             $($(#[$doc])*
-            pub fn $name(&self) -> Color32 {
-                self.pick($light, $dark)
+            pub fn $name(&self) -> $type {
+                let $style = self;
+                $value
             })+
         }
     };
 }
 
-colours! {
+methods! {
     /// Text and axes.
-    ink: hex(0x1b1e22), hex(0xe8eaed);
+    ink(style) -> Color32 = style.pick(hex(0x1b1e22), hex(0xe8eaed));
     /// Secondary text and lines: ticks, units, notes.
-    faint: hex(0x5a6067), hex(0xa3a9b0);
+    faint(style) -> Color32 = style.pick(hex(0x5a6067), hex(0xa3a9b0));
     /// The window around the cards, and cells that are not computed yet.
-    panel: hex(0xf6f7f8), hex(0x15171a);
+    panel(style) -> Color32 = style.pick(hex(0xf6f7f8), hex(0x15171a));
     /// A card, on which views are drawn.
-    ground: hex(0xffffff), hex(0x1d2024);
+    ground(style) -> Color32 = style.pick(hex(0xffffff), hex(0x1d2024));
     /// The frame of a card.
-    border: hex(0xe1e4e8), hex(0x2b2f35);
+    border(style) -> Color32 = style.pick(hex(0xe1e4e8), hex(0x2b2f35));
+    card_stroke(style) -> Stroke = Stroke::new(1.0, style.border());
     /// Edges of controls, with a contrast of at least 3:1 to the background.
-    edge: hex(0x858b93), hex(0x6c727a);
-    grid: hex(0xeceef0), hex(0x2b2f35);
+    edge(style) -> Color32 = style.pick(hex(0x858b93), hex(0x6c727a));
+    grid(style) -> Color32 = style.pick(hex(0xeceef0), hex(0x2b2f35));
     /// The track of a slider.
-    track: hex(0xd3d8dd), hex(0x40454d);
+    track(style) -> Color32 = style.pick(hex(0xd3d8dd), hex(0x40454d));
     /// A control under the pointer.
-    pointed: hex(0xe9edf1), hex(0x2a2e34);
+    pointed(style) -> Color32 = style.pick(hex(0xe9edf1), hex(0x2a2e34));
     /// One of several that is chosen.
-    chosen: hex(0xd3e6f4), hex(0x1f4560);
+    chosen(style) -> Color32 = style.pick(hex(0xd3e6f4), hex(0x1f4560));
     /// Links, and what is filled of a track.
-    accent: hex(0x17689f), hex(0x6cbcec);
+    accent(style) -> Color32 = style.pick(hex(0x17689f), hex(0x6cbcec));
     /// A primary action.
-    action: hex(0x17689f), hex(0x2272a8);
-    on_action: hex(0xffffff), hex(0xffffff);
+    action(style) -> Color32 = style.pick(hex(0x17689f), hex(0x2272a8));
+    on_action(style) -> Color32 = style.pick(hex(0xffffff), hex(0xffffff));
+    mass(_style) -> Color32 = ORANGE;
     /// Text about the proof mass.
-    mass_ink: rgb(140, 92, 0), ORANGE;
-    mass_edge: rgb(122, 84, 0), rgb(255, 214, 128);
-    frame_colour: gray(190), gray(85);
+    mass_ink(style) -> Color32 = style.pick(rgb(140, 92, 0), ORANGE);
+    mass_edge(style) -> Color32 = style.pick(rgb(122, 84, 0), rgb(255, 214, 128));
+    frame_colour(style) -> Color32 = style.pick(gray(190), gray(85));
     /// Veil over a map that is not that of the scene.
-    veil: Color32::from_white_alpha(140), Color32::from_black_alpha(130);
-}
-
-/// Methods of [`Style`] that return the line of a role: its name and the role.
-macro_rules! roles {
-    ($($(#[$doc:meta])* $name:ident: $role:ident;)+) => {
-        impl Style {
-            $($(#[$doc])*
-            pub fn $name(&self) -> Stroke {
-                self.stroke(Role::$role)
-            })+
-        }
-    };
-}
-
-roles! {
-    /// The potential with the base's push, on which the mass rides.
-    tray_stroke: Curve;
-    /// The potential without the push.
-    ghost_stroke: Reference;
-    /// The motion over time.
-    motion_stroke: Motion;
+    veil(style) -> Color32 = style.pick(Color32::from_white_alpha(140), Color32::from_black_alpha(130));
+    stop(style) -> Color32 = style.colour(Role::Stop);
+    stop_stroke(style) -> Stroke = style.stroke(Role::Stop);
+    /// The base, its acceleration and its push.
+    base(style) -> Color32 = style.colour(Role::Drive);
+    /// Time at rest on a stop.
+    rest_shade(style) -> Color32 = style.colour(Role::Rest);
     /// An impact: a tick on a time axis, a jump of the velocity.
-    impact_stroke: Impact;
-    stop_stroke: Stop;
-}
-
-/// Methods of [`Style`] that return a stroke: its name, its width in points and its colour. In projector mode
-/// it is thicker.
-macro_rules! strokes {
-    ($($(#[$doc:meta])* $name:ident: $points:expr, $colour:ident;)+) => {
-        impl Style {
-            $($(#[$doc])*
-            pub fn $name(&self) -> Stroke {
-                Stroke::new(self.width($points), self.$colour())
-            })+
-        }
-    };
-}
-
-strokes! {
+    impact(style) -> Color32 = style.colour(Role::Impact);
+    impact_stroke(style) -> Stroke = style.stroke(Role::Impact);
+    /// The potential with the base's push, on which the mass rides.
+    tray_stroke(style) -> Stroke = style.stroke(Role::Curve);
+    /// The potential without the push.
+    ghost_stroke(style) -> Stroke = style.stroke(Role::Reference);
+    /// The motion over time.
+    motion_stroke(style) -> Stroke = style.stroke(Role::Motion);
     /// The outline of a pinned motion's mass.
-    ghost_mass_stroke: 1.8, mass_ink;
+    ghost_mass_stroke(style) -> Stroke = Stroke::new(style.width(1.8), style.mass_ink());
     /// The height of the barrier where energies are compared with it.
-    barrier_stroke: 2.0, ink;
+    barrier_stroke(style) -> Stroke = Stroke::new(style.width(2.0), style.ink());
     /// Frame of what has the keyboard focus.
-    focus_stroke: 2.0, accent;
+    focus_stroke(style) -> Stroke = Stroke::new(style.width(2.0), style.accent());
     /// Frame of what a lesson points at.
-    pointing_stroke: 3.0, mass_ink;
-    arrow_stroke: 3.0, base;
-    flexure_stroke: 2.0, ink;
+    pointing_stroke(style) -> Stroke = Stroke::new(style.width(3.0), style.mass_ink());
+    arrow_stroke(style) -> Stroke = Stroke::new(style.width(3.0), style.base());
+    flexure_stroke(style) -> Stroke = Stroke::new(style.width(2.0), style.ink());
+    cursor_stroke(style) -> Stroke = Stroke::new(style.width(1.3), style.kind(Kind::Irregular));
     /// The lines over a view that is covered.
-    hatching_stroke: 1.0, border;
+    hatching_stroke(style) -> Stroke = Stroke::new(style.width(1.0), style.border());
     /// Outline of the cell under the pointer.
-    cell_stroke: 2.0, ink;
+    cell_stroke(style) -> Stroke = Stroke::new(style.width(2.0), style.ink());
+    small(_style) -> FontId = FontId::proportional(SMALL);
+    body(_style) -> FontId = FontId::proportional(BODY);
 }
 
 const fn gray(level: u8) -> Color32 {
@@ -308,10 +242,6 @@ const fn gray(level: u8) -> Color32 {
 const fn hex(code: u32) -> Color32 {
     let [_, red, green, blue] = code.to_be_bytes();
     rgb(red, green, blue)
-}
-
-fn ink_of(colour: Color32) -> Ink {
-    Ink(colour.r(), colour.g(), colour.b())
 }
 
 const fn rgb(red: u8, green: u8, blue: u8) -> Color32 {

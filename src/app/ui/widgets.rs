@@ -1,5 +1,6 @@
 //! Small widgets: dialogs, hover texts, icons, the shapes of regimes.
 
+use eframe::egui::containers::menu::{MenuButton, MenuConfig};
 use eframe::egui::text::{LayoutJob, TextFormat};
 use eframe::egui::{
     self, Color32, FontFamily, FontId, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, Vec2, pos2, vec2,
@@ -10,9 +11,34 @@ use crate::app::words::numbers::unbroken;
 
 use super::style::{BODY, COMPACT_BELOW, CONTROL, LEAST, Style};
 
-pub fn dialog(ctx: &egui::Context, id: &str) -> egui::Modal {
-    let frame = egui::Frame::popup(&ctx.global_style()).inner_margin(16.0);
-    egui::Modal::new(egui::Id::unique(id)).frame(frame)
+/// A dialog at most `width` points wide, with its contents below a heading. Returns what these return, and
+/// whether it was closed by a key or by a click beside it.
+pub fn dialog_ui<R>(
+    ui: &Ui,
+    (id, width): (&str, f32),
+    (heading, space): (impl Into<egui::RichText>, f32),
+    contents: impl FnOnce(&mut Ui) -> R,
+) -> (R, bool) {
+    let frame = egui::Frame::popup(&ui.ctx().global_style()).inner_margin(16.0);
+    let answer = egui::Modal::new(egui::Id::unique(id)).frame(frame).show(ui.ctx(), |ui| {
+        ui.set_max_width(dialog_width(ui, width));
+        ui.heading(heading);
+        ui.add_space(space);
+        contents(ui)
+    });
+    let is_closed = answer.should_close();
+    (answer.inner, is_closed)
+}
+
+/// A menu that stays open until there is a click beside it, with widgets as they are outside of menus: the
+/// style of menus would hide that numbers can be typed. Returns its button.
+pub fn choices_ui(ui: &mut Ui, name: &str, contents: impl FnOnce(&mut Ui)) -> Response {
+    let config = MenuConfig::new().close_behavior(egui::PopupCloseBehavior::CloseOnClickOutside);
+    let menu = MenuButton::new(name).config(config).ui(ui, |ui| {
+        *ui.style_mut() = (*ui.ctx().global_style()).clone();
+        contents(ui);
+    });
+    menu.0
 }
 
 /// The frame of a panel, with margins in points. It has no fill: the window is cleared to that colour, and a
@@ -21,35 +47,46 @@ pub fn panel_frame(x: i8, y: i8) -> egui::Frame {
     egui::Frame::new().inner_margin(egui::Margin::symmetric(x, y))
 }
 
+/// A panel with this frame and no line beside it.
+pub fn bare(panel: egui::Panel, x: i8, y: i8) -> egui::Panel {
+    panel.frame(panel_frame(x, y)).show_separator_line(false)
+}
+
 /// A text for a label: code between backticks has letters of one width, and lines are not broken between a
 /// number and its unit.
-pub fn prose(ui: &Ui, text: &str, size: f32) -> LayoutJob {
+pub fn prose(ui: &Ui, text: &str) -> LayoutJob {
     let (mut job, ink) = (LayoutJob::default(), ui.visuals().text_color());
     for (i, part) in text.split('`').enumerate() {
-        let font = if i % 2 == 0 { FontId::proportional(size) } else { FontId::monospace(size) };
+        let font = if i % 2 == 0 { FontId::proportional(BODY) } else { FontId::monospace(BODY) };
         job.append(&unbroken(part), 0.0, TextFormat::simple(font, ink));
     }
     job
 }
 
 /// A label with `text` as [`prose`]; a screen reader is told its words.
-pub fn prose_ui(ui: &mut Ui, text: &str, size: f32) -> Response {
-    let response = ui.add(egui::Label::new(prose(ui, text, size)).wrap());
-    let words = text.replace('`', "");
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, words.as_str()));
-    response
+pub fn prose_ui(ui: &mut Ui, text: &str) {
+    let response = ui.add(egui::Label::new(prose(ui, text)).wrap());
+    tell(&response, egui::Role::Label, &text.replace('`', ""));
+}
+
+/// Tells a screen reader what a widget is, and its name.
+pub fn tell(response: &Response, role: egui::Role, name: &str) {
+    response.widget_info(|| egui::WidgetInfo::labeled(role, true, name));
+}
+
+/// Texts one after another, in these fonts.
+fn job(parts: &[(&str, FontFamily)], size: f32, ink: Color32) -> LayoutJob {
+    let mut job = LayoutJob::default();
+    for (text, family) in parts {
+        job.append(&unbroken(text), 0.0, TextFormat::simple(FontId::new(size, family.clone()), ink));
+    }
+    job
 }
 
 /// A label of texts one after another, in these fonts; a screen reader is told their words.
 pub fn parts_ui(ui: &mut Ui, parts: &[(&str, FontFamily)], size: f32) -> Response {
-    let (mut job, ink) = (LayoutJob::default(), ui.visuals().text_color());
-    for (text, family) in parts {
-        let font = FontId::new(size, family.clone());
-        job.append(&unbroken(text), 0.0, TextFormat::simple(font, ink));
-    }
-    let response = ui.add(egui::Label::new(job).wrap());
-    let words: String = parts.iter().map(|part| part.0).collect();
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, words.as_str()));
+    let response = ui.add(egui::Label::new(job(parts, size, ui.visuals().text_color())).wrap());
+    tell(&response, egui::Role::Label, &parts.iter().map(|part| part.0).collect::<String>());
     response
 }
 
@@ -59,12 +96,8 @@ pub fn parts_ui(ui: &mut Ui, parts: &[(&str, FontFamily)], size: f32) -> Respons
 /// Returns the size, and the height in points that they take.
 pub fn fitting(ui: &Ui, texts: &[(&str, FontFamily)], room: Vec2, most: f32) -> (f32, f32) {
     let taken = |size: f32, width: f32| {
-        let mut job = LayoutJob::default();
+        let mut job = job(texts, size, Color32::PLACEHOLDER);
         job.wrap.max_width = width;
-        for (text, family) in texts {
-            let font = FontId::new(size, family.clone());
-            job.append(&unbroken(text), 0.0, TextFormat::simple(font, Color32::PLACEHOLDER));
-        }
         ui.fonts_mut(|fonts| fonts.layout_job(job)).size()
     };
     let in_a_row = taken(most, f32::INFINITY);
@@ -108,19 +141,29 @@ pub fn hover_beside(response: Response, text: &str) -> Response {
     response
 }
 
+/// Gives a widget the keyboard focus if no other one has it.
+pub fn focus_first(ui: &Ui, widget: &Response) {
+    if ui.memory(|memory| memory.focused().is_none()) {
+        widget.request_focus();
+    }
+}
+
 /// The button that closes a message; it takes a free keyboard focus, so that Enter closes the message.
 pub fn close_ui(ui: &mut Ui) -> bool {
     let button = ui.button("Close");
-    if ui.memory(|memory| memory.focused().is_none()) {
-        button.request_focus();
-    }
+    focus_first(ui, &button);
     button.clicked()
+}
+
+/// Has the left and right keys, or all arrow keys, stay with a widget instead of moving the focus.
+pub fn keep_arrows(ui: &Ui, id: egui::Id, all: bool) {
+    let filter = egui::EventFilter { horizontal_arrows: true, vertical_arrows: all, ..Default::default() };
+    ui.memory_mut(|memory| memory.set_focus_lock_filter(id, filter));
 }
 
 /// Steps to the right by the arrow keys, ten times as many with Shift; the keys do not move the focus.
 pub fn arrows(ui: &Ui, id: egui::Id) -> f64 {
-    let filter = egui::EventFilter { horizontal_arrows: true, ..egui::EventFilter::default() };
-    ui.memory_mut(|memory| memory.set_focus_lock_filter(id, filter));
+    keep_arrows(ui, id, false);
     ui.input(|input| {
         let presses = |key| f64::from(u32::try_from(input.num_presses(key)).unwrap_or(0));
         let steps = presses(egui::Key::ArrowRight) - presses(egui::Key::ArrowLeft);
@@ -128,7 +171,6 @@ pub fn arrows(ui: &Ui, id: egui::Id) -> f64 {
     })
 }
 
-/// The icon of a button.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Icon {
     Play,
@@ -193,6 +235,7 @@ fn icon_shapes(icon: Icon, rect: Rect, color: Color32) -> Vec<Shape> {
         let points = vec![pos2(tip, r.center().y), pos2(back, r.top()), pos2(back, r.bottom())];
         Shape::convex_polygon(points, color, Stroke::NONE)
     };
+    let frame = |r: Rect| Shape::rect_stroke(r, 0.0, Stroke::new(1.5, color), egui::StrokeKind::Inside);
     let bar = |x: f32, width: f32| {
         let bar = Rect::from_min_max(pos2(x, rect.top()), pos2(x + width, rect.bottom()));
         Shape::rect_filled(bar, 0.0, color)
@@ -215,10 +258,7 @@ fn icon_shapes(icon: Icon, rect: Rect, color: Color32) -> Vec<Shape> {
         }
         Icon::NextEvent => vec![triangle(part(0.0, 0.5), true), diamond(rect.right() - rect.width() * 0.2)],
         Icon::Restore => [rect.left_top(), rect.right_top(), rect.left_bottom(), rect.right_bottom()]
-            .map(|corner| {
-                let part = Rect::from_two_pos(corner, rect.center() + (corner - rect.center()) * 0.24);
-                Shape::rect_stroke(part, 0.0, Stroke::new(1.5, color), egui::StrokeKind::Inside)
-            })
+            .map(|corner| frame(Rect::from_two_pos(corner, rect.center() + (corner - rect.center()) * 0.24)))
             .to_vec(),
         Icon::Figure => {
             let place = |(x, y): (f32, f32)| rect.lerp_inside(vec2(x, y));
@@ -244,9 +284,7 @@ fn icon_shapes(icon: Icon, rect: Rect, color: Color32) -> Vec<Shape> {
             };
             vec![Shape::line(shackle, Stroke::new(1.3, color)), body]
         }
-        Icon::Fill => {
-            vec![Shape::rect_stroke(rect, 0.0, Stroke::new(1.5, color), egui::StrokeKind::Inside)]
-        }
+        Icon::Fill => vec![frame(rect)],
     }
 }
 

@@ -3,18 +3,18 @@
 use eframe::egui::{self, ComboBox, Ui};
 
 use crate::app::ui::knob::Knob;
-use crate::app::words::fields::Reach;
+use crate::app::ui::widgets::tell;
+use crate::app::words::fields::{Reach, name_and_unit};
 use crate::scene::{SweepAxis, column_names};
 use crate::study::label_and_unit;
 
 /// The name of a field without its unit: that of its control, or else of its column.
 pub fn field_name(path: &str) -> String {
-    let (name, _) = crate::app::words::fields::name_and_unit(path);
+    let (name, _) = name_and_unit(path);
     if name != path {
         return name.trim_end_matches(" ±").to_owned();
     }
-    let column = column_names(&[path]).pop().unwrap_or_default();
-    label_and_unit(&column).0
+    label_and_unit(&column_names(&[path]).pop().unwrap_or_default()).0
 }
 
 /// Offers the `known` fields for the axis named by its `role`. Returns the new field if it changed.
@@ -28,8 +28,7 @@ pub fn field_ui(ui: &mut Ui, axis: &SweepAxis, role: &str, known: &[String]) -> 
             }
         }
     });
-    let spoken = format!("{role}: {name}");
-    inner.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, spoken.clone()));
+    tell(&inner.response, egui::Role::ComboBox, &format!("{role}: {name}"));
     let range = format!("The axis {role}: from {} to {} in steps of {}.", axis.from, axis.to, axis.step);
     inner.response.on_hover_text(range);
     wanted.filter(|path| *path != axis.field)
@@ -43,7 +42,7 @@ pub fn range_id(role: &str, part: &str) -> egui::Id {
 /// Inputs for the ends and the step of an axis, as a row of a grid.
 pub fn range_row_ui(ui: &mut Ui, axis: &mut SweepAxis, role: &str) {
     ui.label(field_name(&axis.field));
-    let (_, unit) = crate::app::words::fields::name_and_unit(&axis.field);
+    let (_, unit) = name_and_unit(&axis.field);
     let reach = Reach::even(axis.from, axis.to, axis.step);
     for (part, value) in [("from", &mut axis.from), ("to", &mut axis.to), ("step", &mut axis.step)] {
         ui.label(part);

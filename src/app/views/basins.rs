@@ -3,6 +3,7 @@
 use eframe::egui::{self, Align2, Ui, UiBuilder, vec2};
 
 use crate::app::session::explore::Level;
+use crate::app::ui::widgets::tell;
 use crate::app::words::numbers::three;
 use crate::output::{Cell, Chart, Panel, PlotAxis, Role};
 
@@ -12,14 +13,10 @@ use super::pane::{Pane, kept_pane_ui};
 use super::phase::starts;
 use super::stops::stops_ui;
 use super::view::Axis;
-use super::{View, ViewContext, empty_ui, too_small_ui};
+use super::{View, ViewContext, empty_ui};
 
 pub fn basins_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
-    let area = ui.max_rect();
-    if area.width() < 100.0 || area.height() < 100.0 {
-        return too_small_ui(ui, &context.style, area);
-    }
-    let style = context.style;
+    let (area, style) = (ui.max_rect(), context.style);
     let speed = context.memory.ranges.follow(context.session).speed();
     let span = context.span;
     // a zoomed range is computed anew with the same number of starts
@@ -41,8 +38,7 @@ pub fn basins_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         };
         shown(chart, (span.low * 1e3, span.high * 1e3), (low * per_speed, high * per_speed))
     });
-    let spoken = || egui::WidgetInfo::labeled(egui::Role::Canvas, true, "basins of attraction");
-    pane.response.widget_info(spoken);
+    tell(&pane.response, egui::Role::Canvas, "basins of attraction");
     let Some(frame) = pane.frame(0) else { return };
     axes_input(ui, context.memory, View::Basins, &pane.response, (area, frame));
     match &level {
@@ -57,8 +53,7 @@ pub fn basins_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     }
 }
 
-/// The picture over these ends of its axes, without the stops, which the view draws to be
-/// dragged.
+/// The picture over these ends of its axes, without the stops, which the view draws to be dragged.
 fn shown(mut chart: Chart, across: (f64, f64), up: (f64, f64)) -> Chart {
     if chart.first_panel().is_none() {
         let axis = |words: &str| PlotAxis::between(0.0, 1.0, words);
@@ -74,9 +69,7 @@ fn shown(mut chart: Chart, across: (f64, f64), up: (f64, f64)) -> Chart {
 
 /// Describes the start under the pointer in the lower corner; a click begins the scene there.
 fn pointer_ui(ui: &Ui, context: &mut ViewContext<'_>, pane: &Pane, level: &Level, is_whole: bool) {
-    let Some(frame) = pane.frame(0) else { return };
-    let pointer = pane.response.hover_pos().filter(|at| frame.contains(*at));
-    let Some((x_mm, speed)) = pointer.and_then(|at| pane.values_at(0, at)) else { return };
+    let (Some(frame), Some((x_mm, speed))) = (pane.frame(0), pane.pointed()) else { return };
     let (x, v) = (x_mm / 1e3, speed / level.per_speed);
     if !(x >= level.room.0 && x <= level.room.1) {
         return; // nothing begins beyond the stops

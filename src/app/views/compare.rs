@@ -1,66 +1,85 @@
-//! Table of the present motion and the pinned ones, with differences.
+//! Tables of the present motion: beside the one before the last change, and beside the pinned ones.
 
 use eframe::egui::TextWrapMode::Extend;
-use eframe::egui::{self, Button, RichText, ScrollArea, Ui};
+use eframe::egui::{self, Button, RichText, Ui};
 
 use crate::app::session::Card;
 use crate::app::session::pins::{FULL, Pin, PinKind};
+use crate::app::ui::widgets::tell;
 use crate::scene::Stops;
 
 use super::table::{Column, WIDE_COLUMN, table_ui};
-use super::{ViewContext, empty_ui};
+use super::{ViewContext, empty_ui, page_ui};
 
-/// An action on a pin.
 enum PinAction {
     TakeBack(char),
     Unpin(char),
 }
 
-pub fn compare_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
-    let style = context.style;
-    let ground = egui::Frame::new().fill(style.ground()).inner_margin(10.0);
-    ground.show(ui, |ui| {
-        ui.set_min_size(ui.available_size());
-        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-            buttons_ui(ui, context);
-            if context.session.pins.all().is_empty() {
-                let text = "Nothing is pinned. A pinned motion goes on beside the present one, dashed, with \
-                            the drive in step.";
-                let below = ui.available_rect_before_wrap();
-                empty_ui(ui, &style, below, text);
-                return;
+/// Draws the view of the last change.
+pub fn before_now_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
+    let (style, is_full) = (context.style, context.session.pins.is_full());
+    let before = context.session.before_card().cloned();
+    let is_first = before.is_none();
+    let column = |card| Column { card, ended: None, differs: false };
+    let columns = [before, Some(context.session.now_card())].map(column);
+    page_ui(ui, |ui| {
+        let mut pin = false;
+        table_ui(ui, context, (&columns, 1), &mut |ui, column, _| match column {
+            None => {
+                let hover = "This motion goes on, dashed, beside the one that you change from here on (K).";
+                let button = ui.add_enabled(!is_full, Button::new("Pin").small());
+                pin = button.on_hover_text(hover).on_disabled_hover_text(FULL).clicked();
             }
-            match pinned_ui(ui, context) {
-                Some(PinAction::TakeBack(letter)) => _ = context.session.take_back(letter),
-                Some(PinAction::Unpin(letter)) => context.session.pins.unpin(letter),
-                None => {}
-            }
+            Some(0) => _ = ui.label(RichText::new("before").color(style.faint())),
+            Some(_) => _ = ui.label(RichText::new("now").heading()),
         });
+        if is_first && ui.available_height() > 28.0 {
+            ui.add_space(6.0);
+            let text = "Change something: the state before it stays here to compare.";
+            ui.label(RichText::new(text).color(style.faint()));
+        }
+        if pin {
+            context.memory.pin = Some(PinKind::Motion);
+        }
     });
 }
 
-/// Buttons that pin a motion.
+/// Draws the view of the pinned motions.
+pub fn compare_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
+    page_ui(ui, |ui| {
+        buttons_ui(ui, context);
+        if context.session.pins.all().is_empty() {
+            let text = "Nothing is pinned. A pinned motion goes on beside the present one, dashed, with the \
+                        drive in step.";
+            let below = ui.available_rect_before_wrap();
+            return empty_ui(ui, &context.style, below, text);
+        }
+        match pinned_ui(ui, context) {
+            Some(PinAction::TakeBack(letter)) => _ = context.session.take_back(letter),
+            Some(PinAction::Unpin(letter)) => context.session.pins.unpin(letter),
+            None => {}
+        }
+    });
+}
+
 fn buttons_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let full = context.session.pins.is_full();
     let stops = match context.session.scene().stops {
         Stops::None => "With stops",
         _ => "Without stops",
     };
+    let twin = "From the start again, with a second mass that begins a micrometre beside it. The view \
+                Distance shows how far the two are apart.";
     let all = [
         ("Pin", "The motion as it is, to change the scene beside it (K).", PinKind::Motion),
         (stops, "The motion from here on with its stops switched the other way.", PinKind::OtherStops),
-        (
-            "Twin",
-            "From the start again, with a second mass that begins a micrometre beside it. The view Distance \
-             shows how far the two are apart.",
-            PinKind::Twin,
-        ),
+        ("Twin", twin, PinKind::Twin),
     ];
     ui.horizontal_wrapped(|ui| {
         for (name, hover, kind) in all {
             let button = ui.add_enabled(!full, Button::new(name));
-            let button = button.on_hover_text(hover).on_disabled_hover_text(FULL);
-            if button.clicked() {
+            if button.on_hover_text(hover).on_disabled_hover_text(FULL).clicked() {
                 context.memory.pin = Some(kind);
             }
         }
@@ -70,10 +89,11 @@ fn buttons_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
 /// The table of the present motion and the pinned ones. Returns the action clicked.
 fn pinned_ui(ui: &mut Ui, context: &ViewContext<'_>) -> Option<PinAction> {
     let pins = context.session.pins.all();
-    let pinned = |pin: &Pin| Column {
-        card: Some(card(context, pin)),
-        ended: pin.ended().and_then(|outcome| outcome.ended_at()),
-        differs: true,
+    let pinned = |pin: &Pin| {
+        let thresholds = pin.thresholds().copied().filter(|_| !context.session.keeps_remedy);
+        let card = Card { scene: pin.scene().clone(), settled: pin.settled().copied(), thresholds };
+        let ended = pin.ended().and_then(|outcome| outcome.ended_at());
+        Column { card: Some(card), ended, differs: true }
     };
     let now = Column { card: Some(context.session.now_card()), ended: None, differs: false };
     let columns: Vec<Column> = std::iter::once(now).chain(pins.iter().map(pinned)).collect();
@@ -105,28 +125,15 @@ fn heading_ui(ui: &mut Ui, context: &ViewContext<'_>, pin: &Pin, width: f32) -> 
         let other = pin.scene() != context.session.scene();
         let text = RichText::new(if width < WIDE_COLUMN { "Back" } else { "Take back" }).small();
         let back = ui.add_enabled(other, Button::new(text).small().wrap_mode(Extend));
-        if named(back, other, format!("Take {letter} back"))
-            .on_hover_text(hover)
-            .on_disabled_hover_text("It is the present scene.")
-            .clicked()
-        {
-            action = Some(PinAction::TakeBack(letter));
-        }
+        let spoken = format!("Take {letter} back");
+        back.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, other, &spoken));
+        let back = back.on_hover_text(hover).on_disabled_hover_text("It is the present scene.");
         let unpin = ui.add(Button::new(RichText::new("Unpin").small()).small().wrap_mode(Extend));
-        if named(unpin, true, format!("Unpin {letter}")).clicked() {
-            action = Some(PinAction::Unpin(letter));
-        }
+        tell(&unpin, egui::Role::Button, &format!("Unpin {letter}"));
+        action = match (back.clicked(), unpin.clicked()) {
+            (_, true) => Some(PinAction::Unpin(letter)),
+            (is_back, _) => is_back.then_some(PinAction::TakeBack(letter)),
+        };
     });
     action
-}
-
-/// Gives a button a unique name for screen readers.
-fn named(button: egui::Response, enabled: bool, name: String) -> egui::Response {
-    button.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, enabled, &name));
-    button
-}
-
-fn card(context: &ViewContext<'_>, pin: &Pin) -> Card {
-    let thresholds = pin.thresholds().copied().filter(|_| !context.session.keeps_remedy);
-    Card { scene: pin.scene().clone(), settled: pin.settled().copied(), thresholds }
 }

@@ -3,15 +3,15 @@
 use std::sync::Arc;
 
 use eframe::egui::{
-    Align, Align2, FontId, Label, Layout, Rect, RichText, Role, Sense, Shape, Ui, UiBuilder, Vec2,
-    WidgetInfo, pos2, vec2,
+    Align, Align2, FontId, Frame, Label, Layout, Rect, RichText, Role, ScrollArea, Sense, Shape, Ui,
+    UiBuilder, Vec2, pos2, vec2,
 };
 
 use crate::app::session::Session;
 use crate::app::session::pins::Pin;
 use crate::app::ui::style::{CONTROL, CORNER, Style, strong_family};
+use crate::app::ui::widgets::tell;
 use crate::dynamics::{Model, Sample};
-use crate::study::Watch;
 
 use super::memory::Memory;
 use super::span::Span;
@@ -48,24 +48,17 @@ impl Drawn {
         }
     }
 
-    /// The recorded motion that is drawn.
-    pub(super) fn watch(self, session: &Session) -> &Watch {
-        self.pin(session).map_or(session.player.watch(), Pin::watch)
-    }
-
-    /// Its state at the time that is shown.
+    /// The state of the motion that is drawn, at the time that is shown.
     pub(super) fn state(self, session: &Session) -> Sample {
         self.pin(session).map_or_else(|| session.player.state(), |pin| pin.state_at(session.player.time()))
     }
 
     /// Its model at that time.
     pub(super) fn model(self, session: &Session) -> &Arc<Model> {
-        let of_pin = |pin| Pin::watch(pin).model_at(session.player.time());
-        self.pin(session).map_or(session.shown(), |pin| of_pin(pin))
+        self.pin(session).map_or(session.shown(), |pin| pin.watch().model_at(session.player.time()))
     }
 }
 
-/// What a view shows and acts on.
 pub struct ViewContext<'a> {
     /// The open scene: document, model, motion, results.
     pub session: &'a mut Session,
@@ -126,20 +119,39 @@ pub fn covered_ui(ui: &mut Ui, style: &Style, question: &str) {
     painter.text(mark, Align2::CENTER_CENTER, "?", font, style.faint());
     let place = Rect::from_center_size(mark, Vec2::splat(2.0 * MARK));
     let response = ui.interact(place, ui.scope_id().with("covered"), Sense::hover());
-    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, "Covered"));
+    tell(&response, Role::Label, "Covered");
     let width = (area.width() - 2.0 * MARK).clamp(1.0, SENTENCE);
     let galley = painter.layout(question.to_owned(), style.body(), style.ink(), width);
-    let place = Rect::from_min_size(
-        pos2(area.center().x - 0.5 * galley.size().x, mark.y + 1.5 * MARK),
-        galley.size(),
-    );
+    let place = Align2::CENTER_TOP.anchor_size(mark + vec2(0.0, 1.5 * MARK), galley.size());
     if place.bottom() < area.bottom() {
         painter.rect_filled(place.expand(4.0), CORNER, style.ground());
         painter.galley(place.min, galley, style.ink());
     }
 }
 
-/// Shows a hint in place of a view that is too small.
+/// Draws a view on the ground of a card in all of `ui`, or a hint where that is smaller than `least`.
+pub fn sized_ui(
+    ui: &mut Ui,
+    context: &mut ViewContext<'_>,
+    least: Vec2,
+    draw: impl FnOnce(&mut Ui, &mut ViewContext<'_>),
+) {
+    let area = ui.max_rect();
+    if area.width() < least.x || area.height() < least.y {
+        return too_small_ui(ui, &context.style, area);
+    }
+    ui.painter().rect_filled(area, 0.0, context.style.ground());
+    draw(ui, context);
+}
+
+/// Draws a view of texts and tables, with a margin; it scrolls where not all of it fits.
+pub fn page_ui(ui: &mut Ui, contents: impl FnOnce(&mut Ui)) {
+    Frame::new().inner_margin(10.0).show(ui, |ui| {
+        ui.set_min_size(ui.available_size());
+        ScrollArea::vertical().auto_shrink(false).show(ui, contents);
+    });
+}
+
 pub fn too_small_ui(ui: &mut Ui, style: &Style, area: Rect) {
     ui.painter().rect_filled(area, 0.0, style.ground());
     empty_ui(ui, style, area, "Too small to show: drag an edge of it, or press Z over it.");

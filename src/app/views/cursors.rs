@@ -1,27 +1,72 @@
 //! Two time cursors shared by all views over time, with a readout of the values at them.
 
 use eframe::egui::{
-    Align2, CursorIcon, EventFilter, Key, Label, PointerButton, Rect, Response, RichText, Role, Sense, Shape,
-    Ui, UiBuilder, WidgetInfo, pos2, vec2,
+    Align2, CursorIcon, Key, Label, PointerButton, Rect, Response, RichText, Sense, Shape, Ui, UiBuilder,
+    WidgetInfo, pos2, vec2,
 };
 
 use crate::app::session::Session;
 use crate::app::ui::style::GRAB;
-use crate::app::ui::widgets::arrows;
+use crate::app::ui::widgets::{arrows, keep_arrows};
 use crate::app::words::numbers::{below, decimals_for, three};
 
-use super::ViewContext;
-use super::cursor_times::{Cursors, recorded_range};
 use super::labels::plated;
-use super::pane::LEGEND;
 use super::view::Axis;
 use super::zoom::Ends;
+use super::{LegendRow, ViewContext};
+
+/// Initial positions of the cursors, as shares of the time range shown.
+const INITIAL: [f64; 2] = [0.5, 0.75];
 
 /// Smallest number of arrow-key steps over the time range shown.
 const STEPS: f64 = 500.0;
 
 /// Decimals of a cursor's time beyond the three significant digits of the range shown.
 const EXTRA_DECIMALS: usize = 2;
+
+/// The two time cursors.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Cursors {
+    pub on: bool,
+    /// Their times in s.
+    pub at: [f64; 2],
+    /// Index of the cursor that a drag moves.
+    moved: usize,
+    /// Their times before the last click, restored if a double click follows.
+    before: [f64; 2],
+    /// Whether the first cursor takes the keyboard focus in the next view that shows it.
+    focus: bool,
+}
+
+impl Cursors {
+    fn put(&mut self, which: usize, t: f64, session: &Session) {
+        let (begin, end) = recorded_range(session);
+        self.at[which] = t.clamp(begin, end);
+    }
+
+    /// Moves the nearer cursor by a click or a drag beside the cursors.
+    fn move_by_pointer(&mut self, session: &Session, response: &Response, time: impl Fn(f32) -> f64) {
+        let Some(pointer) = response.interact_pointer_pos() else { return };
+        if response.double_clicked() {
+            self.at = self.before;
+            return;
+        }
+        let t = time(pointer.x);
+        if response.drag_started_by(PointerButton::Primary) || response.clicked() {
+            self.before = self.at;
+            self.moved = usize::from((self.at[1] - t).abs() < (self.at[0] - t).abs());
+        }
+        if response.dragged_by(PointerButton::Primary) || response.clicked() {
+            self.put(self.moved, t, session);
+        }
+    }
+}
+
+/// First and last time in s of the recorded motion.
+fn recorded_range(session: &Session) -> Ends {
+    let watch = session.player.watch();
+    (watch.begin(), watch.time().max(watch.begin()))
+}
 
 /// Time of the next event after `t` in s for `Some(true)`, of the previous one for `Some(false)`, else
 /// of the nearest.
@@ -39,14 +84,19 @@ fn event(session: &Session, t: f64, later: Option<bool>) -> Option<f64> {
     }
 }
 
-/// Texts of the readout: time, phase and value at each cursor, and the differences between the two.
-fn reading(
+/// Writes time, phase and value `at_each` cursor, and the differences `between` the two, below the legend.
+/// Returns their height in points.
+pub(super) fn readout_ui(
+    ui: &mut Ui,
     context: &ViewContext<'_>,
-    window: f64,
+    (area, window): (Rect, f64),
     at_each: impl Fn(f64) -> String,
     between: impl Fn(f64, f64) -> String,
-) -> [String; 3] {
-    let (session, at) = (&context.session, context.memory.cursors.at);
+) -> f32 {
+    if !context.memory.cursors.on {
+        return 0.0;
+    }
+    let (session, at, style) = (&context.session, context.memory.cursors.at, context.style);
     let (begin, end) = recorded_range(session);
     let decimals = decimals_for(window) + EXTRA_DECIMALS;
     let model_at = |t: f64| session.player.watch().model_at(t);
@@ -66,27 +116,11 @@ fn reading(
     if at.into_iter().all(is_known) {
         last += &format!(", {}", between(at[0], at[1]));
     }
-    [each(0), each(1), last]
-}
-
-/// Writes the texts `at_each` cursor and `between` the two below the legend. Returns their height in points.
-pub(super) fn readout_ui(
-    ui: &mut Ui,
-    context: &ViewContext<'_>,
-    (area, window): (Rect, f64),
-    at_each: impl Fn(f64) -> String,
-    between: impl Fn(f64, f64) -> String,
-) -> f32 {
-    if !context.memory.cursors.on {
-        return 0.0;
-    }
-    let style = context.style;
-    let parts = reading(context, window, at_each, between);
-    let place = area.with_min_y(area.top() + LEGEND).shrink2(vec2(8.0, 0.0));
+    let place = area.with_min_y(area.top() + LegendRow::HEIGHT).shrink2(vec2(8.0, 0.0));
     let inner = ui.scope_builder(UiBuilder::new().max_rect(place), |ui| {
         ui.horizontal_wrapped(|ui| {
             (ui.spacing_mut().item_spacing, ui.spacing_mut().interact_size.y) = (vec2(14.0, 0.0), 0.0);
-            for part in parts {
+            for part in [each(0), each(1), last] {
                 ui.add(Label::new(RichText::new(part).font(style.small()).color(style.ink())).extend());
             }
         });
@@ -113,7 +147,9 @@ pub(super) fn cursors_ui(
     let session = &*context.session;
     let snapped = |t: f64| event(session, t, None).filter(|_| snaps).unwrap_or(t);
     let cursors = &mut context.memory.cursors;
-    move_by_pointer(cursors, session, response, shift, |x| snapped(time(x)));
+    if !shift {
+        cursors.move_by_pointer(session, response, |x| snapped(time(x)));
+    }
     for which in 0..2 {
         let x = screen(cursors.at[which]);
         let seen = frame.x_range().contains(x);
@@ -123,10 +159,7 @@ pub(super) fn cursors_ui(
         let grip = ui.interact(strip.intersect(frame), id, Sense::drag());
         let grip = grip.on_hover_and_drag_cursor(CursorIcon::ResizeHorizontal);
         let (spoken, t) = (format!("cursor {}, {name}", which + 1), cursors.at[which]);
-        grip.widget_info(|| WidgetInfo {
-            value: Some(t),
-            ..WidgetInfo::labeled(Role::Slider, true, &spoken)
-        });
+        grip.widget_info(|| WidgetInfo::slider(true, t, &spoken));
         if which == 0 && std::mem::take(&mut cursors.focus) {
             grip.request_focus();
         }
@@ -135,9 +168,7 @@ pub(super) fn cursors_ui(
         } else if grip.has_focus() {
             let step = below(length / STEPS);
             let moved = arrows(ui, grip.id);
-            let filter =
-                EventFilter { horizontal_arrows: true, vertical_arrows: true, ..EventFilter::default() };
-            ui.memory_mut(|memory| memory.set_focus_lock_filter(grip.id, filter));
+            keep_arrows(ui, grip.id, true);
             if moved != 0.0 {
                 cursors.put(which, ((t / step).round() + moved) * step, session);
             }
@@ -172,33 +203,19 @@ pub(super) fn cursors_ui(
     }
 }
 
-/// Moves the nearer cursor by a click or a drag beside the cursors.
-fn move_by_pointer(
-    cursors: &mut Cursors,
-    session: &Session,
-    response: &Response,
-    shift: bool,
-    time: impl Fn(f32) -> f64,
-) {
-    let Some(pointer) = response.interact_pointer_pos().filter(|_| !shift) else { return };
-    if response.double_clicked() {
-        cursors.at = cursors.before;
-        return;
-    }
-    let t = time(pointer.x);
-    if response.drag_started_by(PointerButton::Primary) || response.clicked() {
-        cursors.before = cursors.at;
-        cursors.moved = cursors.nearer(t);
-    }
-    if response.dragged_by(PointerButton::Primary) || response.clicked() {
-        cursors.put(cursors.moved, t, session);
-    }
-}
-
 impl super::Memory {
-    /// Shows the cursors, or hides them.
+    /// Shows the cursors, or hides them. If one would lie outside the visible range, both are placed anew.
     pub fn switch_cursors(&mut self, session: &Session) {
-        self.cursors.switch(session, self.axes.shown(Axis::Time));
+        let cursors = &mut self.cursors;
+        cursors.on = !cursors.on;
+        cursors.focus = cursors.on;
+        let (begin, end) = recorded_range(session);
+        let seen = self.axes.shown(Axis::Time);
+        let (from, to) = seen.map_or((begin, end), |(from, to)| (from.max(begin), to.min(end)));
+        // equal times: not placed yet
+        if cursors.at[0] == cursors.at[1] || cursors.at.iter().any(|t| *t < from || *t > to) {
+            cursors.at = INITIAL.map(|share| from + share * (to - from));
+        }
     }
 }
 

@@ -3,18 +3,18 @@
 use eframe::egui::{self, Align2, RichText, Sense, Ui, UiBuilder, vec2};
 
 use crate::app::session::pins::{Pin, PinKind};
+use crate::app::ui::widgets::tell;
 use crate::app::words::numbers::three;
 use crate::numeric::elementary;
 use crate::output::{Chart, Marks, Panel, PlotAxis, Role};
 use crate::study::{Table, distances};
 
 use super::cursors::{cursors_ui, readout_ui};
-use super::ghosts::PINNED;
 use super::hand::axes_input;
 use super::labels::haloed;
 use super::pane::{Place, fresh_pane_ui};
 use super::view::Axis;
-use super::{View, ViewContext, too_small_ui};
+use super::{View, ViewContext};
 
 const MAX_POINTS: usize = 2000;
 
@@ -28,23 +28,21 @@ const PRESENT: f64 = 0.94;
 
 pub fn distance_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let (area, style) = (ui.max_rect(), context.style);
-    if area.width() < 160.0 || area.height() < 100.0 {
-        return too_small_ui(ui, &style, area);
-    }
-    ui.painter().rect_filled(area, 0.0, style.ground());
     if context.session.pins.all().is_empty() {
-        return nothing_ui(ui, context, area);
+        ui.scope_builder(UiBuilder::new().max_rect(area.shrink(10.0)), |ui| {
+            let text = "Nothing is pinned. A twin begins a micrometre beside the mass, from the start.";
+            ui.label(RichText::new(text).color(style.faint()));
+            if ui.button("Twin start").clicked() {
+                context.memory.pin = Some(PinKind::Twin);
+            }
+        });
+        return;
     }
     let (session, now) = (&context.session, context.session.player.time());
     let pins = session.pins.all();
     let from = pins.iter().map(|pin| pin.since()).fold(now, f64::min);
-    let lines: Vec<(usize, Vec<(f64, f64)>)> = pins
-        .iter()
-        .map(|pin| {
-            let span = (pin.since(), now);
-            (pin.place(), distances(session.player.watch(), pin.watch(), span, MAX_POINTS))
-        })
-        .collect();
+    let of_pin = |pin: &Pin| distances(session.player.watch(), pin.watch(), (pin.since(), now), MAX_POINTS);
+    let lines: Vec<(char, Vec<(f64, f64)>)> = pins.iter().map(|pin| (pin.letter(), of_pin(pin))).collect();
     let seen = || lines.iter().flat_map(|line| &line.1).map(|point| elementary::log10(point.1 * 1e3));
     let finite = || seen().filter(|log| log.is_finite());
     // if all motions are equal to the last digit, the axis starts at its lowest end
@@ -55,9 +53,8 @@ pub fn distance_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let model = session.shown();
     let shortest = PERIODS * model.forcing_period().unwrap_or(model.characteristic_time());
     let to = from + ((now - from) / PRESENT).max(shortest);
-    let [across, up] = [Axis::Across(View::Distance), Axis::Up(View::Distance)];
-    let (from, to) = context.memory.axes.ends(across, (from, to));
-    let (low, high) = context.memory.axes.ends(up, (low, high));
+    let (from, to) = context.memory.axes.ends(Axis::Across(View::Distance), (from, to));
+    let (low, high) = context.memory.axes.ends(Axis::Up(View::Distance), (low, high));
     let distance = |pin: &Pin, t: f64| (session.player.watch().state_at(t).x - pin.state_at(t).x).abs();
     let of_all = |word: &dyn Fn(&Pin) -> String| {
         pins.iter().map(|pin| format!("{} {}", pin.letter(), word(pin))).collect::<Vec<_>>().join(", ")
@@ -81,24 +78,19 @@ pub fn distance_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let pane = fresh_pane_ui(ui, &style, place, Chart::stack(vec![panel], "", Table::new()));
     let Some(frame) = pane.frame(0) else { return };
     let painter = ui.painter().with_clip_rect(area);
-    for (place, path) in &lines {
+    for (letter, path) in &lines {
         let end = path.last().and_then(|(t, metres)| pane.place(0, (*t, height(*metres))));
         if let Some(at) = end.filter(|at| frame.expand(1.0).contains(*at)) {
             let at = (at + vec2(3.0, 0.0), Align2::LEFT_CENTER);
-            haloed(&painter, &style, at, PINNED[place % PINNED.len()], (style.body(), style.ink()));
+            haloed(&painter, &style, at, &letter.to_string(), (style.body(), style.ink()));
         }
     }
-    let spoken = "distance of the pinned motions";
-    pane.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, spoken));
-    let texts: Vec<String> = lines
-        .iter()
-        .filter_map(|(place, path)| Some((PINNED[place % PINNED.len()], path.last()?.1)))
-        .map(|(letter, metres)| match metres {
-            0.0 => format!("{letter}: equal to the last digit"),
-            metres => format!("{letter}: {}", millimetres(metres)),
-        })
-        .collect();
-    pane.reading(ui, &style, 0.0, &texts.join("   "));
+    tell(&pane.response, egui::Role::Canvas, "distance of the pinned motions");
+    let text = |(letter, path): &(char, Vec<(f64, f64)>)| match path.last()?.1 {
+        0.0 => Some(format!("{letter}: equal to the last digit")),
+        metres => Some(format!("{letter}: {}", millimetres(metres))),
+    };
+    pane.reading(ui, &style, 0.0, &lines.iter().filter_map(text).collect::<Vec<_>>().join("   "));
     axes_input(ui, context.memory, View::Distance, &pane.response, (area, frame));
     cursors_ui(ui, context, &pane.response, (frame, (from, to)), "distance");
 }
@@ -107,16 +99,4 @@ pub fn distance_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
 fn millimetres(metres: f64) -> String {
     let mm = 1e3 * metres;
     if mm >= 0.01 { format!("{} mm", three(mm)) } else { format!("{mm:.1e} mm") }
-}
-
-/// Placeholder while nothing is pinned.
-fn nothing_ui(ui: &mut Ui, context: &mut ViewContext<'_>, area: egui::Rect) {
-    let faint = context.style.faint();
-    ui.scope_builder(UiBuilder::new().max_rect(area.shrink(10.0)), |ui| {
-        let text = "Nothing is pinned. A twin begins a micrometre beside the mass, from the start.";
-        ui.label(RichText::new(text).color(faint));
-        if ui.button("Twin start").clicked() {
-            context.memory.pin = Some(PinKind::Twin);
-        }
-    });
 }

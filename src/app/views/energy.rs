@@ -8,10 +8,11 @@ use eframe::egui::{self, Align, Align2, Color32, Layout, Rect, RichText, Sense, 
 use crate::app::ui::style::Style;
 use crate::dynamics::LiveLedger;
 use crate::numeric::{self, elementary};
+use crate::study::Watch;
 
+use super::ViewContext;
 use super::ghosts::dashed;
 use super::ranges::{axis_end, bottom};
-use super::{ViewContext, too_small_ui};
 
 /// Width in points of the names.
 const NAMES: f32 = 64.0;
@@ -43,32 +44,20 @@ type Row = (&'static str, &'static str, fn(&LiveLedger) -> f64, fn(&Style) -> Co
 
 const STORED: &str = "stored";
 const OF_WORK: &str = "The share of the work of the base that is taken so.";
+const BY_HAND: &str = "Put in or taken out by you: a stop dragged over the mass, a mass put elsewhere, \
+                       another potential under it.";
+const IN_IMPACTS: &str = "Taken by impacts: (1 - e²) of the kinetic energy each.";
+const IN_TRANSDUCER: &str = "Taken by the load and the coil of the transducer.";
 
 /// The row that only a scene with a transducer has.
 const TRANSDUCER: &str = "transducer";
 
 const LEDGER: [Row; 6] = [
     ("work in", "Work of the base on the mass.", |ledger| ledger.work_j, Style::base),
-    (
-        "by hand",
-        "Put in or taken out by you: a stop dragged over the mass, a mass put elsewhere, another potential \
-         under it.",
-        |ledger| ledger.by_hand_j,
-        Style::mass,
-    ),
+    ("by hand", BY_HAND, |ledger| ledger.by_hand_j, Style::mass),
     ("damping", "Taken by damping.", |ledger| -ledger.damping_j, Style::faint),
-    (
-        "impacts",
-        "Taken by impacts: (1 - e²) of the kinetic energy each.",
-        |ledger| -ledger.impact_j,
-        Style::impact,
-    ),
-    (
-        TRANSDUCER,
-        "Taken by the load and the coil of the transducer.",
-        |ledger| -(ledger.harvested_j + ledger.coil_j),
-        Style::ink,
-    ),
+    ("impacts", IN_IMPACTS, |ledger| -ledger.impact_j, Style::impact),
+    (TRANSDUCER, IN_TRANSDUCER, |ledger| -(ledger.harvested_j + ledger.coil_j), Style::ink),
     (STORED, "What that leaves in the mass and its mechanism.", |ledger| ledger.stored_j, Style::ink),
 ];
 
@@ -95,7 +84,6 @@ fn share_of_work(joule: f64, ledger: &LiveLedger, is_nothing: bool) -> Option<St
     (ledger.work_j > 0.0 && joule < 0.0 && !is_nothing).then(|| format!("{share:.0} %"))
 }
 
-/// Whether a value of the ledger rounds to nothing.
 fn is_nothing(joule: f64, unit: f64, decimals: usize) -> bool {
     (joule / unit).abs() < 0.5 * elementary::powi(0.1, decimals as i32)
 }
@@ -122,36 +110,21 @@ fn accounted(residual: f64) -> String {
 
 pub fn energy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let style = context.style;
-    ui.painter().rect_filled(ui.max_rect(), 0.0, style.ground());
     let area = ui.available_rect_before_wrap().shrink2(vec2(10.0, 6.0));
-    // too small for all rows and the bar below them
-    if area.width() < NAMES + NUMBERS + 40.0 || area.height() < ROWS.0 * (COUNT - 2.0) {
-        return too_small_ui(ui, &style, ui.max_rect());
-    }
     context.session.player.want_ledgers();
     let session = &context.session;
     let (model, watch, now) = (session.shown(), session.player.watch(), session.player.time());
-    let whole = watch.ledger_at(now);
-    let period = watch.last_period(now);
     let (unit, name) = unit_of(model.mass() * model.scales().speed.powi(2));
-    let pins: Vec<(usize, [Option<LiveLedger>; 2])> = session
-        .pins
-        .all()
-        .iter()
-        .map(|pin| (pin.place(), [pin.watch().ledger_at(now).map(|at| at.1), pin.watch().last_period(now)]))
-        .collect();
+    let ledgers = |watch: &Watch| [watch.ledger_at(now).map(|at| at.1), watch.last_period(now)];
+    let pins: Vec<_> = session.pins.all().iter().map(|pin| (pin.place(), ledgers(pin.watch()))).collect();
     let count = COUNT + if model.has_transducer() { 1.0 } else { 0.0 };
     let row = (area.height() / count).clamp(ROWS.0, ROWS.1);
     let shaken = model.forcing_period().is_some();
-    let columns = if shaken { 2.0 } else { 1.0 };
-    let column = (area.width() - NAMES) / columns;
-    let mut heads: [(Option<LiveLedger>, &str, &str); 2] = [
-        (
-            whole.map(|at| at.1),
-            "since the start",
-            "From the start of the motion up to the time that is shown.",
-        ),
-        (period, "last period", "The last whole forcing period. Steady motion repeats it."),
+    let column = (area.width() - NAMES) / if shaken { 2.0 } else { 1.0 };
+    let [since_start, last_period] = ledgers(watch);
+    let mut heads = [
+        (since_start, "since the start", "From the start of the motion up to the time that is shown."),
+        (last_period, "last period", "The last whole forcing period. Steady motion repeats it."),
     ];
     // both short where a long one would run into the other
     let width = |text: &str| {
@@ -175,29 +148,25 @@ pub fn energy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let unit_name = RichText::new(format!("in {name}")).color(style.faint());
     put_ui(ui, cell(area.left(), y, NAMES, row), unit_name, Align::Min, hover);
     y += row;
-    for (name, hover, value, color) in LEDGER {
-        if name == TRANSDUCER && !model.has_transducer() {
-            continue;
-        }
+    for entry in LEDGER.iter().filter(|entry| entry.0 != TRANSDUCER || model.has_transducer()) {
         let names = cell(area.left(), y, NAMES, row);
-        put_ui(ui, names, RichText::new(name).color(style.ink()), Align::Min, hover);
+        put_ui(ui, names, RichText::new(entry.0).color(style.ink()), Align::Min, entry.1);
         for (i, (ledger, ..)) in heads.iter().rev().enumerate() {
             let rect = cell(area.left() + NAMES + column * i as f32, y, column, row);
-            let numbers = Rect::from_min_max(pos2(rect.right() - NUMBERS, rect.top()), rect.max);
             let Some(ledger) = ledger else {
                 let hover = "Not kept: a whole period has to pass while this view is open.";
-                put_ui(ui, numbers, RichText::new("-").color(style.faint()), Align::Max, hover);
+                let nothing = RichText::new("-").color(style.faint());
+                put_ui(ui, rect.with_min_x(rect.right() - NUMBERS), nothing, Align::Max, hover);
                 continue;
             };
             // the columns are drawn in reverse order of `heads`
             let column = heads.len() - 1 - i;
-            let ghosts = pins.iter().filter_map(|pin| Some((pin.0, value(pin.1[column].as_ref()?))));
-            let entry = Entry { name, hover, joule: value(ledger), color: color(&style), unit, largest };
-            entry.ui(ui, &style, (rect, numbers), ledger, ghosts);
+            let ghosts = pins.iter().filter_map(|pin| Some((pin.0, entry.2(pin.1[column].as_ref()?))));
+            entry_ui(ui, &style, rect, entry, (ledger, unit, largest), &ghosts.collect::<Vec<_>>());
         }
         y += row;
     }
-    if let Some((upto, whole)) = whole {
+    if let Some((upto, whole)) = watch.ledger_at(now) {
         let residual = whole.energy_residual();
         let hover = format!(
             "Up to {upto:.3} s: work + by hand - damping - impacts - stored = {:.1e} J, which is \
@@ -209,49 +178,48 @@ pub fn energy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         put_ui(ui, cell(area.left(), y, area.width(), row), RichText::new(text), Align::Min, &hover);
     }
     y += 1.3 * row;
-    let rest = Rect::from_min_max(pos2(area.left(), y), area.max);
-    present_ui(ui, context, rest, (unit, name));
+    present_ui(ui, context, area.with_min_y(y), (unit, name));
 }
 
-/// A value of a ledger, with the unit in J in which it is written and the largest one, whose bar is longest.
-struct Entry {
-    name: &'static str,
-    hover: &'static str,
-    joule: f64,
-    color: Color32,
-    unit: f64,
-    largest: f64,
-}
-
-impl Entry {
-    /// Draws its bar with those of the pinned motions, its share of the work where that has room, and its
-    /// number.
-    fn ui(
-        &self,
-        ui: &mut Ui,
-        style: &Style,
-        (rect, numbers): (Rect, Rect),
-        ledger: &LiveLedger,
-        ghosts: impl Iterator<Item = (usize, f64)>,
-    ) {
-        let Self { name, hover, joule, color, unit, largest } = *self;
-        let decimals = decimals(ledger, unit);
-        let shares = if rect.width() >= SHARE.1 { SHARE.0 } else { 0.0 };
-        let right = numbers.left() - shares;
-        let bars = Rect::from_min_max(rect.min + vec2(GAP, 0.0), pos2(right - 4.0, rect.bottom()));
-        let share = |joule: f64| share(joule, unit, decimals, largest);
-        bar(ui, style, bars, share(joule), color);
-        for (place, ghost) in ghosts {
-            ghost_bar(ui, style, bars, share(ghost), place);
+/// Draws the bar of a row of a ledger with those of the pinned motions, its share of the work where that has
+/// room, and its number in a unit in J. The bar of the `largest` value is longest.
+fn entry_ui(
+    ui: &mut Ui,
+    style: &Style,
+    rect: Rect,
+    (name, hover, value, color): &Row,
+    (ledger, unit, largest): (&LiveLedger, f64, f64),
+    ghosts: &[(usize, f64)],
+) {
+    let (joule, decimals) = (value(ledger), decimals(ledger, unit));
+    let numbers = rect.with_min_x(rect.right() - NUMBERS);
+    let shares = if rect.width() >= SHARE.1 { SHARE.0 } else { 0.0 };
+    let right = numbers.left() - shares;
+    let bars = Rect::from_min_max(rect.min + vec2(GAP, 0.0), pos2(right - 4.0, rect.bottom()));
+    let (middle, half) = (bars.center().x, 0.5 * bars.width() - 2.0);
+    // to the right for energy supplied, to the left for energy taken
+    let end = |joule: f64| middle + share(joule, unit, decimals, largest) as f32 * half;
+    if half > 4.0 {
+        let thick = (0.5 * bars.height()).min(12.0);
+        let from = pos2(middle, bars.center().y - 0.5 * thick);
+        if end(joule) != middle {
+            let to = pos2(end(joule), bars.center().y + 0.5 * thick);
+            ui.painter().rect_filled(Rect::from_two_pos(from, to), 0.0, color(style));
         }
-        // what the mass has gained or lost is no share
-        let taken = share_of_work(joule, ledger, is_nothing(joule, unit, decimals));
-        if let Some(text) = taken.filter(|_| shares > 0.0 && name != STORED) {
-            let place = numbers.with_min_x(right).with_max_x(numbers.left());
-            put_ui(ui, place, RichText::new(text).color(style.faint()), Align::Max, OF_WORK);
+        ui.painter().vline(middle, bars.y_range(), style.ghost_stroke());
+        for (place, ghost) in ghosts.iter().filter(|ghost| end(ghost.1) != middle) {
+            let y = bars.bottom() - 1.0 - GHOSTS * *place as f32;
+            let ends = [pos2(middle, y), pos2(end(*ghost), y)];
+            ui.painter().extend(dashed(&ends, *place, style.motion_stroke()));
         }
-        put_ui(ui, numbers, RichText::new(written(joule, unit, decimals)), Align::Max, hover);
     }
+    // what the mass has gained or lost is no share
+    let taken = share_of_work(joule, ledger, is_nothing(joule, unit, decimals));
+    if let Some(text) = taken.filter(|_| shares > 0.0 && *name != STORED) {
+        let place = numbers.with_min_x(right).with_max_x(numbers.left());
+        put_ui(ui, place, RichText::new(text).color(style.faint()), Align::Max, OF_WORK);
+    }
+    put_ui(ui, numbers, RichText::new(written(joule, unit, decimals)), Align::Max, hover);
 }
 
 fn cell(x: f32, y: f32, width: f32, height: f32) -> Rect {
@@ -267,33 +235,6 @@ fn put_ui(ui: &mut Ui, rect: Rect, text: RichText, align: Align, hover: &str) {
     ui.scope_builder(builder, |ui| ui.add(egui::Label::new(text).extend()).on_hover_text(hover));
 }
 
-/// Draws a bar from the middle, a `share` of the longest one: to the right for energy supplied, to the left
-/// for energy taken.
-fn bar(ui: &Ui, style: &Style, rect: Rect, share: f64, color: Color32) {
-    let painter = ui.painter();
-    let (middle, half) = (rect.center().x, 0.5 * rect.width() - 2.0);
-    if half > 4.0 {
-        let end = middle + share as f32 * half;
-        let thick = (0.5 * rect.height()).min(12.0);
-        let from = pos2(middle, rect.center().y - 0.5 * thick);
-        let to = pos2(end, rect.center().y + 0.5 * thick);
-        if share != 0.0 {
-            painter.rect_filled(Rect::from_two_pos(from, to), 0.0, color);
-        }
-        painter.vline(middle, rect.y_range(), style.ghost_stroke());
-    }
-}
-
-/// Draws the bar of a pinned motion as a dashed line below the row, a `share` of the longest bar.
-fn ghost_bar(ui: &Ui, style: &Style, rect: Rect, share: f64, place: usize) {
-    let (middle, half) = (rect.center().x, 0.5 * rect.width() - 2.0);
-    if half > 4.0 && share != 0.0 {
-        let y = rect.bottom() - 1.0 - GHOSTS * place as f32;
-        let ends = [pos2(middle, y), pos2(middle + share as f32 * half, y)];
-        ui.painter().extend(dashed(&ends, place, style.motion_stroke()));
-    }
-}
-
 /// Draws the present potential and kinetic energy above the deeper well, and the height of the barrier.
 fn present_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect, (unit, name): (f64, &str)) {
     let style = context.style;
@@ -301,13 +242,11 @@ fn present_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect, (unit, nam
     let (session, state) = (&context.session, context.session.player.state());
     let model = session.shown();
     let (kinetic, potential) = model.energies(state.x, state.v);
-    let landscape = &model.mechanism().landscape;
+    let mechanism = model.mechanism();
     // without a well, energy is counted from the lower stop
     let bottom = bottom(model);
-    let (potential, barrier) = (
-        (potential - bottom).max(0.0),
-        landscape.barrier.map(|barrier| model.mechanism().curve.potential(barrier.x) - bottom),
-    );
+    let potential = (potential - bottom).max(0.0);
+    let barrier = mechanism.landscape.barrier.map(|barrier| mechanism.curve.potential(barrier.x) - bottom);
     let scale = axis_end(kinetic_room.max(1.3 * barrier.unwrap_or(0.0)).max(1e-300));
     if rect.height() < 34.0 {
         return;
@@ -323,13 +262,8 @@ fn present_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect, (unit, nam
     painter.rect_filled(Rect::from_x_y_ranges(first..=second, track.y_range()), 0.0, style.mass());
     let below = track.bottom() + 3.0;
     if below + LEGEND <= rect.bottom() + 4.0 {
-        let legend = painter.text(
-            pos2(track.left(), below),
-            Align2::LEFT_TOP,
-            "potential",
-            style.small(),
-            style.ink(),
-        );
+        let at = pos2(track.left(), below);
+        let legend = painter.text(at, Align2::LEFT_TOP, "potential", style.small(), style.ink());
         let at = pos2(legend.right() + 8.0, below);
         painter.text(at, Align2::LEFT_TOP, "+ kinetic now", style.small(), style.mass_ink());
         let end = format!("{} {name}", short(scale / unit));
@@ -343,12 +277,11 @@ fn present_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect, (unit, nam
         let at = pos2(x, track.top() - 2.0);
         painter.text(at, Align2::CENTER_BOTTOM, "barrier", style.small(), style.faint());
     }
+    let (potential, kinetic) = (short(potential / unit), short(kinetic / unit));
     response.on_hover_text(format!(
-        "Now: potential {} and kinetic energy {} {name}, counted from the bottom of the deeper well, or \
-         without one from the lower stop. Without shaking the mass crosses only where their sum passes the \
-         barrier.",
-        short(potential / unit),
-        short(kinetic / unit)
+        "Now: potential {potential} and kinetic energy {kinetic} {name}, counted from the bottom of the \
+         deeper well, or without one from the lower stop. Without shaking the mass crosses only where their \
+         sum passes the barrier."
     ));
 }
 

@@ -1,15 +1,14 @@
 //! View of the events of the motion as a table: time, kind, velocities and energy lost.
 
-use eframe::egui::{self, Align2, FontId, Rect, RichText, Role, ScrollArea, Sense, Ui, WidgetInfo, pos2};
+use eframe::egui::{self, Align2, Rect, RichText, Role, ScrollArea, Sense, Ui, WidgetInfo, pos2};
 
 use crate::app::export::events_seen_csv;
-use crate::app::session::Session;
 use crate::app::ui::style::Style;
 use crate::app::words::numbers::three;
 use crate::study::{Table, Values, watched_events};
 
 use super::energy::unit_of;
-use super::{ViewContext, empty_ui, too_small_ui};
+use super::{ViewContext, empty_ui};
 
 /// Height in points of a row.
 const ROW: f32 = 18.0;
@@ -28,15 +27,8 @@ const COLUMNS: [Column; 7] = [
 ];
 
 pub fn events_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
-    let (area, style) = (ui.max_rect(), context.style);
-    if area.width() < 160.0 || area.height() < 90.0 {
-        return too_small_ui(ui, &style, area);
-    }
-    ui.painter().rect_filled(area, 0.0, style.ground());
-    let (count, forgotten) = {
-        let watch = context.session.player.watch();
-        (watch.events().len(), watch.forgotten_events())
-    };
+    let (style, watch) = (context.style, context.session.player.watch());
+    let (count, forgotten) = (watch.events().len(), watch.forgotten_events());
     ui.spacing_mut().item_spacing.y = 0.0;
     ui.horizontal(|ui| {
         ui.add_space(8.0);
@@ -83,8 +75,8 @@ fn list_ui(ui: &mut Ui, context: &mut ViewContext<'_>, count: usize, unit: (f64,
         context.session.player.watch().events().partition_point(|event| event.t <= now).checked_sub(1);
     let moved = context.memory.marked != marked && marked.is_some();
     let mut list = ScrollArea::vertical().auto_shrink(false).id_salt("events");
-    let (height, in_list) =
-        (ui.available_height(), ui.rect_contains_pointer(ui.available_rect_before_wrap()));
+    let room = ui.available_rect_before_wrap();
+    let (height, in_list) = (room.height(), ui.rect_contains_pointer(room));
     // scrolls to the present event, unless the pointer is over the list during playback
     let follows = moved && !(in_list && context.session.player.is_playing());
     if let Some(row) = marked.filter(|_| follows) {
@@ -121,19 +113,14 @@ fn list_ui(ui: &mut Ui, context: &mut ViewContext<'_>, count: usize, unit: (f64,
             }
         }
     });
-    if let Some(row) = clicked {
-        look_at(context.session, row);
+    let player = &mut context.session.player;
+    if let Some(event) = clicked.and_then(|row| player.watch().events().get(row)) {
+        let t = event.t;
+        player.set_playing(false);
+        player.seek(t);
     }
 }
 
-/// Pauses at the instant of the event in a row.
-fn look_at(session: &mut Session, row: usize) {
-    let Some(t) = session.player.watch().events().get(row).map(|event| event.t) else { return };
-    session.player.set_playing(false);
-    session.player.seek(t);
-}
-
-/// Rectangles of the cells of a row.
 fn cells(row: Rect) -> [Rect; COLUMNS.len()] {
     let all: f32 = COLUMNS.iter().map(|column| column.2).sum();
     let (mut x, width) = (row.left() + 6.0, row.width() - 16.0);
@@ -147,13 +134,12 @@ fn cells(row: Rect) -> [Rect; COLUMNS.len()] {
 /// Writes a text into its cell: words to the left, numbers to the right.
 fn write(ui: &Ui, style: &Style, place: Rect, column: &str, text: &str, strong: bool) {
     let color = if strong { style.ink() } else { style.faint() };
-    let is_word = matches!(column, "kind" | "side");
-    let (at, align) = match is_word {
-        true => (place.left_center() + egui::vec2(10.0, 0.0), Align2::LEFT_CENTER),
-        false => (place.right_center(), Align2::RIGHT_CENTER),
+    let (at, align) = match column {
+        "kind" | "side" => (place.left_center() + egui::vec2(10.0, 0.0), Align2::LEFT_CENTER),
+        _ => (place.right_center(), Align2::RIGHT_CENTER),
     };
     let painter = ui.painter().with_clip_rect(place.intersect(ui.clip_rect()));
-    painter.text(at, align, text, FontId::proportional(style.small().size), color);
+    painter.text(at, align, text, style.small(), color);
 }
 
 fn cell(table: &Table, column: &str, row: usize, unit: (f64, &str)) -> String {

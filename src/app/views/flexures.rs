@@ -4,11 +4,14 @@
 //! the bulge vanishes where it should. The scale along the flexures differs from that of the x axis; the
 //! ratio of the two is written. The mass is a body between the two groups, not to scale.
 
-use eframe::egui::{self, Align2, Pos2, Rect, Stroke, Vec2, pos2, vec2};
+use std::ops::RangeInclusive;
+
+use eframe::egui::{Align2, Painter, Pos2, Rect, Stroke, Vec2, pos2, vec2};
 
 use crate::app::ui::style::Style;
 use crate::mechanics::flexure::{Geometry, State};
 
+use super::labels::Taken;
 use super::{Span, ViewContext};
 
 /// Smallest travel in points that is drawn at true scale.
@@ -31,11 +34,20 @@ pub(super) struct DrawingArea {
     pub half: Vec2,
 }
 
+/// A drawing of the mechanism in `rect`, and what is drawn of it already.
+pub(super) struct Sketch {
+    pub painter: Painter,
+    pub rect: Rect,
+    pub style: Style,
+    pub area: DrawingArea,
+    pub taken: Taken,
+}
+
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct DrawingScale {
     place: DrawingArea,
     /// Points per m along the flexures.
-    along: f64,
+    pub along: f64,
     /// Distance between the clamps in m, for a body of zero size.
     clamps: f64,
 }
@@ -63,38 +75,25 @@ impl DrawingScale {
         }
     }
 
-    pub fn along(&self) -> f32 {
-        self.along as f32
-    }
-
-    /// Height of the middle of the body on the screen.
     pub fn middle(&self, state: &State) -> f32 {
         let end = |line: usize| state.lines.get(line).and_then(|line| line.points.last());
         let along = end(0).map_or(0.5 * self.clamps, |point| point[1]);
         self.place.bottom - (along * self.along) as f32 - self.place.half.y
     }
 
-    /// Screen position of a point of a flexure; the buckling flexures are `above` the body.
-    fn screen_from_world(&self, [along, across]: [f64; 2], above: bool, span: Span, rect: Rect) -> Pos2 {
-        let y = if above {
-            self.place.top + ((self.clamps - along) * self.along) as f32
-        } else {
-            self.place.bottom - (along * self.along) as f32
-        };
-        pos2(span.screen_from_world(across, rect), y)
-    }
-
     /// The lines of the flexures below the body and of those above it, each from its clamp.
     pub fn lines(&self, geometry: &Geometry, state: &State, span: Span, rect: Rect) -> [Vec<Vec<Pos2>>; 2] {
         let mut lines = [Vec::new(), Vec::new()];
-        for (line, (group, above)) in
-            state.lines.iter().zip([(&geometry.parallel, false), (&geometry.buckling, true)])
-        {
-            let points: Vec<Pos2> = line
-                .points
-                .iter()
-                .map(|[_, along, across]| self.screen_from_world([*along, *across], above, span, rect))
-                .collect();
+        let groups = [(&geometry.parallel, false), (&geometry.buckling, true)];
+        for (line, (group, above)) in state.lines.iter().zip(groups) {
+            let place = |[_, along, across]: &[f64; 3]| {
+                let y = match above {
+                    true => self.place.top + ((self.clamps - along) * self.along) as f32,
+                    false => self.place.bottom - (along * self.along) as f32,
+                };
+                pos2(span.screen_from_world(*across, rect), y)
+            };
+            let points: Vec<Pos2> = line.points.iter().map(place).collect();
             let count = group.count.clamp(1, MAX_LINES);
             for i in 0..count {
                 let share = if count == 1 { 0.0 } else { 2.0 * i as f32 / (count - 1) as f32 - 1.0 };
@@ -106,7 +105,7 @@ impl DrawingScale {
     }
 
     /// Draws a bar of 10 mm along the flexures. Returns its rectangle.
-    pub fn bar(&self, painter: &egui::Painter, style: &Style, at: Pos2) -> Option<Rect> {
+    pub fn bar(&self, painter: &Painter, style: &Style, at: Pos2) -> Option<Rect> {
         let length = (0.01 * self.along) as f32;
         if !(6.0..400.0).contains(&length) {
             return None;
@@ -139,15 +138,18 @@ pub(super) fn bulge_words(state: &State) -> String {
     if bulge < 0.005 { "taut: no bulge left".to_owned() } else { format!("bulge {bulge:.1} mm") }
 }
 
-/// Draws a clamp: a bar of the frame, hatched on the side away from the flexures.
-pub(super) fn clamp(painter: &egui::Painter, style: &Style, bar: Rect, above: bool) {
-    painter.rect_filled(bar, 0.0, style.frame_colour());
-    let stroke = Stroke::new(1.0, style.ground());
-    let count = (bar.width() / 8.0).floor().clamp(0.0, 1000.0) as usize;
-    for i in 0..count {
-        let x = bar.left() + 8.0 * (i as f32 + 0.5);
-        painter.line_segment([pos2(x, bar.bottom()), pos2(x + 5.0, bar.top())], stroke);
+impl Sketch {
+    /// Draws a clamp at these heights: a bar of the frame, hatched on the side away from the flexures.
+    pub fn clamp(&self, heights: RangeInclusive<f32>, above: bool) {
+        let (painter, bar) = (&self.painter, Rect::from_x_y_ranges(self.rect.x_range().shrink(6.0), heights));
+        painter.rect_filled(bar, 0.0, self.style.frame_colour());
+        let stroke = Stroke::new(1.0, self.style.ground());
+        let count = (bar.width() / 8.0).floor().clamp(0.0, 1000.0) as usize;
+        for i in 0..count {
+            let x = bar.left() + 8.0 * (i as f32 + 0.5);
+            painter.line_segment([pos2(x, bar.bottom()), pos2(x + 5.0, bar.top())], stroke);
+        }
+        let edge = if above { bar.bottom() } else { bar.top() };
+        painter.hline(bar.x_range(), edge, Stroke::new(1.5, self.style.faint()));
     }
-    let edge = if above { bar.bottom() } else { bar.top() };
-    painter.hline(bar.x_range(), edge, Stroke::new(1.5, style.faint()));
 }

@@ -23,7 +23,7 @@ use super::pane::{Pane, Place, kept_pane_ui};
 use super::ranges::{axis_end, room_for_push};
 use super::stops::{WALL, stops_ui};
 use super::view::Axis;
-use super::{Span, View, ViewContext, too_small_ui};
+use super::{Span, View, ViewContext};
 
 /// Factor by which the axis exceeds the largest force between the wells.
 const ROOM: f64 = 1.3;
@@ -44,10 +44,6 @@ const BALL: f32 = 7.0;
 
 pub fn force_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let (area, style) = (ui.max_rect(), context.style);
-    if area.width() < 60.0 || area.height() < 80.0 {
-        return too_small_ui(ui, &style, area);
-    }
-    ui.painter().rect_filled(area, 0.0, style.ground());
     let end = end_of_axis(context);
     let ends = context.memory.frozen.force.keep((-end, end), context.session.editor.in_gesture());
     let (low, high) = context.memory.axes.ends(Axis::Up(View::ForceCurve), ends);
@@ -55,12 +51,9 @@ pub fn force_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let measured = context.session.measured.over.clone();
     let key = (Identity(Arc::clone(&model)), measured, [span.low, span.high, low, high], style);
     let pane = kept_pane_ui(ui, &style, Place::in_line(ui, area, Sense::DRAG, (0.0, 0.0)), key, || {
-        let axis = |low: f64, high: f64, name: &str| PlotAxis::between(low, high, name);
-        let axes = (
-            axis(span.low * 1e3, span.high * 1e3, "displacement (mm)"),
-            axis(low, high, "force to the right (N)"),
-        );
-        still(&model, span, axes, measured_force(context.session))
+        let across = PlotAxis::between(span.low * 1e3, span.high * 1e3, "displacement (mm)");
+        let up = PlotAxis::between(low, high, "force to the right (N)");
+        still(&model, span, (across, up), measured_force(context.session))
     });
     let Some(frame) = pane.frame(0) else { return };
     axes_input(ui, context.memory, View::ForceCurve, &pane.response, (area, frame));
@@ -71,14 +64,9 @@ pub fn force_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let push = -model.mass() * state.base_accel;
     let mm = state.x * 1e3;
     if model.is_shaken() {
-        let apart = vec![(mm, curve.force(state.x)), (mm, push)];
-        let push = Marks::Horizontals(vec![push]);
-        pane.draw(
-            &painter,
-            &style,
-            0,
-            &[Layer::new(Role::Push, "", push), Layer::new(Role::Apart, "", Marks::Path(apart))],
-        );
+        let apart = Marks::Path(vec![(mm, curve.force(state.x)), (mm, push)]);
+        let push = Layer::new(Role::Push, "", Marks::Horizontals(vec![push]));
+        pane.draw(&painter, &style, 0, &[push, Layer::new(Role::Apart, "", apart)]);
     }
     releases(&painter, context, &pane, frame);
     let at = |x: f64, force: f64| pane.place(0, (x * 1e3, force)).unwrap_or(frame.min);
@@ -91,8 +79,7 @@ pub fn force_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     }
     let mass = at(state.x, curve.force(state.x));
     over.circle(mass, BALL, style.mass(), Stroke::new(1.5, style.mass_edge()));
-    let pointer = pane.response.hover_pos().filter(|at| frame.contains(*at));
-    if let Some((mm, _)) = pointer.and_then(|at| pane.values_at(0, at)) {
+    if let Some((mm, _)) = pane.pointed() {
         let force = curve.force(mm * 1e-3);
         if force.is_finite() {
             let direction = if force < 0.0 { " to the left" } else { " to the right" };
@@ -129,12 +116,8 @@ fn end_of_axis(context: &ViewContext<'_>) -> f64 {
     let landscape = &model.mechanism().landscape;
     let wells = landscape.barrier.map(|barrier| (barrier.left_well, barrier.right_well));
     let between = |x: f64| wells.is_some_and(|(left, right)| x > left && x < right);
-    let mut largest = landscape
-        .extrema
-        .iter()
-        .filter(|extremum| between(extremum.x))
-        .map(|extremum| extremum.force.abs())
-        .fold(0.0, f64::max);
+    let extrema = landscape.extrema.iter().filter(|extremum| between(extremum.x));
+    let mut largest = extrema.map(|extremum| extremum.force.abs()).fold(0.0, f64::max);
     if wells.is_none() {
         // without two wells, the forces at the ends of the x axis count
         let curve = &model.mechanism().curve;
@@ -148,7 +131,6 @@ fn end_of_axis(context: &ViewContext<'_>) -> f64 {
     axis_end((ROOM * largest).max(1.1 * push))
 }
 
-/// The lines of the curve on the screen.
 fn lines(pane: &Pane) -> Vec<Vec<Pos2>> {
     let layers = pane.chart.panels().flat_map(|panel| &panel.layers);
     let on_screen = |layer: &Layer| match &layer.marks {

@@ -18,7 +18,6 @@ const MAX_DASHES: usize = 300;
 /// Distance in points within which points of a path are merged.
 const NEAR: f32 = 1.0;
 
-/// Letters of the pins.
 pub(super) const PINNED: [&str; 3] = ["A", "B", "C"];
 
 /// Width in points reserved for a letter.
@@ -30,7 +29,7 @@ const CIRCLE_SEGMENTS: usize = 32;
 pub(super) struct Ghost {
     /// Index of its letter.
     pub place: usize,
-    pub letter: char,
+    letter: char,
     pub state: Sample,
     /// The model by which it moves.
     pub model: Arc<Model>,
@@ -45,19 +44,16 @@ pub(super) fn ghosts(context: &ViewContext<'_>) -> Vec<Ghost> {
         return Vec::new();
     }
     let t = session.player.time();
-    let ghost = |pin: &Pin| Ghost {
+    let ghost = |(pin, aside): (&Pin, f32)| Ghost {
         place: pin.place(),
         letter: pin.letter(),
         state: pin.state_at(t),
         model: Arc::clone(pin.watch().model_at(t)),
-        aside: 0.0,
+        aside,
     };
-    let mut all: Vec<Ghost> = session.pins.all().iter().map(ghost).collect();
-    let places: Vec<f64> = all.iter().map(|ghost| ghost.state.x).collect();
-    for (ghost, aside) in all.iter_mut().zip(offsets(&places)) {
-        ghost.aside = aside;
-    }
-    all
+    let pins = session.pins.all();
+    let places: Vec<f64> = pins.iter().map(|pin| pin.state_at(t).x).collect();
+    pins.iter().zip(offsets(&places)).map(ghost).collect()
 }
 
 /// Offsets of the letters, in the order of their places, so that no two overlap.

@@ -98,22 +98,13 @@ pub(super) fn axes_input(
         memory.axes.pan(up, f64::from(moved.y / frame.height()));
     }
     let origin = ui.input(|input| input.pointer.press_origin());
-    let Some(corner) = origin.filter(|_| response.dragged_by(PointerButton::Secondary)) else {
-        return zoom_to_box(memory, (across, up), response, share);
-    };
-    let drawn = Rect::from_two_pos(corner, at).intersect(frame);
-    let stroke = Stroke::new(1.0, ui.visuals().text_color());
-    ui.painter().add(Shape::rect_stroke(drawn, 0.0, stroke, StrokeKind::Inside));
-    memory.corner = Some((corner, at));
-}
-
-/// Zooms to the box that was drawn, once its drag has ended.
-fn zoom_to_box(
-    memory: &mut Memory,
-    (across, up): (Axis, Axis),
-    response: &Response,
-    share: impl Fn(Pos2) -> (f64, f64),
-) {
+    if let Some(corner) = origin.filter(|_| response.dragged_by(PointerButton::Secondary)) {
+        let drawn = Rect::from_two_pos(corner, at).intersect(frame);
+        let stroke = Stroke::new(1.0, ui.visuals().text_color());
+        ui.painter().add(Shape::rect_stroke(drawn, 0.0, stroke, StrokeKind::Inside));
+        memory.corner = Some((corner, at));
+        return;
+    }
     let ended = response.drag_stopped_by(PointerButton::Secondary);
     let Some((corner, at)) = memory.corner.take_if(|_| ended) else { return };
     let drawn = Rect::from_two_pos(corner, at);

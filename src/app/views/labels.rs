@@ -17,36 +17,26 @@ const CLEAR: f32 = 2.0;
 /// Gap in points between texts in a row, and beside a wall.
 const GAP: f32 = 4.0;
 
-/// Draws text with a thin background-coloured edge, readable over lines. Returns its rectangle.
-pub fn haloed(
-    painter: &Painter,
-    style: &Style,
-    (at, align): (Pos2, Align2),
-    text: &str,
-    (font, color): (FontId, Color32),
-) -> Rect {
+/// The place of a text, and its font and colour.
+type Place = (Pos2, Align2);
+type Look = (FontId, Color32);
+
+/// Draws text with a thin background-coloured edge, readable over lines.
+pub fn haloed(painter: &Painter, style: &Style, (at, align): Place, text: &str, (font, color): Look) {
     let galley = painter.layout_no_wrap(text.to_owned(), font, color);
     let place = align.anchor_size(at, galley.size());
     for step in [vec2(-HALO, -HALO), vec2(HALO, -HALO), vec2(-HALO, HALO), vec2(HALO, HALO)] {
         painter.galley_with_override_text_color(place.min + step, galley.clone(), style.ground());
     }
     painter.galley(place.min, galley, color);
-    place
 }
 
-/// Draws text on a background-coloured plate, readable also over walls and hatching. Returns its rectangle.
-pub fn plated(
-    painter: &Painter,
-    style: &Style,
-    (at, align): (Pos2, Align2),
-    text: &str,
-    (font, color): (FontId, Color32),
-) -> Rect {
+/// Draws text on a background-coloured plate, readable also over walls and hatching.
+pub fn plated(painter: &Painter, style: &Style, (at, align): Place, text: &str, (font, color): Look) {
     let galley = painter.layout_no_wrap(text.to_owned(), font, color);
     let place = align.anchor_size(at, galley.size());
     painter.rect_filled(place.expand2(vec2(2.0, 0.0)), 2.0, style.ground().gamma_multiply(0.9));
     painter.galley(place.min, galley, color);
-    place
 }
 
 /// The left end of a text of `width` in a row, as close to the wanted `middle` as possible: within `room` and
@@ -72,7 +62,6 @@ pub struct Taken {
 }
 
 impl Taken {
-    /// Whether nothing lies in `place`.
     pub fn is_free(&self, place: Rect) -> bool {
         let wide = place.expand(CLEAR);
         let crosses = |pair: &[Pos2]| {
@@ -104,7 +93,6 @@ impl Taken {
     }
 }
 
-/// Whether the pointer has rested long enough for a hint.
 pub fn pointer_rests(ui: &Ui) -> bool {
     ui.input(|input| input.pointer.time_since_last_movement()) > REST
 }

@@ -70,7 +70,6 @@ fn dragged() -> egui::Id {
     egui::Id::unique("the mass has been dragged")
 }
 
-/// Whether the mass was dragged since the program began.
 pub fn was_dragged(ui: &Ui) -> bool {
     ui.data(|data| data.get_temp::<bool>(dragged())).is_some()
 }

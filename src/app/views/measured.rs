@@ -1,6 +1,6 @@
 //! View of the measured data: shift and scale in time, and differences from the computed motion.
 
-use eframe::egui::{self, Button, Grid, Id, RichText, ScrollArea, Ui};
+use eframe::egui::{self, Button, Grid, Id, RichText, Ui};
 
 use crate::app::session::Session;
 use crate::app::session::measured::{Differences, MeasuredData, Overlay, sentence};
@@ -13,7 +13,7 @@ use crate::numeric::short;
 use crate::scene::{Quantity, Start};
 use crate::study::{Table, metres};
 
-use super::{ViewContext, offer_ui};
+use super::{ViewContext, offer_ui, page_ui};
 
 /// Range of the shift slider to either side, in forcing periods or characteristic times.
 const PERIODS: f64 = 2.0;
@@ -28,32 +28,40 @@ const MAX_PERCENT: f64 = 1000.0;
 const SLIDER: f32 = 100.0;
 
 pub fn measured_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
-    let style = context.style;
-    let ground = egui::Frame::new().fill(style.ground()).inner_margin(10.0);
-    ground.show(ui, |ui| {
-        ui.set_min_size(ui.available_size());
-        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-            let Some(over) = context.session.measured.over.clone() else {
-                let text = "Drop a CSV on the window, of displacement, velocity or acceleration over time or \
-                            of force over position, to lay it over what is computed.";
-                let room = ui.available_rect_before_wrap();
-                context.memory.open_measured |= offer_ui(ui, &style, room, text, "Open measured data...");
-                return;
-            };
-            context.session.want_differences();
-            head_ui(ui, context, &over);
-            ui.horizontal_wrapped(|ui| {
-                if over.record.timing.is_some() {
-                    time_ui(ui, context.session, &over);
-                }
-                offset_ui(ui, context.session, &over);
-            });
-            if let Some(why) = &context.session.measured.no_fit {
-                ui.label(format!("No shift was found. {why}"));
+    page_ui(ui, |ui| {
+        let Some(over) = context.session.measured.over.clone() else {
+            let text = "Drop a CSV on the window, of displacement, velocity or acceleration over time or of \
+                        force over position, to lay it over what is computed.";
+            let room = ui.available_rect_before_wrap();
+            let is_wanted = offer_ui(ui, &context.style, room, text, "Open measured data...");
+            context.memory.open_measured |= is_wanted;
+            return;
+        };
+        context.session.want_differences();
+        head_ui(ui, context, &over);
+        ui.horizontal_wrapped(|ui| {
+            if over.record.timing.is_some() {
+                time_ui(ui, context.session, &over);
             }
-            differences_ui(ui, context, &over);
+            offset_ui(ui, context.session, &over);
         });
+        if let Some(why) = &context.session.measured.no_fit {
+            ui.label(format!("No shift was found. {why}"));
+        }
+        differences_ui(ui, context, &over);
     });
+}
+
+/// The control of a number of the record, by its id, its name and its unit; it may be typed from `least` on.
+fn of_record(names: [&'static str; 3], reach: Reach, least: f64, hover: &'static str) -> Knob<'static> {
+    let [id, name, unit] = names;
+    Knob { id: Id::unique(id), name, unit, reach, typed: (least, MAX_TYPED), hover, width: SLIDER }
+}
+
+/// Draws the number of a control without a slider, after its name. Returns the number if it changed.
+fn alone_ui(ui: &mut Ui, knob: Knob<'_>, value: f64) -> Option<f64> {
+    ui.label(knob.name).on_hover_text(knob.hover);
+    knob.alone_ui(ui, value)
 }
 
 /// Name of the record and the buttons that act on it.
@@ -63,15 +71,9 @@ fn head_ui(ui: &mut Ui, context: &mut ViewContext<'_>, over: &Overlay) {
         let name = egui::Label::new(RichText::new(&record.name).heading()).truncate();
         ui.scope(|ui| {
             ui.set_max_width((ui.available_width() - 180.0).max(60.0));
-            let columns = format!(
-                "{} from `{}`, {} from `{}`. {}",
-                record.across.quantity.name(),
-                record.across.column,
-                record.values.quantity.name(),
-                record.values.column,
-                record.describe()
-            );
-            ui.add(name).on_hover_text(columns);
+            let [across, values] = [&record.across, &record.values]
+                .map(|channel| format!("{} from `{}`", channel.quantity.name(), channel.column));
+            ui.add(name).on_hover_text(format!("{across}, {values}. {}", record.describe()));
         });
         if record.timing.is_some() {
             let fitting = context.session.measured.is_fitting();
@@ -93,32 +95,18 @@ fn time_ui(ui: &mut Ui, session: &mut Session, over: &Overlay) {
     let model = session.model();
     let period = model.forcing_period().unwrap_or(model.characteristic_time());
     let (low, high) = (over.centre - PERIODS * period, over.centre + PERIODS * period);
-    let knob = Knob {
-        id: Id::unique("shift of the record"),
-        name: "shift",
-        unit: "s",
-        reach: Reach::even(low, high, below(period / 200.0)),
-        typed: (-MAX_TYPED, MAX_TYPED),
-        hover: "What is added to the times of the record. Type a number to go farther than the slider.",
-        width: SLIDER,
-    };
+    let reach = Reach::even(low, high, below(period / 200.0));
+    let hover = "What is added to the times of the record. Type a number to go farther than the slider.";
+    let knob = of_record(["shift of the record", "shift", "s"], reach, -MAX_TYPED, hover);
     let turn = ui.horizontal(|ui| knob.ui(ui, over.shift)).inner;
     if let Some(shift) = turn.value {
         session.measured.shift_to(shift, turn.how == How::Once);
     }
     let hover = "What the times of the record are multiplied by, before they are shifted: 0.999 for a \
                  clock that is fast by a thousandth.";
-    let knob = Knob {
-        id: Id::unique("time scale of the record"),
-        name: "time scale",
-        unit: "",
-        reach: Reach::even(0.9, 1.1, 1e-4),
-        typed: (1.0 / MAX_TYPED, MAX_TYPED),
-        hover,
-        width: SLIDER,
-    };
-    ui.label(knob.name).on_hover_text(hover);
-    if let Some(scale) = knob.alone_ui(ui, over.time_scale)
+    let reach = Reach::even(0.9, 1.1, 1e-4);
+    let knob = of_record(["time scale of the record", "time scale", ""], reach, 1.0 / MAX_TYPED, hover);
+    if let Some(scale) = alone_ui(ui, knob, over.time_scale)
         && let Some(over) = &mut session.measured.over
     {
         over.time_scale = scale;
@@ -133,17 +121,9 @@ fn offset_ui(ui: &mut Ui, session: &mut Session, over: &Overlay) {
     }
     let hover = "What is added to the displacement where the sensor has its zero elsewhere: the \
                  difference of the means, once the shift is right.";
-    let knob = Knob {
-        id: Id::unique("offset of the record"),
-        name: "add",
-        unit: "mm",
-        reach: Reach::even(-10.0, 10.0, 0.01),
-        typed: (-MAX_TYPED, MAX_TYPED),
-        hover,
-        width: SLIDER,
-    };
-    ui.label(knob.name).on_hover_text(hover);
-    if let Some(mm) = knob.alone_ui(ui, over.offset * 1e3)
+    let reach = Reach::even(-10.0, 10.0, 0.01);
+    let knob = of_record(["offset of the record", "add", "mm"], reach, -MAX_TYPED, hover);
+    if let Some(mm) = alone_ui(ui, knob, over.offset * 1e3)
         && let Some(over) = &mut session.measured.over
     {
         over.offset = metres(mm);
@@ -238,7 +218,6 @@ fn table_ui(ui: &mut Ui, style: &Style, table: &Table, current: bool) {
     });
 }
 
-/// Name of a row of the table.
 fn row_name(name: &str) -> String {
     match name {
         "first_crossing_amplitude" => "shaking then".to_owned(),

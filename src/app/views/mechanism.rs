@@ -8,21 +8,22 @@
 
 use eframe::egui::{self, Align2, Color32, Pos2, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
 
-use crate::app::ui::style::{BALL, RING_SECONDS, Style};
+use crate::app::session::pins::Pin;
+use crate::app::ui::style::{BALL, RING_SECONDS};
 use crate::app::words::meanings::explained;
 use crate::app::words::numbers::{decimals_for, three};
 use crate::dynamics::{EventKind, STANDARD_GRAVITY, Side};
 
-use super::beside::{Attachments, LowerFlexures, MIN_LABELLED, Places};
-use super::flexures::{CLAMP, DrawingArea, DrawingScale, bulge_words, clamp, state_at};
+use super::beside::{Attachments, MIN_LABELLED, Places};
+use super::flexures::{CLAMP, DrawingArea, DrawingScale, Sketch, bulge_words, state_at};
 use super::ghosts::ghosts;
 use super::labels::{Taken, ago};
 use super::mass::{OUTLINE, body_ui, was_dragged};
 use super::memory::Ring;
 use super::pane::GUTTER;
-use super::schematic::{Schematic, schematic};
+use super::schematic::Schematic;
 use super::stops::{WALL, stops_ui};
-use super::{Cover, Drawn, LegendRow, Span, ViewContext, too_small_ui};
+use super::{Cover, Drawn, LegendRow, ViewContext};
 
 /// Height in points of the name of a stop above the foot of the stop, clear of the rail.
 const CLEAR: f32 = 6.0;
@@ -38,9 +39,6 @@ const INSET: f32 = 184.0;
 
 pub fn mechanism_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let (rect, _) = ui.allocate_exact_size(ui.available_size(), Sense::hover());
-    if rect.width() < 60.0 || rect.height() < 60.0 {
-        return too_small_ui(ui, &context.style, rect);
-    }
     // above the picture of the well; a true scale changes the x axis of this view only
     let shared = context.span;
     context.span = shared.beside(GUTTER, rect);
@@ -49,36 +47,31 @@ pub fn mechanism_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
 }
 
 fn drawing_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect) {
-    let style = context.style;
+    let (style, state) = (context.style, context.drawn.state(context.session));
     let painter = ui.painter().with_clip_rect(rect);
-    painter.rect_filled(rect, 0.0, style.ground());
-    let state = context.drawn.state(context.session);
     let (top, bottom) = (rect.top() + 28.0, rect.bottom() - 12.0);
     // as wide as the ball on the well, so that it touches the stops when it should
     let half = vec2(BALL, ((bottom - top) * 0.19).clamp(21.0, 45.0));
-    let place = DrawingArea { top, bottom, half };
+    let area = DrawingArea { top, bottom, half };
     let beside = Attachments::of(context.drawn.model(context.session));
     let behind = painter.add(Shape::Noop);
-    let mut taken = Taken::default();
-    let (middle, words, below) = match bent_ui(&painter, context, rect, place, state.x, &mut taken) {
-        Some((middle, words, below)) => (middle, words, Some(below)),
+    let mut sketch = Sketch { painter, rect, style, area, taken: Taken::default() };
+    let (middle, words, along, feet) = match sketch.bent(context, state.x) {
+        Some((middle, words, along, feet)) => (middle, words, Some(along), feet),
         None => {
-            let middle = 0.5 * (top + bottom);
-            let x = context.span.screen_from_world(state.x, rect);
-            let mass = pos2(x, middle);
-            let words = schematic(&painter, context, rect, (mass, half), (top, bottom), &beside, &mut taken);
-            (middle, words, None)
+            let mass = pos2(context.span.screen_from_world(state.x, rect), 0.5 * (top + bottom));
+            (mass.y, sketch.schematic(context, mass, &beside), None, Vec::new())
         }
     };
     let x = context.span.screen_from_world(state.x, rect);
     let body = Rect::from_center_size(pos2(x, middle), half * 2.0);
     let zero = context.span.screen_from_world(0.0, rect);
     let heights = (middle - half.y - 4.0, middle + half.y + 4.0);
-    taken.places.push(body);
-    taken.places.extend(walls(context, rect, heights));
-    bulge_ui(ui, &painter, context, pos2(rect.left() + 12.0, bottom - 5.0), rect, &mut taken);
-    let places = Places { rect, bottom, body, zero, below };
-    beside.draw(ui, &painter, &style, behind, &places, &mut taken);
+    sketch.taken.places.push(body);
+    sketch.taken.places.extend(walls(context, rect, heights));
+    sketch.bulge_ui(ui, context);
+    beside.draw(ui, &mut sketch, behind, &Places { rect, bottom, body, zero, along, feet });
+    let painter = sketch.painter.clone();
     for ghost in ghosts(context) {
         let walls = rect.with_min_y(heights.0).with_max_y(heights.1);
         ghost.stops(&painter, context, walls, BALL);
@@ -89,242 +82,204 @@ fn drawing_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect) {
     let edge = Stroke::new(1.5, style.mass_edge());
     painter.rect(body, 3.0, style.mass(), edge, egui::StrokeKind::Inside);
     stops_ui(ui, context, rect, heights, BALL);
-    grip(&painter, &style, body);
+    // dots, by which it can be dragged
+    for (i, j) in (-1..=1).flat_map(|i| [(i, -1), (i, 1)]) {
+        let at = body.center() + vec2(3.0 * j as f32, 6.0 * i as f32);
+        painter.circle_filled(at, 1.5, style.mass_edge());
+    }
     if body_ui(ui, context, (pos2(x, middle), body), rect) {
         let stroke = style.pointing_stroke();
         painter.rect_stroke(body.expand(OUTLINE), 5.0, stroke, egui::StrokeKind::Middle);
     }
     rings(ui, context, rect, middle);
     let arrow = body.translate(vec2(0.0, -beside.lift() * half.y));
-    push_arrow(&painter, context, arrow, state.base_accel, rect);
+    sketch.push_arrow(context, arrow, state.base_accel);
     let is_new = !was_dragged(ui) && context.cover == Cover::None && context.drawn == Drawn::WithGhosts;
     let mass = if is_new { "mass: drag me" } else { "mass" };
-    part_names(&painter, context, rect, top, heights, (body, mass), taken);
-    caption_ui(ui, &painter, context, rect, &words, state.base_accel);
-}
-
-/// Draws dots on the mass, by which it can be dragged.
-fn grip(painter: &egui::Painter, style: &Style, body: Rect) {
-    for (i, j) in (-1..=1).flat_map(|i| [(i, -1), (i, 1)]) {
-        let at = body.center() + vec2(3.0 * j as f32, 6.0 * i as f32);
-        painter.circle_filled(at, 1.5, style.mass_edge());
-    }
+    sketch.part_names(context, heights, (body, mass));
+    sketch.caption_ui(ui, context, &words, state.base_accel);
 }
 
 /// The walls of the stops between these heights.
 fn walls(context: &ViewContext<'_>, rect: Rect, (top, bottom): (f32, f32)) -> impl Iterator<Item = Rect> {
     let (left, right) = context.drawn.model(context.session).stop_positions();
-    let wall = move |(x, side): (f64, f32), span: Span| {
+    let (span, stops) = (context.span, [left.map(|x| (x, -1.0)), right.map(|x| (x, 1.0))]);
+    stops.into_iter().flatten().map(move |(x, side)| {
         let face = span.screen_from_world(x, rect) + side * BALL;
         Rect::from_two_pos(pos2(face, top), pos2(face + side * WALL, bottom))
-    };
-    let (span, stops) = (context.span, [left.map(|x| (x, -1.0)), right.map(|x| (x, 1.0))]);
-    stops.into_iter().flatten().map(move |stop| wall(stop, span))
+    })
 }
 
-/// Names the kinds of parts, each once, where nothing is drawn: the flexure or the spring at its clamp, the
-/// mass at a corner, a stop at its foot.
-fn part_names(
-    painter: &egui::Painter,
-    context: &ViewContext<'_>,
-    rect: Rect,
-    top: f32,
-    heights: (f32, f32),
-    (body, mass): (Rect, &str),
-    mut taken: Taken,
-) {
-    if rect.width() < MIN_LABELLED.x || rect.height() < MIN_LABELLED.y {
-        return;
+/// A text of the row above the drawing, its colour and its priority: the lowest is left out first.
+type Entry = (String, Color32, u8);
+
+impl Sketch {
+    /// Names the kinds of parts, each once, where nothing is drawn: the flexure or the spring at its clamp,
+    /// the mass at a corner, a stop at its foot.
+    fn part_names(&mut self, context: &ViewContext<'_>, heights: (f32, f32), (body, mass): (Rect, &str)) {
+        if self.rect.width() < MIN_LABELLED.x || self.rect.height() < MIN_LABELLED.y {
+            return;
+        }
+        let (rect, mechanism) = (self.rect, context.drawn.model(context.session).mechanism());
+        let barrier = mechanism.landscape.barrier.map_or(0.0, |barrier| barrier.x);
+        let is_spring = || Schematic::of(mechanism, context.span) == Schematic::Spring;
+        let named = match mechanism.flexures {
+            Some(_) => Some(("flexure", 0.0)),
+            None => is_spring().then_some(("spring", barrier)),
+        };
+        if let Some((name, x)) = named {
+            let (foot, top) = (context.span.screen_from_world(x, rect), self.area.top + 5.0);
+            let aside = [16.0, 26.0, 40.0].into_iter().flat_map(|aside| [aside, -aside]);
+            self.name(aside.map(|aside| {
+                let align = if aside > 0.0 { Align2::LEFT_TOP } else { Align2::RIGHT_TOP };
+                (name, pos2(foot + aside, top), align)
+            }));
+        }
+        // above the stops, or below them
+        let (above, below) = (heights.0.min(body.top()) - 4.0, heights.1.max(body.bottom()) + 4.0);
+        let corners = [
+            (body.right() + 2.0, above, Align2::LEFT_BOTTOM),
+            (body.left() - 2.0, above, Align2::RIGHT_BOTTOM),
+            (body.right() + 2.0, below, Align2::LEFT_TOP),
+            (body.left() - 2.0, below, Align2::RIGHT_TOP),
+        ];
+        self.name(corners.map(|(x, y, align)| (mass, pos2(x, y), align)));
+        let y = heights.1 - CLEAR;
+        self.name(walls(context, rect, heights).flat_map(|wall| {
+            let right = (wall.right() + 5.0, Align2::LEFT_BOTTOM);
+            let left = (wall.left() - 5.0, Align2::RIGHT_BOTTOM);
+            let is_left = wall.center().x < context.span.screen_from_world(0.0, rect);
+            let sides = if is_left { [left, right] } else { [right, left] };
+            sides.map(|(x, align)| ("stop", pos2(x, y), align))
+        }));
     }
-    let (style, model) = (context.style, context.drawn.model(context.session));
-    let look = (style.small(), style.faint());
-    let barrier = model.mechanism().landscape.barrier.map_or(0.0, |barrier| barrier.x);
-    let named = if model.mechanism().flexures.is_some() {
-        Some(("flexure", context.span.screen_from_world(0.0, rect)))
-    } else if Schematic::of(model.mechanism(), context.span) == Schematic::Spring {
-        Some(("spring", context.span.screen_from_world(barrier, rect)))
-    } else {
-        None
-    };
-    if let Some((name, foot)) = named {
-        let aside = [16.0, 26.0, 40.0].into_iter().flat_map(|aside| [aside, -aside]);
-        let places = aside.map(|aside| {
-            let align = if aside > 0.0 { Align2::LEFT_TOP } else { Align2::RIGHT_TOP };
-            (name, pos2(foot + aside, top + 5.0), align)
-        });
-        taken.write(painter, rect, look.clone(), places);
+
+    /// Writes a name at the first of these places that is free.
+    fn name<'a>(&mut self, places: impl IntoIterator<Item = (&'a str, Pos2, Align2)>) {
+        let look = (self.style.small(), self.style.faint());
+        self.taken.write(&self.painter, self.rect, look, places);
     }
-    // above the stops, or below them
-    let (above, below) = (heights.0.min(body.top()) - 4.0, heights.1.max(body.bottom()) + 4.0);
-    let corners = [
-        (body.right() + 2.0, above, Align2::LEFT_BOTTOM),
-        (body.left() - 2.0, above, Align2::RIGHT_BOTTOM),
-        (body.right() + 2.0, below, Align2::LEFT_TOP),
-        (body.left() - 2.0, below, Align2::RIGHT_TOP),
-    ];
-    taken.write(painter, rect, look.clone(), corners.map(|(x, y, align)| (mass, pos2(x, y), align)));
-    let y = heights.1 - CLEAR;
-    let places = walls(context, rect, heights).flat_map(|wall| {
-        let right = (wall.right() + 5.0, Align2::LEFT_BOTTOM);
-        let left = (wall.left() - 5.0, Align2::RIGHT_BOTTOM);
-        let is_left = wall.center().x < context.span.screen_from_world(0.0, rect);
-        let sides = if is_left { [left, right] } else { [right, left] };
-        sides.map(|(x, align)| ("stop", pos2(x, y), align))
-    });
-    taken.write(painter, rect, look, places);
+
+    /// Draws the bent flexures. Returns the height of the middle of the body, the text on the scale, the
+    /// points per m along the flexures and the lines of the lower feet. `None` if there are no flexures.
+    fn bent(&mut self, context: &mut ViewContext<'_>, x: f64) -> Option<(f32, String, f32, Vec<Vec<Pos2>>)> {
+        let (bent, rect, DrawingArea { top, bottom, .. }) = (state_at(context, x)?, self.rect, self.area);
+        let mechanism = &context.drawn.model(context.session).mechanism();
+        let geometry = mechanism.flexures.as_ref()?.geometry();
+        let scale = DrawingScale::of(geometry, self.area);
+        let reach = mechanism.landscape.right_stable().map_or(0.0, |well| well.x.abs());
+        if context.filled
+            && let Some(span) = scale.true_span(reach, rect)
+        {
+            context.span = span;
+        }
+        self.clamp(top - CLAMP..=top, true);
+        self.clamp(bottom..=bottom + CLAMP, false);
+        let lines = scale.lines(geometry, &bent, context.span, rect);
+        let feet = lines[0].iter().map(|line| line[..line.len() / FOOT].to_vec()).collect();
+        for line in lines.into_iter().flatten() {
+            self.painter.add(Shape::line(line.clone(), self.style.flexure_stroke()));
+            self.taken.lines.push(line);
+        }
+        let corner = pos2(rect.right() - 18.0, bottom - 8.0);
+        self.taken.places.extend(scale.bar(&self.painter, &self.style, corner));
+        Some((scale.middle(&bent), scale.words(context.span, rect), scale.along as f32, feet))
+    }
+
+    /// Writes the bulge of the flexures in the lower left corner, where nothing is drawn.
+    fn bulge_ui(&mut self, ui: &Ui, context: &ViewContext<'_>) {
+        let has_flexures = context.drawn.model(context.session).mechanism().flexures.is_some();
+        let Some(bent) = context.memory.drawing.bent.as_ref().filter(|_| has_flexures) else { return };
+        let (look, words) = ((self.style.body(), self.style.ink()), bulge_words(bent));
+        let corner = pos2(self.rect.left() + 12.0, self.area.bottom - 5.0);
+        let place = (words.as_str(), corner, Align2::LEFT_BOTTOM);
+        if let Some(place) = self.taken.write(&self.painter, self.rect, look, [place]) {
+            explain(ui, place, &words);
+        }
+    }
+
+    /// Draws the push -m a_b on the mass as an arrow, relative to the largest push. It lies at the height of
+    /// the mass on the inner side of the body, clear of flexures and stops.
+    fn push_arrow(&self, context: &ViewContext<'_>, body: Rect, base_accel: f64) {
+        let model = context.drawn.model(context.session);
+        let full = f64::from(self.rect.width()) * 0.16;
+        let room = model.largest_base_acceleration().max(1e-9);
+        let push = (-base_accel / room * full) as f32;
+        if !model.is_shaken() || push.abs() <= 3.0 {
+            return;
+        }
+        let inner = if body.center().x > self.rect.center().x { -1.0 } else { 1.0 };
+        let near = body.center().x + inner * (body.width() * 0.5 + 6.0);
+        let far = near + inner * push.abs();
+        let (y, stroke) = (body.center().y, self.style.arrow_stroke());
+        let (tail, tip) = if push * inner > 0.0 { (near, far) } else { (far, near) };
+        let head = ARROW_HEAD.min(push.abs()) * push.signum();
+        self.painter.line_segment([pos2(tail, y), pos2(tip - 0.5 * head, y)], stroke);
+        let points = vec![pos2(tip, y), pos2(tip - head, y - 6.0), pos2(tip - head, y + 6.0)];
+        self.painter.add(Shape::convex_polygon(points, stroke.color, Stroke::NONE));
+    }
+
+    /// Writes the row above the drawing: age, frame of reference, scale, push and motion of the base.
+    fn caption_ui(&self, ui: &Ui, context: &ViewContext<'_>, words: &str, base_accel: f64) {
+        let Self { painter, rect, style, .. } = self;
+        let model = context.drawn.model(context.session);
+        let mut all =
+            vec![("seen from the base".to_owned(), style.faint(), 0), (words.to_owned(), style.faint(), 1)];
+        if let Some(ago) = ago(context.session) {
+            all.insert(0, (ago, style.ink(), 2));
+        }
+        if model.is_shaken() {
+            // two decimals, or more for a push below 0.1 g
+            let largest = model.largest_base_acceleration() / STANDARD_GRAVITY;
+            let decimals = if largest < 0.1 { decimals_for(largest) } else { 2 };
+            let push = (base_accel / STANDARD_GRAVITY).abs();
+            all.push((format!("push {push:.decimals$} g"), style.base(), 3));
+        }
+        let width = |text: &str| painter.layout_no_wrap(text.to_owned(), style.small(), style.ink()).size().x;
+        let needed = |all: &[Entry]| all.iter().map(|text| width(&text.0) + 14.0).sum::<f32>();
+        let row = LegendRow::of(ui, *rect);
+        // the motion of the base says from where it is seen
+        let inset_width = model.single_sine().map_or(0.0, |_| INSET);
+        if needed(&all) + inset_width > row.right - row.left - 10.0 {
+            all.retain(|text| text.2 > 0);
+        }
+        while needed(&all) > row.right - row.left - 6.0
+            && let Some(lowest) = all.iter().map(|text| text.2).min()
+        {
+            all.retain(|text| text.2 > lowest);
+        }
+        let mut at = pos2(row.left + 10.0, rect.top() + 0.5 * LegendRow::HEIGHT);
+        for (text, color, _) in all {
+            let place = painter.text(at, Align2::LEFT_CENTER, &text, style.small(), color);
+            explain(ui, place, &text);
+            at.x = place.right() + 14.0;
+        }
+        self.inset(ui, context, rect.with_min_x(at.x).with_max_x(row.right), base_accel);
+    }
+
+    /// Draws the motion of the base at another scale, for a sine, whose displacement is -a/(2 pi f)^2.
+    fn inset(&self, ui: &Ui, context: &ViewContext<'_>, rect: Rect, base_accel: f64) {
+        let Some((amplitude, rate)) = context.drawn.model(context.session).single_sine() else { return };
+        let (swing, place) = (amplitude / (rate * rate), -base_accel / (rate * rate));
+        if !(swing > 0.0 && swing.is_finite()) || rect.width() < INSET {
+            return;
+        }
+        let (painter, style, half) = (&self.painter, self.style, 34.0);
+        let track = pos2(rect.right() - half - 20.0, rect.top() + 11.0);
+        painter.line_segment([track - vec2(half, 0.0), track + vec2(half, 0.0)], style.ghost_stroke());
+        let at = track + vec2((place / swing) as f32 * half, 0.0);
+        painter.rect_filled(Rect::from_center_size(at, vec2(14.0, 9.0)), 2.0, style.base());
+        let (size, unit) = if swing < 10.0 { (swing * 1e3, "mm") } else { (swing, "m") };
+        let text = format!("base: ±{} {unit}", three(size));
+        let left = track - vec2(half + 14.0, 0.0);
+        let place = painter.text(left, Align2::RIGHT_CENTER, &text, style.small(), style.base());
+        explain(ui, place, &text);
+    }
 }
 
 fn explain(ui: &Ui, place: Rect, word: &str) {
     let id = ui.scope_id().with(("word", word.split(' ').next()));
     explained(ui.interact(place, id, Sense::hover()), word);
-}
-
-/// Draws the bent flexures. Returns the height of the middle of the body, the text on the scale and the
-/// flexures below the body. `None` if the mechanism has no flexures.
-fn bent_ui(
-    painter: &egui::Painter,
-    context: &mut ViewContext<'_>,
-    rect: Rect,
-    place: DrawingArea,
-    x: f64,
-    taken: &mut Taken,
-) -> Option<(f32, String, LowerFlexures)> {
-    let bent = state_at(context, x)?;
-    let style = context.style;
-    let mechanism = &context.drawn.model(context.session).mechanism();
-    let geometry = mechanism.flexures.as_ref()?.geometry();
-    let scale = DrawingScale::of(geometry, place);
-    let reach = mechanism.landscape.right_stable().map_or(0.0, |well| well.x.abs());
-    if context.filled
-        && let Some(span) = scale.true_span(reach, rect)
-    {
-        context.span = span;
-    }
-    for (y, above) in [(place.top, true), (place.bottom, false)] {
-        let y = if above { y - CLAMP..=y } else { y..=y + CLAMP };
-        clamp(painter, &style, Rect::from_x_y_ranges(rect.x_range().shrink(6.0), y), above);
-    }
-    let lines = scale.lines(geometry, &bent, context.span, rect);
-    let feet = lines[0].iter().map(|line| line[..line.len() / FOOT].to_vec()).collect();
-    let lines = lines.into_iter().flatten();
-    taken.lines.extend(lines.inspect(|line| {
-        painter.add(Shape::line(line.clone(), style.flexure_stroke()));
-    }));
-    taken.places.extend(scale.bar(painter, &style, pos2(rect.right() - 18.0, place.bottom - 8.0)));
-    let below = LowerFlexures { along: scale.along(), feet };
-    Some((scale.middle(&bent), scale.words(context.span, rect), below))
-}
-
-/// Writes the bulge of the flexures in the lower left corner, where nothing is drawn.
-fn bulge_ui(
-    ui: &Ui,
-    painter: &egui::Painter,
-    context: &ViewContext<'_>,
-    corner: Pos2,
-    rect: Rect,
-    taken: &mut Taken,
-) {
-    let has_flexures = context.drawn.model(context.session).mechanism().flexures.is_some();
-    let Some(bent) = context.memory.drawing.bent.as_ref().filter(|_| has_flexures) else { return };
-    let (style, words) = (context.style, bulge_words(bent));
-    let place = (words.as_str(), corner, Align2::LEFT_BOTTOM);
-    if let Some(place) = taken.write(painter, rect, (style.body(), style.ink()), [place]) {
-        explain(ui, place, &words);
-    }
-}
-
-/// Draws the push -m a_b on the mass as an arrow, relative to the largest push. It lies at the height of the
-/// mass on the inner side of the body, clear of flexures and stops.
-fn push_arrow(painter: &egui::Painter, context: &ViewContext<'_>, body: Rect, base_accel: f64, rect: Rect) {
-    if !context.drawn.model(context.session).is_shaken() {
-        return;
-    }
-    let style = context.style;
-    let full = f64::from(rect.width()) * 0.16;
-    let room = context.drawn.model(context.session).largest_base_acceleration().max(1e-9);
-    let push = (-base_accel / room * full) as f32;
-    let inner = if body.center().x > rect.center().x { -1.0 } else { 1.0 };
-    let near = body.center().x + inner * (body.width() * 0.5 + 6.0);
-    let far = near + inner * push.abs();
-    let (y, stroke) = (body.center().y, style.arrow_stroke());
-    if push.abs() > 3.0 {
-        let (tail, tip) = if push * inner > 0.0 { (near, far) } else { (far, near) };
-        let head = ARROW_HEAD.min(push.abs()) * push.signum();
-        painter.line_segment([pos2(tail, y), pos2(tip - 0.5 * head, y)], stroke);
-        let points = vec![pos2(tip, y), pos2(tip - head, y - 6.0), pos2(tip - head, y + 6.0)];
-        painter.add(Shape::convex_polygon(points, stroke.color, Stroke::NONE));
-    }
-}
-
-/// Writes the row above the drawing: age, frame of reference, scale, push and motion of the base.
-fn caption_ui(
-    ui: &Ui,
-    painter: &egui::Painter,
-    context: &ViewContext<'_>,
-    rect: Rect,
-    words: &str,
-    base_accel: f64,
-) {
-    let style = context.style;
-    // the number is the priority of a text: the lowest is left out first
-    let mut all =
-        vec![("seen from the base".to_owned(), style.faint(), 0), (words.to_owned(), style.faint(), 1)];
-    if let Some(ago) = ago(context.session) {
-        all.insert(0, (ago, style.ink(), 2));
-    }
-    if context.drawn.model(context.session).is_shaken() {
-        // two decimals, or more for a push below 0.1 g
-        let largest = context.drawn.model(context.session).largest_base_acceleration() / STANDARD_GRAVITY;
-        let decimals = if largest < 0.1 { decimals_for(largest) } else { 2 };
-        let push = (base_accel / STANDARD_GRAVITY).abs();
-        all.push((format!("push {push:.decimals$} g"), style.base(), 3));
-    }
-    let width = |text: &str| painter.layout_no_wrap(text.to_owned(), style.small(), style.ink()).size().x;
-    let needed = |all: &[(String, Color32, u8)]| all.iter().map(|text| width(&text.0) + 14.0).sum::<f32>();
-    let row = LegendRow::of(ui, rect);
-    // the motion of the base says from where it is seen
-    let inset_width = context.drawn.model(context.session).single_sine().map_or(0.0, |_| INSET);
-    if needed(&all) + inset_width > row.right - row.left - 10.0 {
-        all.retain(|text| text.2 > 0);
-    }
-    while needed(&all) > row.right - row.left - 6.0
-        && let Some(lowest) = all.iter().map(|text| text.2).min()
-    {
-        all.retain(|text| text.2 > lowest);
-    }
-    let mut at = pos2(row.left + 10.0, rect.top() + 0.5 * LegendRow::HEIGHT);
-    for (text, color, _) in all {
-        let place = painter.text(at, Align2::LEFT_CENTER, &text, style.small(), color);
-        explain(ui, place, &text);
-        at.x = place.right() + 14.0;
-    }
-    inset(
-        ui,
-        painter,
-        context,
-        Rect::from_min_max(pos2(at.x, rect.top()), pos2(row.right, rect.bottom())),
-        base_accel,
-    );
-}
-
-/// Draws the motion of the base at another scale, for a sine, whose displacement is -a/(2 pi f)^2.
-fn inset(ui: &Ui, painter: &egui::Painter, context: &ViewContext<'_>, rect: Rect, base_accel: f64) {
-    let Some((amplitude, rate)) = context.drawn.model(context.session).single_sine() else { return };
-    let (swing, place) = (amplitude / (rate * rate), -base_accel / (rate * rate));
-    if !(swing > 0.0 && swing.is_finite()) || rect.width() < INSET {
-        return;
-    }
-    let style = context.style;
-    let half = 34.0;
-    let track = pos2(rect.right() - half - 20.0, rect.top() + 11.0);
-    painter.line_segment([track - vec2(half, 0.0), track + vec2(half, 0.0)], style.ghost_stroke());
-    let at = track + vec2((place / swing) as f32 * half, 0.0);
-    painter.rect_filled(Rect::from_center_size(at, vec2(14.0, 9.0)), 2.0, style.base());
-    let (size, unit) = if swing < 10.0 { (swing * 1e3, "mm") } else { (swing, "m") };
-    let text = format!("base: ±{} {unit}", three(size));
-    let left = track - vec2(half + 14.0, 0.0);
-    let place = painter.text(left, Align2::RIGHT_CENTER, &text, style.small(), style.base());
-    explain(ui, place, &text);
 }
 
 /// Starts a ring for an impact since the last frame, at most one at a time per side, and draws the rings.
@@ -335,7 +290,8 @@ fn rings(ui: &Ui, context: &mut ViewContext<'_>, rect: Rect, y: f32) {
     let model = context.drawn.model(context.session);
     let (left, right) = model.stop_positions();
     if to > from && !context.reduce_motion {
-        let watch = context.drawn.watch(context.session);
+        let pin = context.drawn.pin(context.session);
+        let watch = pin.map_or(context.session.player.watch(), Pin::watch);
         let first = watch.events().partition_point(|event| event.t <= from);
         let scale = model.scales().speed * model.scales().speed;
         for event in watch.events().range(first..).take_while(|event| event.t <= to) {

@@ -6,16 +6,14 @@ use crate::app::session::Session;
 use crate::app::session::pins::PinKind;
 use crate::mechanics::flexure::State;
 
-use super::cursor_times::Cursors;
+use super::cursors::Cursors;
 use super::ranges::Ranges;
 use super::span::Span;
 use super::view::{Axis, View};
 use super::zoom::Axes;
 
-/// State that the views keep between frames.
 #[derive(Debug, Clone, Default)]
 pub struct Memory {
-    /// Axes that are frozen during a gesture.
     pub(super) frozen: FrozenAxes,
     pub(super) drawing: Drawing,
     /// Whether the first view that shows the mass is to grab it.
@@ -53,19 +51,15 @@ pub struct Memory {
     pub points_only: bool,
     pub map_look: MapLook,
     pub(super) map_pointer: PointerState,
-    /// The page of the view Accuracy that is shown where both do not fit.
-    pub(super) accuracy_page: Page,
+    /// Whether the view Accuracy shows what a digit costs, where not both of its parts fit.
+    pub(super) shows_digits: bool,
 }
 
 impl Memory {
     /// The x axis that views share, with room for all displacements seen.
     pub fn span(&mut self, session: &Session) -> Span {
         let seen = self.ranges.follow(session).reach(session);
-        let span = Span::of(session, seen);
-        let x = session.player.state().x;
-        let is_seen = self.frozen.span.0.is_none_or(|(low, high)| low < x && x < high);
-        let frozen = session.editor.in_gesture() && is_seen;
-        let ends = self.frozen.span.keep((span.low, span.high), frozen);
+        let ends = self.frozen.span.keep_mass(Span::of(session, seen), session);
         let (low, high) = self.axes.ends(Axis::Place, ends);
         Span { low, high }
     }
@@ -74,10 +68,7 @@ impl Memory {
     pub(super) fn reach(&mut self, session: &Session, axis: Option<Axis>) -> Span {
         let seen = self.ranges.follow(session).reach(session);
         let wanted = Span::of(session, seen).within_stops(session, seen);
-        let x = session.player.state().x;
-        let is_seen = self.frozen.reach.0.is_none_or(|(low, high)| low < x && x < high);
-        let frozen = session.editor.in_gesture() && is_seen;
-        let ends = self.frozen.reach.keep((wanted.low, wanted.high), frozen);
+        let ends = self.frozen.reach.keep_mass(wanted, session);
         let (low, high) = axis.map_or(ends, |axis| self.axes.ends(axis, ends));
         Span { low, high }
     }
@@ -99,13 +90,19 @@ const SPARE: f64 = 0.08;
 const MOST: f64 = 8.0;
 
 impl FrozenAxis {
+    /// The same for an axis of displacements, which has to show the mass.
+    fn keep_mass(&mut self, wanted: Span, session: &Session) -> (f64, f64) {
+        let x = session.player.state().x;
+        let is_seen = self.0.is_none_or(|(low, high)| low < x && x < high);
+        self.keep((wanted.low, wanted.high), session.editor.in_gesture() && is_seen)
+    }
+
     /// The `wanted` ends of the axis, or during a gesture the previous ones while they contain these.
     pub(super) fn keep(&mut self, wanted: (f64, f64), in_gesture: bool) -> (f64, f64) {
         let spare = SPARE * (wanted.1 - wanted.0);
         let contains = |old: &(f64, f64)| old.0 <= wanted.0 + spare && old.1 >= wanted.1 - spare;
         let ends = self.0.filter(|old| in_gesture && contains(old)).unwrap_or(wanted);
-        self.0 = Some(ends);
-        ends
+        *self.0.insert(ends)
     }
 
     /// The `wanted` ends of the axis, or the previous ones while they contain these and are no longer than
@@ -118,12 +115,10 @@ impl FrozenAxis {
             contains && old.1 - old.0 <= MOST * length
         };
         let ends = self.0.filter(holds).unwrap_or(wanted);
-        self.0 = Some(ends);
-        ends
+        *self.0.insert(ends)
     }
 }
 
-/// The axes that are frozen during a gesture.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct FrozenAxes {
     pub span: FrozenAxis,
@@ -176,24 +171,6 @@ pub(super) struct PointerState {
     pub corner: Option<Pos2>,
     /// The cell of a click that may become a double click, and its time in s.
     pub clicked: Option<((usize, usize), f64)>,
-}
-
-/// The pages of the view Accuracy.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub(super) enum Page {
-    /// What each digit costs.
-    Digits,
-    #[default]
-    Steps,
-}
-
-impl Page {
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Digits => "What a digit costs",
-            Self::Steps => "What the step size does",
-        }
-    }
 }
 
 /// Time range and pointer that the traces share.

@@ -1,17 +1,15 @@
 //! The views of the window.
 //!
-//! Each view is a row of the table of [`View`] and a function `..._ui(ui, &mut ViewContext)` in its own file
-//! or folder. Views share the x axis of [`Span`], so that the mechanism lines up with the well below it, and
-//! keep their state between frames in [`Memory`].
+//! Each view is a row of the table of [`View`], and a function in its own file or folder that the row names.
+//! Views share the x axis of [`Span`], so that the mechanism lines up with the well below it, and keep their
+//! state between frames in [`Memory`].
 
 mod accuracy;
 mod axes;
 mod basins;
-mod before_now;
 mod beside;
 mod compare;
 mod context;
-mod cursor_times;
 mod cursors;
 mod distance;
 pub mod energy;
@@ -47,12 +45,11 @@ mod zoom;
 use eframe::egui::{Ui, UiBuilder};
 
 pub use context::{Cover, Drawn, ViewContext};
-use context::{covered_ui, empty_ui, offer_ui, too_small_ui};
-pub use cursor_times::Cursors;
+use context::{covered_ui, empty_ui, offer_ui, page_ui, too_small_ui};
+pub use cursors::Cursors;
 pub use memory::{MapLook, Memory, Timeline};
 pub use row::LegendRow;
 pub use span::Span;
-pub use trace::TraceQuantity;
 pub(super) use trace::stretch;
 pub use view::View;
 
@@ -85,27 +82,5 @@ fn drawn_ui(ui: &mut Ui, view: View, context: &mut ViewContext<'_>) {
             return covered_ui(ui, &context.style, question);
         }
     }
-    match view {
-        View::Mechanism => mechanism::mechanism_ui(ui, context),
-        View::Well => well::well_ui(ui, context),
-        View::Displacement => trace::trace_ui(ui, TraceQuantity::Displacement, context),
-        View::BeforeNow => before_now::before_now_ui(ui, context),
-        View::Compare => compare::compare_ui(ui, context),
-        View::Measured => measured::measured_ui(ui, context),
-        View::SideBySide => side_by_side::side_by_side_ui(ui, context),
-        View::Distance => distance::distance_ui(ui, context),
-        View::PhasePortrait => phase::phase_ui(ui, context),
-        View::Section => phase::section_ui(ui, context),
-        View::ForceCurve => force::force_ui(ui, context),
-        View::Energy => energy::energy_ui(ui, context),
-        View::Velocity => trace::trace_ui(ui, TraceQuantity::Velocity, context),
-        View::BaseAcceleration => trace::trace_ui(ui, TraceQuantity::BaseAcceleration, context),
-        View::Power => power::power_ui(ui, context),
-        View::Events => events::events_ui(ui, context),
-        View::Map => map::map_ui(ui, context),
-        View::UpAndDown => up_and_down::up_and_down_ui(ui, context),
-        View::Basins => basins::basins_ui(ui, context),
-        View::Spectrum => spectrum::spectrum_ui(ui, context),
-        View::Accuracy => accuracy::accuracy_ui(ui, context),
-    }
+    view.ui(ui, context);
 }

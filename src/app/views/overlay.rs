@@ -4,6 +4,8 @@ use crate::app::session::Session;
 use crate::output::{Layer, Marks, Role};
 use crate::scene::Quantity;
 
+use super::zoom::Ends;
+
 /// Number of samples in a picture below which they are drawn as dots.
 const DOTS: usize = 400;
 
@@ -13,18 +15,17 @@ const ROOM: f64 = 0.05;
 /// Name of the legend entry.
 const NAME: &str = "measured";
 
+/// The quantity of an axis and its unit in SI; `None` for one that is not measured.
+pub(super) type Measurable = Option<(Quantity, f64)>;
+
 /// The unit of an axis in SI. `None` unless the axis shows the measured quantity.
-fn unit(session: &Session, axis: Option<(Quantity, f64)>) -> Option<f64> {
+fn unit(session: &Session, axis: Measurable) -> Option<f64> {
     let measured = session.measured.over.as_ref()?.record.values.quantity;
     axis.filter(|shown| shown.0 == measured).map(|shown| shown.1)
 }
 
 /// The ends of the vertical axis of a trace, widened to hold the measured values.
-pub(super) fn with_room(
-    session: &Session,
-    axis: Option<(Quantity, f64)>,
-    (low, high): (f64, f64),
-) -> (f64, f64) {
+pub(super) fn with_room(session: &Session, axis: Measurable, (low, high): Ends) -> Ends {
     let Some((unit, over)) = unit(session, axis).zip(session.measured.over.as_ref()) else {
         return (low, high);
     };
@@ -35,11 +36,7 @@ pub(super) fn with_room(
 }
 
 /// The values measured from `from` to `to` in s. `None` if the trace shows another quantity.
-pub(super) fn measured_trace(
-    session: &Session,
-    axis: Option<(Quantity, f64)>,
-    (from, to): (f64, f64),
-) -> Option<Layer> {
+pub(super) fn measured_trace(session: &Session, axis: Measurable, (from, to): Ends) -> Option<Layer> {
     let unit = unit(session, axis)?;
     let over = session.measured.over.as_ref()?;
     let (times, values) = (&over.record.across.values, &over.record.values.values);

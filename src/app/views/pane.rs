@@ -25,7 +25,6 @@ pub const UNIT: f32 = SMALL / TICK as f32;
 /// Width in points from the left edge of a view to its frame, where it stands in line with others.
 pub const GUTTER: f32 = 62.0;
 
-/// Height in points of the row of a legend.
 pub const LEGEND: f32 = LegendRow::HEIGHT;
 
 /// Width in points to the left of a legend below the titles of its card.
@@ -77,7 +76,6 @@ pub struct Pane {
 }
 
 impl Pane {
-    /// Paints layers over a panel.
     pub fn draw(&self, painter: &Painter, style: &Style, panel: usize, layers: &[Layer]) {
         let Some(frame) = self.painting.frames.get(panel) else { return };
         let (mesh, _) =
@@ -109,27 +107,28 @@ impl Pane {
         Some((value(&frame.x, across), value(&frame.y, (rect.bottom() - at.y) / rect.height())))
     }
 
-    /// The place on the screen of a point of a panel.
+    /// The values of the first panel's axes under the pointer, if that is in its frame.
+    pub fn pointed(&self) -> Option<(f64, f64)> {
+        let frame = self.frame(0)?;
+        self.values_at(0, self.response.hover_pos().filter(|at| frame.contains(*at))?)
+    }
+
     pub fn place(&self, panel: usize, point: (f64, f64)) -> Option<Pos2> {
         Some(self.painting.place(self.painting.frames.get(panel)?.place(point)))
     }
 
-    /// The frame of a panel on the screen.
     pub fn frame(&self, panel: usize) -> Option<Rect> {
         Some(self.painting.rect(self.painting.frames.get(panel)?.area))
     }
 
-    /// The axes of a panel.
     pub fn axes(&self, panel: usize) -> Option<[&PlotAxis; 2]> {
         self.painting.frames.get(panel).map(|frame| [&frame.x, &frame.y])
     }
 
-    /// The rectangle of its surface on the screen.
     pub fn surface(&self) -> Option<Rect> {
         Some(self.painting.rect(self.painting.surface.as_ref()?.area))
     }
 
-    /// The place on the screen of a point of its surface.
     pub fn place_on_surface(&self, point: (f64, f64, f64)) -> Option<Pos2> {
         Some(self.painting.place(self.painting.surface.as_ref()?.point(point)))
     }
@@ -177,23 +176,22 @@ impl Painting {
         let (mut mesh, mut texts) = (Mesh::default(), Vec::new());
         for shape in shapes {
             let places = |points: &[(f64, f64)]| points.iter().map(|point| self.place(*point)).collect();
+            let mut add = |shape: Shape| tessellator.tessellate_shape(shape, &mut mesh);
             match shape {
                 // without a soft edge, so that neighbouring cells leave no seam
                 Drawn::Rect(area, ink) => mesh.add_colored_rect(self.rect(area), colour(ink)),
                 Drawn::Line(points, width, ink) => {
                     // frame and grid are as thin by a projector
                     let width = if is_fine(width) { width as f32 * UNIT } else { style.line(width) };
-                    let stroke = Stroke::new(width, colour(ink));
-                    tessellator.tessellate_shape(Shape::line(places(&points), stroke), &mut mesh);
+                    add(Shape::line(places(&points), Stroke::new(width, colour(ink))));
                 }
                 Drawn::Polygon(points, ink) => {
-                    let shape = Shape::convex_polygon(places(&points), colour(ink), Stroke::NONE);
-                    tessellator.tessellate_shape(shape, &mut mesh);
+                    add(Shape::convex_polygon(places(&points), colour(ink), Stroke::NONE));
                 }
                 Drawn::Disc(centre, radius, ink) => {
-                    let radius = style.dot((radius as f32 * UNIT).max(LEAST_DOT));
-                    let disc = Shape::circle_filled(self.place(centre), radius, colour(ink));
-                    tessellator.tessellate_shape(disc, &mut mesh);
+                    let larger = if style.projector { 1.4 } else { 1.0 };
+                    let radius = larger * (radius as f32 * UNIT).max(LEAST_DOT);
+                    add(Shape::circle_filled(self.place(centre), radius, colour(ink)));
                 }
                 Drawn::Text(text) => texts.push(text),
             }
@@ -251,7 +249,6 @@ pub fn pane_ui(
     pane
 }
 
-/// Paints `chart` in a place.
 pub fn fresh_pane_ui(ui: &mut Ui, style: &Style, place: impl Into<Place>, chart: Chart) -> Pane {
     let place = place.into();
     let painting = Arc::new(Painting::new(ui, style, &place, &chart));

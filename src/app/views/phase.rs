@@ -7,23 +7,24 @@
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-use eframe::egui::{self, Color32, Sense, Stroke, Ui};
+use eframe::egui::{self, Color32, Sense, Stroke, Ui, vec2};
 
 use crate::app::task::Identity;
-use crate::app::ui::widgets::kind_shapes;
+use crate::app::ui::widgets::{kind_shapes, tell};
 use crate::app::words::numbers::three;
 use crate::app::words::status::Kind;
 use crate::dynamics::{Model, Phase, Sample};
 use crate::output::{Chart, Layer, Marks, PlotAxis, Role, portrait_panel};
 use crate::study::{Table, between};
 
+use super::context::sized_ui;
 use super::ghosts::ghosts;
 use super::hand::axes_input;
 use super::labels::pointer_rests;
 use super::pane::{LEGEND, Pane, Place, kept_pane_ui};
 use super::stops::stops_ui;
 use super::view::Axis;
-use super::{LegendRow, View, ViewContext, too_small_ui};
+use super::{LegendRow, View, ViewContext};
 
 /// Length of the trail in forcing periods.
 const TRAIL_PERIODS: f64 = 4.0;
@@ -59,10 +60,6 @@ fn state((x, v): (f64, f64)) -> State {
     (x * 1e3, v * 1e3)
 }
 
-pub fn phase_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
-    states_ui(ui, context, false);
-}
-
 /// Draws the stroboscopic states without the path: the section of the live motion.
 pub fn section_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     if context.session.shown().forcing_period().is_none() {
@@ -70,15 +67,11 @@ pub fn section_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         ui.label(egui::RichText::new(text).color(context.style.faint()));
         return;
     }
-    states_ui(ui, context, true);
+    sized_ui(ui, context, vec2(60.0, 80.0), |ui, context| states_ui(ui, context, true));
 }
 
-fn states_ui(ui: &mut Ui, context: &mut ViewContext<'_>, is_section: bool) {
+pub fn states_ui(ui: &mut Ui, context: &mut ViewContext<'_>, is_section: bool) {
     let (area, style) = (ui.max_rect(), context.style);
-    if area.width() < 60.0 || area.height() < 80.0 {
-        return too_small_ui(ui, &style, area);
-    }
-    ui.painter().rect_filled(area, 0.0, style.ground());
     let speed = context.memory.ranges.follow(context.session).speed();
     let view = if is_section { View::Section } else { View::PhasePortrait };
     let (low, high) = context.memory.axes.ends(Axis::Up(view), (-speed, speed));
@@ -95,7 +88,7 @@ fn states_ui(ui: &mut Ui, context: &mut ViewContext<'_>, is_section: bool) {
         let axes = (axis(span.low, span.high, "displacement (mm)"), axis(low, high, "velocity (mm/s)"));
         still(&model, axes, points_only)
     });
-    pane.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, "states of the mass"));
+    tell(&pane.response, egui::Role::Canvas, "states of the mass");
     let Some(frame) = pane.frame(0) else { return };
     stops_ui(ui, context, frame, (frame.top(), frame.bottom()), 0.0);
     let mut layers = Vec::new();
@@ -165,34 +158,24 @@ fn points_ui(ui: &mut Ui, area: egui::Rect, points_only: &mut bool) {
         let text = egui::RichText::new("points only").small();
         let hover = "One point a forcing period, always at the same phase, and no path: motion that repeats \
                      is a few points, chaos is many.";
-        let response = ui.selectable_label(*points_only, text).on_hover_text(hover);
-        if response.clicked() {
-            *points_only = !*points_only;
-        }
+        ui.toggle_value(points_only, text).on_hover_text(hover);
     });
 }
 
 /// Shows the state under the pointer; a click lets the motion go on from there.
 fn start_ui(ui: &Ui, context: &mut ViewContext<'_>, pane: &Pane, beside: f32) {
-    let pointer =
-        pane.response.hover_pos().filter(|at| pane.frame(0).is_some_and(|frame| frame.contains(*at)));
-    let Some((mm, speed)) = pointer.and_then(|at| pane.values_at(0, at)) else { return };
+    let Some((mm, speed)) = pane.pointed() else { return };
     if pane.response.clicked() {
-        let inside = within(context, mm / 1e3);
-        context.session.player.place(mm / 1e3, if inside { speed / 1e3 } else { 0.0 });
+        let (x, model) = (mm / 1e3, context.session.shown());
+        let ((left, right), (low, high)) = (model.stop_positions(), model.mechanism().curve.domain());
+        let is_inside = x >= left.unwrap_or(low).max(low) && x <= right.unwrap_or(high).min(high);
+        context.session.player.place(x, if is_inside { speed / 1e3 } else { 0.0 });
         context.session.moved_by_hand();
     }
     pane.reading(ui, &context.style, beside, &format!("{} mm, {} mm/s", three(mm), three(speed)));
     if pointer_rests(ui) {
         pane.response.clone().on_hover_text_at_pointer("Click: the motion goes on from here.");
     }
-}
-
-/// Whether the mass can be at `x` in m.
-fn within(context: &ViewContext<'_>, x: f64) -> bool {
-    let model = context.session.shown();
-    let ((left, right), domain) = (model.stop_positions(), model.mechanism().curve.domain());
-    x >= left.unwrap_or(domain.0).max(domain.0) && x <= right.unwrap_or(domain.1).min(domain.1)
 }
 
 /// The recent path, fading with age. An impact is a dashed jump; moving the mass by hand leaves a gap.
@@ -278,11 +261,8 @@ fn pieces(pane: &Pane, model: &Model, (a, b): (&Sample, &Sample)) -> usize {
         (aside - along * aside.dot(along)).length()
     };
     let deviation = distance(control(a, third)).max(distance(control(b, -third)));
-    if a.phase != Phase::Free || !(deviation > FLAT) {
-        1
-    } else {
-        (2.0 * deviation).sqrt().ceil().min(MAX_PIECES) as usize
-    }
+    let is_bent = a.phase == Phase::Free && deviation > FLAT;
+    if is_bent { (2.0 * deviation).sqrt().ceil().min(MAX_PIECES) as usize } else { 1 }
 }
 
 /// The samples of the last `length` seconds before `state`, followed by `state`.

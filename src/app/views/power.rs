@@ -1,6 +1,6 @@
 //! View of the power into the load of a transducer, or of the base on the mass without a transducer.
 
-use eframe::egui::{self, Label, Rect, RichText, Ui, UiBuilder, pos2, vec2};
+use eframe::egui::{self, Label, RichText, Ui, UiBuilder, vec2};
 
 use crate::app::session::Session;
 use crate::app::words::numbers::{power, power_unit, three};
@@ -23,7 +23,6 @@ const HINT: &str = "The work of the base. This scene has no transducer: add one 
 
 pub fn power_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let (style, area) = (context.style, ui.max_rect());
-    ui.painter().rect_filled(area, 0.0, style.ground());
     let has_transducer = context.session.shown().has_transducer();
     let words = if has_transducer { harvested(context.session) } else { vec![HINT.to_owned()] };
     let place = area.shrink2(vec2(10.0, 4.0));
@@ -37,10 +36,7 @@ pub fn power_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         let colour = if i == 0 && has_transducer { style.ink() } else { style.faint() };
         RichText::new(line).font(style.body()).color(colour)
     };
-    let card = |height: f32| {
-        let card = Rect::from_min_max(place.min, pos2(place.right(), area.top() + height));
-        UiBuilder::new().max_rect(card)
-    };
+    let card = |height: f32| UiBuilder::new().max_rect(place.with_max_y(area.top() + height));
     let mut top = area.top();
     if area.height() - height >= TRACE {
         top += height;
@@ -55,14 +51,12 @@ pub fn power_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
             ui.add(Label::new(coloured(0, &words[0])).truncate()).on_hover_text(words.join("\n"));
         });
     }
-    let quantity = match has_transducer {
-        true => {
-            let end = axis_end(context.memory.ranges.follow(context.session).load_power());
-            let (per_watt, unit) = power_unit(end);
-            TraceQuantity::LoadPower { per_watt: per_watt as u32, unit }
-        }
-        false => TraceQuantity::Power,
-    };
+    let mut quantity = TraceQuantity::Power;
+    if has_transducer {
+        let end = axis_end(context.memory.ranges.follow(context.session).load_power());
+        let (per_watt, unit) = power_unit(end);
+        quantity = TraceQuantity::LoadPower { per_watt: per_watt as u32, unit };
+    }
     let below = UiBuilder::new().max_rect(area.with_min_y(top));
     ui.scope_builder(below, |ui| trace_ui(ui, quantity, context));
 }
@@ -73,9 +67,8 @@ fn harvested(session: &Session) -> Vec<String> {
         return vec!["Into the load: the mean is being worked out.".to_owned(), String::new()];
     };
     let harvest = summary.harvest;
-    let means = harvest
-        .and_then(|harvest| Some((harvest.mean_load_power?, harvest.mean_coil_power?, harvest.voltage_rms?)));
-    let Some((load, coil, voltage)) = means else {
+    let means = || Some((harvest?.mean_load_power?, harvest?.mean_coil_power?, harvest?.voltage_rms?));
+    let Some((load, coil, voltage)) = means() else {
         return vec!["Into the load: the run ended before there was a mean.".to_owned(), String::new()];
     };
     // no share of work that flows back to the base

@@ -1,13 +1,12 @@
 //! Drawing of a mechanism without flexures: a spring, or a mass alone.
 
-use eframe::egui::{self, Pos2, Rect, Shape, Stroke, pos2};
+use eframe::egui::{Pos2, Shape, Stroke, pos2};
 
 use crate::app::words::numbers::three;
 use crate::mechanics::Mechanism;
 
 use super::beside::{Attachments, coil};
-use super::flexures::{CLAMP, clamp};
-use super::labels::Taken;
+use super::flexures::{CLAMP, DrawingArea, Sketch};
 use super::{Span, ViewContext};
 
 /// Number of half turns of the spring.
@@ -73,37 +72,29 @@ fn other_force(mechanism: &Mechanism) -> f64 {
     other_parts(mechanism).map(force).sum()
 }
 
-/// Draws the rail and, for a spring, the spring from above to the mass, whose middle is `mass` and half of
-/// whose size is `half`; what is drawn is `taken`. Returns the caption.
-pub(super) fn schematic(
-    painter: &egui::Painter,
-    context: &ViewContext<'_>,
-    rect: Rect,
-    (mass, half): (Pos2, egui::Vec2),
-    (top, bottom): (f32, f32),
-    beside: &Attachments,
-    taken: &mut Taken,
-) -> String {
-    let style = context.style;
-    let mechanism = context.drawn.model(context.session).mechanism();
-    let kind = Schematic::of(mechanism, context.span);
-    let rail = mass.y + half.y + 3.0;
-    painter.hline(rect.x_range().shrink(6.0), rail, Stroke::new(2.0, style.faint()));
-    taken.lines.push(vec![pos2(rect.left(), rail), pos2(rect.right(), rail)]);
-    let bar = |y: std::ops::RangeInclusive<f32>| Rect::from_x_y_ranges(rect.x_range().shrink(6.0), y);
-    if beside.stands_below() {
-        clamp(painter, &style, bar(bottom..=bottom + CLAMP), false);
+impl Sketch {
+    /// Draws the rail and, for a spring, the spring from above to the mass, whose middle is `mass`. Returns
+    /// the caption.
+    pub fn schematic(&mut self, context: &ViewContext<'_>, mass: Pos2, beside: &Attachments) -> String {
+        let (rect, DrawingArea { top, bottom, half }) = (self.rect, self.area);
+        let mechanism = context.drawn.model(context.session).mechanism();
+        let kind = Schematic::of(mechanism, context.span);
+        let rail = mass.y + half.y + 3.0;
+        self.painter.hline(rect.x_range().shrink(6.0), rail, Stroke::new(2.0, self.style.faint()));
+        self.taken.lines.push(vec![pos2(rect.left(), rail), pos2(rect.right(), rail)]);
+        if beside.stands_below() {
+            self.clamp(bottom..=bottom + CLAMP, false);
+        }
+        if kind == Schematic::Spring {
+            self.clamp(top - CLAMP..=top, true);
+            let barrier = mechanism.landscape.barrier;
+            let foot = context.span.screen_from_world(barrier.map_or(0.0, |barrier| barrier.x), rect);
+            let coil = coil((pos2(foot, top), pos2(mass.x, mass.y - half.y)), COILS, COIL, END);
+            self.painter.add(Shape::line(coil.clone(), self.style.flexure_stroke()));
+            self.taken.lines.push(coil);
+        }
+        kind.words(mechanism, beside.is_drawn())
     }
-    if kind == Schematic::Spring {
-        clamp(painter, &style, bar(top - CLAMP..=top), true);
-        let barrier = mechanism.landscape.barrier;
-        let foot = context.span.screen_from_world(barrier.map_or(0.0, |barrier| barrier.x), rect);
-        let (from, to) = (pos2(foot, top), pos2(mass.x, mass.y - half.y));
-        let coil = coil((from, to), COILS, COIL, END);
-        painter.add(Shape::line(coil.clone(), style.flexure_stroke()));
-        taken.lines.push(coil);
-    }
-    kind.words(mechanism, beside.is_drawn())
 }
 
 #[cfg(test)]

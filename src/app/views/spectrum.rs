@@ -2,11 +2,12 @@
 
 use eframe::egui::{self, Rect, Ui, UiBuilder, vec2};
 
+use crate::app::ui::widgets::tell;
 use crate::output::{Ranges, SpectrumQuantity, spectrum_chart};
 use crate::study::Signal;
 
 use super::pane::pane_ui;
-use super::{View, ViewContext, empty_ui, too_small_ui};
+use super::{View, ViewContext, empty_ui};
 
 /// Height in points of the row of choices.
 const TOOLS: f32 = 30.0;
@@ -20,10 +21,6 @@ const SIGNALS: [(Signal, &str); 3] = [
 
 pub fn spectrum_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let (area, style) = (ui.max_rect(), context.style);
-    if area.width() < 200.0 || area.height() < 140.0 {
-        return too_small_ui(ui, &style, area);
-    }
-    ui.painter().rect_filled(area, 0.0, style.ground());
     let tools = Rect::from_min_size(area.min, vec2(area.width(), TOOLS));
     ui.scope_builder(UiBuilder::new().max_rect(tools), |ui| {
         ui.horizontal_centered(|ui| {
@@ -48,6 +45,5 @@ pub fn spectrum_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         child.set_opacity(0.4);
     }
     let pane = pane_ui(&mut child, context.memory, View::Spectrum, &style, below, chart);
-    let spoken = format!("spectrum of {}", name.to_lowercase());
-    pane.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, spoken.clone()));
+    tell(&pane.response, egui::Role::Canvas, &format!("spectrum of {}", name.to_lowercase()));
 }

@@ -28,16 +28,15 @@ pub(super) const WALL: f32 = 10.0;
 /// Displacements in mm of the stops of the motion shown, and whether they can be moved: not those of a pinned
 /// motion, nor those of the past if they differed then.
 fn shown_stops(session: &Session, drawn: Drawn) -> ([Option<f64>; 2], bool) {
+    // of a pinned motion, or of the past
+    let then = <[_; 2]>::from(drawn.model(session).stop_positions()).map(|stop| stop.map(|x| x * 1e3));
     if drawn.pin(session).is_some() {
-        let (left, right) = drawn.model(session).stop_positions();
-        return ([left, right].map(|stop| stop.map(|stop| stop * 1e3)), false);
+        return (then, false);
     }
     let present = session.scene().stops.positions_mm();
     if !session.player.is_past() {
         return (present, true);
     }
-    let (left, right) = session.shown().stop_positions();
-    let then = [left, right].map(|stop| stop.map(|stop| stop * 1e3));
     let are_equal = |a: Option<f64>, b: Option<f64>| match (a, b) {
         (Some(a), Some(b)) => (a - b).abs() < 1e-9 * a.abs().max(b.abs()),
         _ => a == b,
@@ -48,11 +47,6 @@ fn shown_stops(session: &Session, drawn: Drawn) -> ([Option<f64>; 2], bool) {
 /// The displacement of a stop in mm, to the resolution of a drag.
 fn limit_number(session: &Session, mm: f64) -> String {
     shown(mm, decimals(FINE * key_step(session))).replace('-', "\u{2212}")
-}
-
-/// The same with its unit.
-fn limit_words(session: &Session, mm: f64) -> String {
-    format!("{} mm", limit_number(session, mm))
 }
 
 /// Draws the travel limits over `rect` as lines with their numbers, where the faces of the stops stand the
@@ -96,14 +90,11 @@ pub fn stops_ui(
     let step = key_step(context.session);
     let fine = FINE * step;
     // the nearest to x = 0 that a stop may come; unequal ones may pass it up to the other stop
-    let nearest = |side: f32| match (context.session.scene().stops, stops) {
-        (Stops::Uneven { .. }, [left, right]) => {
-            let other = if side < 0.0 { right.map(|mm| -mm) } else { left };
-            other.map_or(f64::NEG_INFINITY, |other| decimal(other + step))
-        }
-        _ => step,
+    let beyond = |other: Option<f64>| other.map_or(f64::NEG_INFINITY, |other| decimal(other + step));
+    let nearest = match context.session.scene().stops {
+        Stops::Uneven { .. } => [beyond(stops[1].map(|mm| -mm)), beyond(stops[0])],
+        _ => [step; 2],
     };
-    let nearest = [nearest(-1.0), nearest(1.0)];
     for ((mm, side), nearest) in stops.into_iter().zip([-1.0_f32, 1.0]).zip(nearest) {
         let Some(mm) = mm else { continue };
         let x = context.span.screen_from_world(mm / 1e3, rect) + side * radius;
@@ -119,14 +110,10 @@ pub fn stops_ui(
         painter.rect_filled(wall, 0.0, style.stop());
         painter.extend(hatching(wall, side, Stroke::new(1.0, style.ground())));
         if !movable {
+            let at = limit_number(context.session, mm);
             let then = match context.drawn {
-                Drawn::Pinned(_) => {
-                    format!("The stop of the pinned motion, at {}.", limit_words(context.session, mm))
-                }
-                _ => format!(
-                    "Then the stop was at {}. The controls change what is now.",
-                    limit_words(context.session, mm)
-                ),
+                Drawn::Pinned(_) => format!("The stop of the pinned motion, at {at} mm."),
+                _ => format!("Then the stop was at {at} mm. The controls change what is now."),
             };
             ui.interact(grab, id, Sense::hover()).on_hover_text(then);
             continue;
@@ -146,7 +133,7 @@ pub fn stops_ui(
             // 0.01 mm for the prototype, which is finer than a hand
             let distance = decimal((f64::from(side) * place / fine).round() * fine).max(nearest) + 0.0;
             context.session.edit(|scene| scene.stops.set_limit(side > 0.0, distance));
-            let text = limit_words(context.session, distance);
+            let text = format!("{} mm", limit_number(context.session, distance));
             let align = if side > 0.0 { Align2::LEFT_TOP } else { Align2::RIGHT_TOP };
             let at = pos2(x + side * (WALL + 5.0), top);
             painter.text(at, align, text, style.body(), style.ink());

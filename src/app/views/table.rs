@@ -45,6 +45,12 @@ pub(super) struct Column {
     pub differs: bool,
 }
 
+impl Column {
+    fn settled(&self) -> Option<&Summary> {
+        self.card.as_ref()?.settled.as_ref()
+    }
+}
+
 #[derive(Debug, Clone, PartialEq)]
 struct Row {
     name: String,
@@ -64,7 +70,6 @@ impl Row {
         self.texts.iter().filter(|text| *text != UNKNOWN)
     }
 
-    /// Whether two known values differ.
     fn differs(&self) -> bool {
         self.known().any(|text| Some(text) != self.known().next())
     }
@@ -79,16 +84,11 @@ pub(super) fn table_ui(
     heading: &mut dyn FnMut(&mut Ui, Option<usize>, f32),
 ) {
     let style = context.style;
-    let (share, least, most) = NAMES;
-    let names = (share * ui.available_width()).clamp(least, most);
-    let left = ui.available_width() - names;
-    let (width, names) = match left / columns.len() as f32 - COLUMN_GAP {
-        width if width >= WIDE_COLUMN => (width, names),
-        _ => {
-            let width = (ui.available_width() - least) / columns.len() as f32 - COLUMN_GAP;
-            (width.max(MIN_COLUMN), least)
-        }
-    };
+    let ((share, least, most), room) = (NAMES, ui.available_width());
+    let width_beside = |names: f32| (room - names) / columns.len() as f32 - COLUMN_GAP;
+    let names = (share * room).clamp(least, most);
+    let names = if width_beside(names) >= WIDE_COLUMN { names } else { least };
+    let width = width_beside(names).max(MIN_COLUMN);
     let small = width < WIDE_COLUMN;
     ui.spacing_mut().interact_size.y = ROW;
     if small {
@@ -108,20 +108,18 @@ pub(super) fn table_ui(
     let seen = (room / (ROW + ROW_GAP.1)).floor().clamp(1.0, count);
     let gaps = if seen < count { seen } else { count - 1.0 };
     let gap = ((room - seen * ROW) / gaps).clamp(ROW_GAP.1, ROW_GAP.0);
-    let settled = columns[now].card.as_ref().and_then(|card| card.settled.as_ref());
+    let settled = columns[now].settled();
+    let faint = |text: &str| RichText::new(text).color(style.faint());
     let row_ui = |ui: &mut Ui, row: &Row| {
-        cell_ui(ui, names, |ui| {
-            ui.horizontal_wrapped(|ui| {
-                ui.spacing_mut().item_spacing.x = 4.0;
-                let name = ui.label(RichText::new(&row.name).color(style.faint()));
-                match settled.filter(|_| row.name == RMS) {
-                    Some(settled) => name.on_hover_text(rms_words(settled)),
-                    None => explained(name, &row.name),
-                };
-                if !row.unit.is_empty() {
-                    ui.label(RichText::new(row.unit).font(style.small()).color(style.faint()));
-                }
-            });
+        words_ui(ui, names, 4.0, |ui| {
+            let name = ui.label(faint(&row.name));
+            match settled.filter(|_| row.name == RMS) {
+                Some(settled) => name.on_hover_text(rms_words(settled)),
+                None => explained(name, &row.name),
+            };
+            if !row.unit.is_empty() {
+                ui.label(faint(row.unit).font(style.small()));
+            }
         });
         for (i, (text, apart)) in row.texts.iter().zip(&row.apart).enumerate() {
             let written = RichText::new(text);
@@ -130,15 +128,11 @@ pub(super) fn table_ui(
                 true => written.color(style.faint()),
                 false => written,
             };
-            cell_ui(ui, width, |ui| {
-                ui.horizontal_wrapped(|ui| {
-                    ui.spacing_mut().item_spacing.x = 6.0;
-                    ui.add(Label::new(written).wrap());
-                    if let Some(apart) = apart {
-                        let text = format!("({apart})");
-                        ui.label(RichText::new(text).font(style.small()).color(style.faint()));
-                    }
-                });
+            words_ui(ui, width, 6.0, |ui| {
+                ui.add(Label::new(written).wrap());
+                if let Some(apart) = apart {
+                    ui.label(faint(&format!("({apart})")).font(style.small()));
+                }
             });
         }
         ui.end_row();
@@ -150,13 +144,9 @@ pub(super) fn table_ui(
         }
         ui.end_row();
         before.iter().for_each(|row| row_ui(ui, row));
-        cell_ui(ui, names, |ui| {
-            ui.horizontal_wrapped(|ui| {
-                ui.spacing_mut().item_spacing.x = 4.0;
-                ui.label(RichText::new("motion").color(style.faint()));
-                let settled = RichText::new(SETTLED).font(style.small()).color(style.faint());
-                ui.label(settled).on_hover_text(SETTLED_HOVER);
-            });
+        words_ui(ui, names, 4.0, |ui| {
+            ui.label(faint("motion"));
+            ui.label(faint(SETTLED).font(style.small())).on_hover_text(SETTLED_HOVER);
         });
         for column in columns {
             cell_ui(ui, width, |ui| match column.ended {
@@ -164,10 +154,7 @@ pub(super) fn table_ui(
                     let text = format!("ended at {}, stays there", seconds(at));
                     ui.add(Label::new(RichText::new(text).font(style.small())).wrap());
                 }
-                None => {
-                    let settled = column.card.as_ref().and_then(|card| card.settled.as_ref());
-                    regime_ui(ui, context, settled, small);
-                }
+                None => regime_ui(ui, context, column.settled(), small),
             });
         }
         ui.end_row();
@@ -179,12 +166,21 @@ pub(super) fn table_ui(
 const SETTLED: &str = "once settled";
 const SETTLED_HOVER: &str = "What the motion settles to, whether or not it has been played so far.";
 
-fn cell_ui<R>(ui: &mut Ui, width: f32, contents: impl FnOnce(&mut Ui) -> R) -> R {
-    let cell = ui.vertical(|ui| {
+fn cell_ui(ui: &mut Ui, width: f32, contents: impl FnOnce(&mut Ui)) {
+    ui.vertical(|ui| {
         ui.set_width(width);
-        contents(ui)
+        contents(ui);
     });
-    cell.inner
+}
+
+/// A cell with texts side by side, so many points apart.
+fn words_ui(ui: &mut Ui, width: f32, gap: f32, contents: impl FnOnce(&mut Ui)) {
+    cell_ui(ui, width, |ui| {
+        ui.horizontal_wrapped(|ui| {
+            ui.spacing_mut().item_spacing.x = gap;
+            contents(ui);
+        });
+    });
 }
 
 /// Meaning of the RMS velocity, and the time over which it was taken.
@@ -204,7 +200,13 @@ fn scene_rows(scenes: &[Option<&Scene>]) -> Vec<Row> {
         let texts = scenes.iter().map(|scene| scene.map_or_else(|| UNKNOWN.to_owned(), bare));
         Row::new(name, unit, texts.collect())
     };
-    let mut rows = vec![row("shaking", "", shaking), row("stops", "mm", stops)];
+    let mut rows = vec![row("shaking", "", |scene| shaking(scene).0), row("stops", "mm", stops)];
+    // the value of the damping has another row
+    let damping = |scene: &Scene| match scene.damping {
+        Damping::None => "none".to_owned(),
+        Damping::Ratio(_) => "by ratio".to_owned(),
+        Damping::Coefficient { .. } => "by coefficient".to_owned(),
+    };
     let others = [
         row("damping", "", damping),
         row("mechanism", "", |scene| mechanism_name(&scene.mechanism)),
@@ -212,8 +214,7 @@ fn scene_rows(scenes: &[Option<&Scene>]) -> Vec<Row> {
     ];
     rows.extend(others.into_iter().filter(Row::differs));
     let differs = |name: &str| rows.iter().any(|row| row.name == name && row.differs());
-    let (shaking_differs, stops_differ, start_differs) =
-        (differs("shaking"), differs("stops"), differs("start"));
+    let [shaking_differs, stops_differ, start_differs] = ["shaking", "stops", "start"].map(differs);
     let mut paths: Vec<String> = Vec::new();
     for path in scenes.iter().flatten().flat_map(|scene| numeric_fields(scene)) {
         if !paths.contains(&path) {
@@ -228,11 +229,8 @@ fn scene_rows(scenes: &[Option<&Scene>]) -> Vec<Row> {
         // numbers that a row above contains already
         let in_row_above = match path.split_once('.') {
             Some(("excitation", number)) => {
-                shaking_differs
-                    && scenes
-                        .iter()
-                        .flatten()
-                        .all(|scene| field.get(scene).is_none() || in_shaking(&scene.excitation, number))
+                let is_in = |scene: &&Scene| field.get(scene).is_none() || shaking(scene).1.contains(&number);
+                shaking_differs && scenes.iter().flatten().all(is_in)
             }
             Some(("stops", number)) => stops_differ && number.ends_with("_mm") && number != "radius_mm",
             Some(("start", _)) => start_differs,
@@ -258,12 +256,11 @@ fn number_rows(columns: &[Column], now: usize, with_threshold: bool) -> Vec<Row>
                text: &dyn Fn(&Card, &Summary) -> Option<String>,
                value: &dyn Fn(&Summary) -> Option<f64>,
                decimals: &dyn Fn(f64) -> usize| {
-        let settled = |column: &Column| column.card.as_ref().and_then(|card| card.settled);
-        let written = |column: &Column| text(column.card.as_ref()?, &settled(column)?);
+        let written = |column: &Column| text(column.card.as_ref()?, column.settled()?);
         let texts = columns.iter().map(|column| written(column).unwrap_or_else(|| UNKNOWN.to_owned()));
-        let present = settled(&columns[now]).and_then(|settled| value(&settled));
+        let present = columns[now].settled().and_then(value);
         let apart = |column: &Column| {
-            let number = settled(column).filter(|_| column.differs).and_then(|settled| value(&settled))?;
+            let number = column.settled().filter(|_| column.differs).and_then(value)?;
             Some(difference(number, present?, decimals))
         };
         Row { apart: columns.iter().map(apart).collect(), ..Row::new(name, unit, texts.collect()) }
@@ -271,12 +268,16 @@ fn number_rows(columns: &[Column], now: usize, with_threshold: bool) -> Vec<Row>
     let tenths = |below: f64| move |size: f64| usize::from(size < below);
     let velocity = |run: &Summary| run.rms_velocity;
     let in_mm = |run: &Summary| velocity(run).map(|v| v * 1e3);
-    let reaches = columns.iter().filter_map(|column| column.card.as_ref()?.settled?.max_abs_x);
+    let reaches = columns.iter().filter_map(|column| column.settled()?.max_abs_x);
     let (per_metre, length) = length_unit(reaches.fold(0.0, f64::max));
     let reach_in = |run: &Summary| run.max_abs_x.map(|x| x * per_metre);
     let reach = |card: &Card, run: &Summary| match length {
         "m" => reach_in(run).map(three),
-        _ => reach_mm(card, run),
+        // on its side of the stops
+        _ => {
+            let stops = card.scene.stops.positions_mm().map(|stop| stop.map(|mm| mm * 1e-3));
+            run.max_abs_x.map(|reach| mm_beside(reach, stops.into()))
+        }
     };
     let of_reach = |size: f64| match length {
         "m" => decimals_for(size),
@@ -293,7 +294,7 @@ fn number_rows(columns: &[Column], now: usize, with_threshold: bool) -> Vec<Row>
         |column: &Column| column.card.as_ref().is_some_and(|card| card.scene.transducer != Transducer::None);
     if columns.iter().any(has_load) {
         let watt = |run: &Summary| run.harvest?.mean_load_power;
-        let all = columns.iter().filter_map(|column| watt(&column.card.as_ref()?.settled?));
+        let all = columns.iter().filter_map(|column| watt(column.settled()?));
         let (factor, unit) = power_unit(all.fold(0.0, f64::max));
         let text = |_: &Card, run: &Summary| watt(run).map(|watt| three(watt * factor));
         rows.push(row("power into the load", unit, &text, &|run| Some(watt(run)? * factor), &decimals_for));
@@ -310,7 +311,6 @@ fn number_rows(columns: &[Column], now: usize, with_threshold: bool) -> Vec<Row>
     rows
 }
 
-/// A value less the present one, as text.
 fn difference(value: f64, present: f64, decimals: &dyn Fn(f64) -> usize) -> String {
     let decimals = decimals(value.abs().max(present.abs()));
     let text = format!("{:+.decimals$}", value - present).replace('-', "\u{2212}");
@@ -319,51 +319,35 @@ fn difference(value: f64, present: f64, decimals: &dyn Fn(f64) -> usize) -> Stri
     if is_zero { "same".to_owned() } else { text }
 }
 
-/// The reach in mm, on its side of the stops.
-fn reach_mm(card: &Card, run: &Summary) -> Option<String> {
-    let stops = card.scene.stops.positions_mm().map(|stop| stop.map(|mm| mm * 1e-3));
-    run.max_abs_x.map(|reach| mm_beside(reach, stops.into()))
-}
-
-/// Whether the row of the shaking contains this number.
-fn in_shaking(excitation: &Excitation, number: &str) -> bool {
-    let all: &[&str] = match excitation {
-        Excitation::Constant { .. } => &["accel_g"],
-        Excitation::Sine { .. } => &["amplitude_g", "frequency_hz"],
-        Excitation::Cosine { .. } => &["amplitude_m_per_s2", "frequency_rad_per_s"],
-        Excitation::Force { .. } => &["amplitude_n", "frequency_rad_per_s"],
-        Excitation::AmplitudeRamp { .. } => &["from_g", "to_g"],
-        Excitation::Chirp { .. } => &["amplitude_g", "from_hz", "to_hz"],
-        Excitation::Noise { .. } => &["rms_g"],
-        _ => &[],
-    };
-    all.contains(&number)
-}
-
-pub(super) fn shaking(scene: &Scene) -> String {
+/// The shaking in words, and the fields whose numbers these contain.
+pub(super) fn shaking(scene: &Scene) -> (String, &'static [&'static str]) {
     // a difference that this rounding hides has another row, see `scene_rows`
-    let rounded = |value: f64| format!("{value:.3e}").parse().unwrap_or(value);
-    let g = |value: f64| shown(rounded(value), 2);
-    let hz = |value: f64| shown(rounded(value), 1);
+    let rounded = |value: &f64| format!("{value:.3e}").parse().unwrap_or(*value);
+    let g = |value: &f64| shown(rounded(value), 2);
+    let hz = |value: &f64| shown(rounded(value), 1);
     match &scene.excitation {
-        Excitation::None => "none".to_owned(),
-        Excitation::Constant { accel_g } => format!("{} g, constant", g(*accel_g)),
-        Excitation::Sine { amplitude_g, frequency_hz, .. } => {
-            format!("{} g, {} Hz", g(*amplitude_g), hz(*frequency_hz))
+        Excitation::None => ("none".to_owned(), &[]),
+        Excitation::Constant { accel_g } => (format!("{} g, constant", g(accel_g)), &["accel_g"]),
+        Excitation::Sine { amplitude_g, frequency_hz: f, .. } => {
+            (format!("{} g, {} Hz", g(amplitude_g), hz(f)), &["amplitude_g", "frequency_hz"])
         }
-        Excitation::Cosine { amplitude_m_per_s2, frequency_rad_per_s, .. } => {
-            format!("{} m/s\u{b2}, {} rad/s", g(*amplitude_m_per_s2), g(*frequency_rad_per_s))
+        Excitation::Cosine { amplitude_m_per_s2: a, frequency_rad_per_s: f, .. } => {
+            let words = format!("{} m/s\u{b2}, {} rad/s", g(a), g(f));
+            (words, &["amplitude_m_per_s2", "frequency_rad_per_s"])
         }
-        Excitation::Force { amplitude_n, frequency_rad_per_s, .. } => {
-            format!("{} N, {} rad/s", g(*amplitude_n), g(*frequency_rad_per_s))
+        Excitation::Force { amplitude_n: a, frequency_rad_per_s: f, .. } => {
+            (format!("{} N, {} rad/s", g(a), g(f)), &["amplitude_n", "frequency_rad_per_s"])
         }
-        Excitation::AmplitudeRamp { from_g, to_g, .. } => format!("{} to {} g", g(*from_g), g(*to_g)),
+        Excitation::AmplitudeRamp { from_g, to_g, .. } => {
+            (format!("{} to {} g", g(from_g), g(to_g)), &["from_g", "to_g"])
+        }
         Excitation::Chirp { from_hz, to_hz, amplitude_g, .. } => {
-            format!("{} g, {} to {} Hz", g(*amplitude_g), hz(*from_hz), hz(*to_hz))
+            let words = format!("{} g, {} to {} Hz", g(amplitude_g), hz(from_hz), hz(to_hz));
+            (words, &["amplitude_g", "from_hz", "to_hz"])
         }
-        Excitation::Noise { rms_g, .. } => format!("noise, {} g", g(*rms_g)),
-        Excitation::Recorded { .. } => "recorded".to_owned(),
-        Excitation::Sum(terms) => format!("sum of {}", terms.len()),
+        Excitation::Noise { rms_g, .. } => (format!("noise, {} g", g(rms_g)), &["rms_g"]),
+        Excitation::Recorded { .. } => ("recorded".to_owned(), &[]),
+        Excitation::Sum(terms) => (format!("sum of {}", terms.len()), &[]),
     }
 }
 
@@ -384,16 +368,6 @@ pub(super) fn stops(scene: &Scene) -> String {
     }
 }
 
-/// The kind of damping; its value has another row.
-fn damping(scene: &Scene) -> String {
-    match scene.damping {
-        Damping::None => "none",
-        Damping::Ratio(_) => "by ratio",
-        Damping::Coefficient { .. } => "by coefficient",
-    }
-    .to_owned()
-}
-
 fn start(scene: &Scene) -> String {
     match scene.start {
         Start::Rest => "at rest".to_owned(),
@@ -405,10 +379,7 @@ fn start(scene: &Scene) -> String {
 
 /// Symbol and name of the regime; if `small`, the name stands below the symbol in small text.
 fn regime_ui(ui: &mut Ui, context: &ViewContext<'_>, settled: Option<&Summary>, small: bool) {
-    let Some(settled) = settled else {
-        ui.label("-");
-        return;
-    };
+    let Some(settled) = settled else { return drop(ui.label(UNKNOWN)) };
     if settled.outcome != Outcome::Done {
         let text = RichText::new("the run ended early");
         ui.add(Label::new(if small { text.font(context.style.small()) } else { text }).wrap());

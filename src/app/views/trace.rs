@@ -15,9 +15,8 @@ use crate::scene::Quantity;
 use crate::study::{Table, Watch};
 
 use super::cursors::{cursors_ui, readout_ui};
-use super::ghosts::PINNED;
 use super::hand::axes_input;
-use super::overlay::{measured_trace, with_room};
+use super::overlay::{Measurable, measured_trace, with_room};
 use super::pane::{Place, fresh_pane_ui};
 use super::ranges::room_for_push;
 use super::view::Axis;
@@ -83,52 +82,24 @@ impl TraceQuantity {
         self.value(sample, watch.model_at(sample.t))
     }
 
+    /// Its name, its unit, its view, and the panel of the picture of a run that shows it.
+    fn shown(self) -> (&'static str, &'static str, View, RunPanel) {
+        match self {
+            Self::Displacement => ("displacement", "mm", View::Displacement, RunPanel::Displacement),
+            Self::Velocity => ("velocity", "mm/s", View::Velocity, RunPanel::Velocity),
+            Self::BaseAcceleration => ("base", "g", View::BaseAcceleration, RunPanel::Acceleration),
+            Self::Power => ("power", "mW", View::Power, RunPanel::Power),
+            Self::LoadPower { unit, .. } => ("power into the load", unit, View::Power, RunPanel::Power),
+        }
+    }
+
     /// The measured quantity that it can be compared with, and the unit of its axis in SI.
-    fn measured(self) -> Option<(Quantity, f64)> {
+    fn measured(self) -> Measurable {
         match self {
             Self::Displacement => Some((Quantity::Displacement, 1e-3)),
             Self::Velocity => Some((Quantity::Velocity, 1e-3)),
             Self::BaseAcceleration => Some((Quantity::Acceleration, STANDARD_GRAVITY)),
             Self::Power | Self::LoadPower { .. } => None,
-        }
-    }
-
-    fn name(self) -> &'static str {
-        match self {
-            Self::Displacement => "displacement",
-            Self::Velocity => "velocity",
-            Self::BaseAcceleration => "base",
-            Self::Power => "power",
-            Self::LoadPower { .. } => "power into the load",
-        }
-    }
-
-    fn view(self) -> View {
-        match self {
-            Self::Displacement => View::Displacement,
-            Self::Velocity => View::Velocity,
-            Self::BaseAcceleration => View::BaseAcceleration,
-            Self::Power | Self::LoadPower { .. } => View::Power,
-        }
-    }
-
-    fn unit(self) -> &'static str {
-        match self {
-            Self::Displacement => "mm",
-            Self::Velocity => "mm/s",
-            Self::BaseAcceleration => "g",
-            Self::Power => "mW",
-            Self::LoadPower { unit, .. } => unit,
-        }
-    }
-
-    /// The panel of the picture of a run that shows it.
-    fn panel(self) -> RunPanel {
-        match self {
-            Self::Displacement => RunPanel::Displacement,
-            Self::Velocity => RunPanel::Velocity,
-            Self::BaseAcceleration => RunPanel::Acceleration,
-            Self::Power | Self::LoadPower { .. } => RunPanel::Power,
         }
     }
 
@@ -154,18 +125,21 @@ impl TraceQuantity {
 }
 
 pub fn trace_ui(ui: &mut Ui, quantity: TraceQuantity, context: &mut ViewContext<'_>) {
-    let style = context.style;
+    let (style, (name, unit, view, _)) = (context.style, quantity.shown());
     let ends = quantity.ends(context);
     let ends = with_room(context.session, quantity.measured(), ends);
-    let (low, high) = context.memory.axes.ends(Axis::Up(quantity.view()), ends);
+    let (low, high) = context.memory.axes.ends(Axis::Up(view), ends);
     let now = context.session.player.time();
-    let (from, to) = time_ends(context, now);
+    let timeline = &mut context.memory.timeline;
+    timeline.default_window = stretch(context.session.shown());
+    let window = timeline.window.unwrap_or(timeline.default_window);
+    // the present is near the end of the time axis
+    let from = (now - PRESENT * window).max(-0.02 * window);
+    let (from, to) = context.memory.axes.ends(Axis::Time, (from, from + window));
     let (window, end) = (to - from, now.min(to));
-    let area = ui.max_rect();
-    ui.painter().rect_filled(area, 0.0, style.ground());
-    let digits = 1 + decimals_for(high - low);
+    let (area, digits) = (ui.max_rect(), 1 + decimals_for(high - low));
     let watch = context.session.player.watch();
-    let (read, unit) = (|t: f64| quantity.value_in(watch, &watch.state_at(t)), quantity.unit());
+    let read = |t: f64| quantity.value_in(watch, &watch.state_at(t));
     let at_each = |t: f64| format!("{:.digits$} {unit}", read(t));
     let between = |a: f64, b: f64| format!("{:+.digits$} {unit}", read(b) - read(a));
     let readout = readout_ui(ui, context, (area, window), at_each, between);
@@ -173,17 +147,15 @@ pub fn trace_ui(ui: &mut Ui, quantity: TraceQuantity, context: &mut ViewContext<
     let place = Place::in_line(ui, area, Sense::click_and_drag(), (0.0, readout));
     let pane = fresh_pane_ui(ui, &style, place, chart);
     let Some(frame) = pane.frame(0) else { return };
-    axes_input(ui, context.memory, quantity.view(), &pane.response, (area, frame));
+    axes_input(ui, context.memory, view, &pane.response, (area, frame));
     let painter = ui.painter().with_clip_rect(area);
     // each pin has its letter at the end of its line, beside those of the others
     for (i, pin) in pinned(context.session, quantity).iter().enumerate() {
         let value = quantity.value_in(pin.watch(), &pin.state_at(end));
-        let Some(at) = pane.place(0, (end, value.clamp(low, high))).filter(|_| value.is_finite()) else {
-            continue;
-        };
-        let at = at + vec2(LETTER * (i as f32 + 0.5), 0.0);
-        let letter = PINNED[pin.place() % PINNED.len()];
-        painter.text(at, Align2::CENTER_CENTER, letter, style.small(), style.ink());
+        if let Some(at) = pane.place(0, (end, value.clamp(low, high))).filter(|_| value.is_finite()) {
+            let at = at + vec2(LETTER * (i as f32 + 0.5), 0.0);
+            painter.text(at, Align2::CENTER_CENTER, pin.letter(), style.small(), style.ink());
+        }
     }
     let pass = ui.ctx().cumulative_pass_nr();
     let cursor = context.memory.timeline.cursor.filter(|cursor| cursor.1 + 1 >= pass);
@@ -191,7 +163,7 @@ pub fn trace_ui(ui: &mut Ui, quantity: TraceQuantity, context: &mut ViewContext<
         let line = [pos2(at.x, frame.top()), pos2(at.x, frame.bottom())];
         painter.with_clip_rect(frame).extend(Shape::dashed_line(&line, style.ghost_stroke(), 4.0, 3.0));
     }
-    cursors_ui(ui, context, &pane.response, (frame, (from, to)), quantity.name());
+    cursors_ui(ui, context, &pane.response, (frame, (from, to)), name);
     let pointer = pane.response.hover_pos().and_then(|at| pane.values_at(0, at));
     if let Some((t, _)) = pointer {
         let watch = context.session.player.watch();
@@ -205,27 +177,31 @@ pub fn trace_ui(ui: &mut Ui, quantity: TraceQuantity, context: &mut ViewContext<
 /// The picture from `from` to `to` in s over this vertical axis.
 fn chart(session: &Session, quantity: TraceQuantity, (from, to): Point, (low, high): Point) -> Chart {
     let (watch, now) = (session.player.watch(), session.player.time());
-    let samples = shown_samples(session, from, to);
+    // up to the present, or to what is known at the end
+    let state = if now <= to { session.player.state() } else { watch.state_at(to) };
+    let samples: Vec<Sample> = thinned(watch, (from, now.min(to)), MAX_POINTS, state).collect();
     let line = |watch: &Watch, samples: &mut dyn Iterator<Item = Sample>| {
         let points = samples.map(|sample| (sample.t, quantity.value_in(watch, &sample)));
         Marks::Trace(points.filter(|point| !point.1.is_nan()).collect())
     };
     let measured = measured_trace(session, quantity.measured(), (from, to));
+    let (_, unit, _, panel) = quantity.shown();
     let has_load = matches!(quantity, TraceQuantity::LoadPower { .. });
     // what was measured has the colour of a second quantity
-    let role = if measured.is_some() { Role::Motion } else { quantity.panel().role(has_load) };
+    let role = if measured.is_some() { Role::Motion } else { panel.role(has_load) };
     let mut lines = vec![Layer::new(Role::Reference, "", Marks::Verticals(vec![now]))];
     let mut stops = (f64::NAN, f64::NAN);
     if quantity == TraceQuantity::Displacement {
-        match stop_lines(watch, from, to) {
-            Moved::Not(places) => stops = places,
-            Moved::Line(points) => lines.push(Layer::new(Role::Stop, "stop", Marks::Path(points))),
-        }
+        let (places, moved) = stop_lines(watch, from, to);
+        stops = places;
+        lines.extend(moved.map(|points| Layer::new(Role::Stop, "stop", Marks::Path(points))));
     }
     lines.extend(measured);
     for pin in pinned(session, quantity) {
-        let path = line(pin.watch(), &mut ghost_samples(pin, from, now.min(to)));
-        lines.push(Layer::new(Role::Pin(pin.place()), PINNED[pin.place() % PINNED.len()], path));
+        let (from, to) = (from.max(pin.since()), now.min(to));
+        let samples = &mut thinned(pin.watch(), (from, to), MAX_GHOST_POINTS, pin.state_at(to));
+        let path = line(pin.watch(), samples);
+        lines.push(Layer::new(Role::Pin(pin.place()), &pin.letter().to_string(), path));
     }
     lines.push(Layer::new(role, "", line(watch, &mut samples.iter().copied())));
     let stable = session.shown().mechanism().landscape.equilibria.iter().filter(|point| point.stable);
@@ -236,8 +212,8 @@ fn chart(session: &Session, quantity: TraceQuantity, (from, to): Point, (low, hi
         stops,
         wells: stable.map(|well| well.x * 1e3).collect(),
     };
-    let up = PlotAxis::between(low, high, &quantity.panel().label(quantity.unit(), has_load));
-    Chart::stack(vec![quantity.panel().over_time(up, lines, &beside)], "", Table::new())
+    let up = PlotAxis::between(low, high, &panel.label(unit, has_load));
+    Chart::stack(vec![panel.over_time(up, lines, &beside)], "", Table::new())
 }
 
 /// The pinned motions whose paths are drawn: of displacement and velocity.
@@ -246,24 +222,14 @@ fn pinned(session: &Session, quantity: TraceQuantity) -> &[Pin] {
     if is_drawn { session.pins.all() } else { &[] }
 }
 
-/// The ends of the time axis in s, which shows the present near its end.
-fn time_ends(context: &mut ViewContext<'_>, now: f64) -> (f64, f64) {
-    let timeline = &mut context.memory.timeline;
-    timeline.default_window = stretch(context.session.shown());
-    let window = timeline.window.unwrap_or(timeline.default_window);
-    let from = (now - PRESENT * window).max(-0.02 * window);
-    context.memory.axes.ends(Axis::Time, (from, from + window))
-}
-
-/// The states from `from` to `to` in s, thinned, up to the present or to what is known at `to`.
-fn shown_samples(session: &Session, from: f64, to: f64) -> Vec<Sample> {
-    let (watch, now) = (session.player.watch(), session.player.time());
-    let (samples, end) = (watch.samples(), now.min(to));
+/// The samples of a motion from before `from` to `to` in s, thinned to about the number `most`, and its
+/// `state` at the end.
+fn thinned(watch: &Watch, (from, to): Point, most: usize, state: Sample) -> impl Iterator<Item = Sample> {
+    let samples = watch.samples();
     let first = samples.partition_point(|sample| sample.t < from).saturating_sub(1);
-    let last = samples.partition_point(|sample| sample.t <= end).max(first);
-    let state = if now <= to { session.player.state() } else { watch.state_at(end) };
-    let stride = ((last - first) / MAX_POINTS).max(1);
-    samples.range(first..last).step_by(stride).copied().chain([state]).collect()
+    let last = samples.partition_point(|sample| sample.t <= to).max(first);
+    let stride = ((last - first) / most).max(1);
+    samples.range(first..last).step_by(stride).copied().chain([state])
 }
 
 /// Times of the impacts on a stop from `from` to `to` in s.
@@ -276,15 +242,6 @@ fn impact_times(watch: &Watch, side: Side, (from, to): Point) -> Vec<f64> {
         .collect()
 }
 
-/// The states of a pinned motion since it was pinned.
-fn ghost_samples(pin: &Pin, from: f64, to: f64) -> impl Iterator<Item = Sample> {
-    let samples = pin.watch().samples();
-    let first = samples.partition_point(|sample| sample.t < from.max(pin.since())).saturating_sub(1);
-    let last = samples.partition_point(|sample| sample.t <= to).max(first);
-    let stride = ((last - first) / MAX_GHOST_POINTS).max(1);
-    samples.range(first..last).step_by(stride).copied().chain([pin.state_at(to)])
-}
-
 /// The time in s that is shown by default of a motion of a model.
 pub(in crate::app) fn stretch(model: &Model) -> f64 {
     let limit = MAX_SWINGS * model.natural_time();
@@ -293,15 +250,9 @@ pub(in crate::app) fn stretch(model: &Model) -> f64 {
         .map_or(SWINGS * model.characteristic_time(), |period| (PERIODS * period).min(limit))
 }
 
-/// Whether stops moved in a range of time.
-enum Moved {
-    /// They stand at these places in mm, NaN where there is none.
-    Not(Point),
-    /// They moved along these lines, parted by points that are not finite.
-    Line(Vec<Point>),
-}
-
-fn stop_lines(watch: &Watch, from: f64, to: f64) -> Moved {
+/// The places in mm of the stops in a range of time, NaN where there is none; and of stops that moved instead
+/// the lines along which they did, parted by points that are not finite.
+fn stop_lines(watch: &Watch, from: f64, to: f64) -> (Point, Option<Vec<Point>>) {
     let mm = |stop: Option<f64>| stop.map_or(f64::NAN, |x| x * 1e3);
     let held: Vec<(f64, f64, [f64; 2])> = watch
         .models_between(from.max(0.0), to)
@@ -309,13 +260,13 @@ fn stop_lines(watch: &Watch, from: f64, to: f64) -> Moved {
         .collect();
     let first = held.first().map_or([f64::NAN; 2], |held| held.2);
     if held.iter().all(|held| held.2.map(f64::to_bits) == first.map(f64::to_bits)) {
-        return Moved::Not(first.into());
+        return (first.into(), None);
     }
     let gap = (f64::NAN, f64::NAN);
     let of_side = |side: usize| {
         held.iter().flat_map(move |(begin, end, mm)| [(*begin, mm[side]), (*end, mm[side]), gap])
     };
-    Moved::Line(of_side(0).chain(of_side(1)).collect())
+    (gap, Some(of_side(0).chain(of_side(1)).collect()))
 }
 
 /// Times between which the mass rests on a stop.

@@ -1,11 +1,11 @@
 //! View of a walk over one field, up and down: states or means of the motion, and hysteresis.
 
-use eframe::egui::containers::menu::{MenuButton, MenuConfig};
-use eframe::egui::{self, Align2, PopupCloseBehavior, Rect, RichText, Ui, UiBuilder, vec2};
+use eframe::egui::{self, Align2, Rect, RichText, Ui, UiBuilder, vec2};
 
 use crate::app::session::Session;
 use crate::app::session::explore::WalkQuantity;
 use crate::app::session::map::label;
+use crate::app::ui::widgets::{choices_ui, tell};
 use crate::app::words::numbers::{power, power_unit, three};
 use crate::dynamics::Regime;
 use crate::numeric::short;
@@ -16,7 +16,7 @@ use crate::study::{Direction, Table, Visit};
 use super::axes::{field_name, field_ui, range_row_ui};
 use super::labels::haloed;
 use super::pane::pane_ui;
-use super::{Span, View, ViewContext, too_small_ui};
+use super::{Span, View, ViewContext};
 
 /// Height in points of the row of choices.
 const TOOLS: f32 = 30.0;
@@ -24,17 +24,14 @@ const TOOLS: f32 = 30.0;
 /// Relative difference up to which two RMS velocities are the same.
 const SAME: f64 = 0.01;
 
-/// The runs of one direction by rising value, coarse ones where the fine ones are still to come.
-struct WalkBranch<'a> {
-    visits: Vec<&'a Visit>,
-}
+/// The runs of each direction by rising value, coarse ones where the fine ones are still to come.
+type Branches<'a> = [Vec<&'a Visit>; 2];
+
+/// The quantity that is drawn, and the number of units of its axis in a watt.
+type Shown = (WalkQuantity, f64);
 
 pub fn up_and_down_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let area = ui.max_rect();
-    if area.width() < 200.0 || area.height() < 140.0 {
-        return too_small_ui(ui, &context.style, area);
-    }
-    ui.painter().rect_filled(area, 0.0, context.style.ground());
     context.session.want_walks();
     let Some(axis) = context.session.walk_axis() else {
         ui.label("This scene has no field to walk over.");
@@ -53,35 +50,26 @@ pub fn up_and_down_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     picture_ui(ui, context, &axis, below);
 }
 
-/// Choice of quantity, field and range.
 fn tools_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axis: &SweepAxis) {
     let known = context.session.map_fields();
     ui.horizontal_centered(|ui| {
         ui.add_space(8.0);
         let has_load = context.session.model().has_transducer();
         let quantity = &mut context.session.explore.walks.quantity;
-        let load = (
-            WalkQuantity::LoadPower,
-            "Power",
-            "Mean power into the load of the transducer, over the settled window.",
-        );
-        for (value, name, hover) in [
+        let of_load = "Mean power into the load of the transducer, over the settled window.";
+        let choices = [
             (WalkQuantity::Strobes, "Once a period", "Where the mass is once in every forcing period."),
             (WalkQuantity::RmsVelocity, "RMS velocity", "Root of the mean square of the velocity."),
-        ]
-        .into_iter()
-        .chain(has_load.then_some(load))
-        {
-            ui.selectable_value(quantity, value, name).on_hover_text(hover);
+            (WalkQuantity::LoadPower, "Power", of_load),
+        ];
+        for (value, name, hover) in &choices[..if has_load { 3 } else { 2 }] {
+            ui.selectable_value(quantity, *value, *name).on_hover_text(*hover);
         }
         ui.label("over");
         if let Some(path) = field_ui(ui, axis, "over", &known) {
             context.session.explore.walks.chosen = Some(context.session.map_axis(&path));
         }
-        let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
-        let (button, _) = MenuButton::new("Range").config(config).ui(ui, |ui| {
-            // a menu style would hide that the numbers can be typed
-            *ui.style_mut() = (*ui.ctx().global_style()).clone();
+        let button = choices_ui(ui, "Range", |ui| {
             let mut wanted = axis.clone();
             egui::Grid::new("walk").num_columns(7).show(ui, |ui| range_row_ui(ui, &mut wanted, "over"));
             if wanted != *axis {
@@ -89,15 +77,14 @@ fn tools_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axis: &SweepAxis) {
             }
         });
         button.on_hover_text("Ends and step of the walk.");
-        let walks = &context.session.explore.walks;
-        if walks.found.is_running() {
+        if context.session.explore.walks.found.is_running() {
             ui.add(egui::Spinner::new().size(14.0)).on_hover_text("Runs are still to come.");
         }
     });
 }
 
 /// The runs of both directions: fine ones as far as they are known, then coarse ones.
-fn branches(parts: &[(usize, Visit)]) -> [WalkBranch<'_>; 2] {
+fn branches(parts: &[(usize, Visit)]) -> Branches<'_> {
     [Direction::Up, Direction::Down].map(|direction| {
         let runs = || parts.iter().filter(|part| part.1.direction == direction);
         let fine: Vec<&Visit> = runs().filter(|part| part.0 == 1).map(|part| &part.1).collect();
@@ -110,7 +97,7 @@ fn branches(parts: &[(usize, Visit)]) -> [WalkBranch<'_>; 2] {
         let coarse = runs().filter(|part| part.0 > 1 && is_ahead(part.1.value)).map(|part| &part.1);
         let mut visits: Vec<&Visit> = fine.iter().copied().chain(coarse).collect();
         visits.sort_by(|a, b| a.value.total_cmp(&b.value));
-        WalkBranch { visits }
+        visits
     })
 }
 
@@ -120,7 +107,7 @@ fn rms(visit: &Visit) -> f64 {
 }
 
 /// The value of a run on the vertical axis, in the unit of the axis; NaN if there is none.
-fn number(visit: &Visit, quantity: WalkQuantity, per_watt: f64) -> f64 {
+fn number(visit: &Visit, (quantity, per_watt): Shown) -> f64 {
     match quantity {
         WalkQuantity::LoadPower => load_power(visit) * per_watt,
         WalkQuantity::Strobes | WalkQuantity::RmsVelocity => rms(visit),
@@ -133,52 +120,33 @@ fn load_power(visit: &Visit) -> f64 {
 }
 
 /// The ends of the vertical axis, in the unit of the quantity.
-fn vertical_ends(
-    branches: &[WalkBranch<'_>; 2],
-    quantity: WalkQuantity,
-    per_watt: f64,
-    span: &Span,
-) -> (f64, f64) {
-    match quantity {
-        WalkQuantity::Strobes => {
-            let all =
-                branches.iter().flat_map(|branch| branch.visits.iter().flat_map(|visit| &visit.strobes));
-            all.fold((span.low * 1e3, span.high * 1e3), |(low, high), x| {
-                (low.min(1.05e3 * x), high.max(1.05e3 * x))
-            })
-        }
-        WalkQuantity::RmsVelocity | WalkQuantity::LoadPower => {
-            let all = branches.iter().flat_map(|branch| &branch.visits);
-            let all = all.map(|visit| number(visit, quantity, per_watt));
-            (0.0, 1.08 * all.filter(|value| value.is_finite()).fold(1e-3, f64::max))
-        }
+fn vertical_ends(branches: &Branches<'_>, shown: Shown, span: &Span) -> (f64, f64) {
+    let all = branches.iter().flatten();
+    if shown.0 == WalkQuantity::Strobes {
+        let wider = |(low, high): (f64, f64), x: &f64| (low.min(1.05e3 * x), high.max(1.05e3 * x));
+        return all.flat_map(|visit| &visit.strobes).fold((span.low * 1e3, span.high * 1e3), wider);
     }
+    let all = all.map(|visit| number(visit, shown));
+    (0.0, 1.08 * all.filter(|value| value.is_finite()).fold(1e-3, f64::max))
 }
 
 /// The runs of both directions over the field: as points what repeats once a period, as a line any other
 /// quantity, and where the two differ.
-fn chart(
-    branches: &[WalkBranch<'_>; 2],
-    quantity: WalkQuantity,
-    per_watt: f64,
-    axes: (PlotAxis, PlotAxis),
-    here: Option<f64>,
-) -> Chart {
+fn chart(branches: &Branches<'_>, shown: Shown, axes: (PlotAxis, PlotAxis), here: Option<f64>) -> Chart {
     let mut panel = Panel::new(axes.0, axes.1);
     let differing = differing(branches, panel.y.high - panel.y.low);
     panel.layer(Role::Closer, "the two differ", Marks::Spans(differing));
     panel.draw(Role::Drive, Marks::Verticals(here.into_iter().collect()));
-    for (branch, role, name) in
-        [(&branches[0], Role::Motion, "turned up"), (&branches[1], Role::Down, "turned down")]
-    {
-        let of_visit = |visit: &&Visit| (visit.value, number(visit, quantity, per_watt));
+    let [up, down] = branches;
+    for (branch, role, name) in [(up, Role::Motion, "turned up"), (down, Role::Down, "turned down")] {
+        let of_visit = |visit: &&Visit| (visit.value, number(visit, shown));
         let strobed = |visit: &&Visit| {
             let value = visit.value;
             strobes(visit).iter().map(move |x| (value, x * 1e3)).collect::<Vec<_>>()
         };
-        let marks = match quantity {
-            WalkQuantity::Strobes => Marks::Cloud(branch.visits.iter().flat_map(strobed).collect()),
-            _ => Marks::Path(branch.visits.iter().map(of_visit).collect()),
+        let marks = match shown.0 {
+            WalkQuantity::Strobes => Marks::Cloud(branch.iter().flat_map(strobed).collect()),
+            _ => Marks::Path(branch.iter().map(of_visit).collect()),
         };
         panel.layer(role, name, marks);
     }
@@ -197,15 +165,16 @@ fn picture_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axis: &SweepAxis, area
     let (parts, current) = walks.found.parts();
     let of_field = walks.found.question().is_some_and(|question| question.axis.field == axis.field);
     let branches = branches(if of_field { parts } else { &[] });
-    let powers = branches.iter().flat_map(|branch| branch.visits.iter().map(|visit| load_power(visit)));
+    let powers = branches.iter().flatten().map(|visit| load_power(visit));
     let (per_watt, unit) = power_unit(powers.filter(|power| power.is_finite()).fold(0.0, f64::max));
+    let shown = (quantity, per_watt);
     let vertical = match quantity {
         WalkQuantity::Strobes => "displacement once a period (mm)".to_owned(),
         WalkQuantity::RmsVelocity => "RMS velocity (mm/s)".to_owned(),
         WalkQuantity::LoadPower => format!("mean power into the load ({unit})"),
     };
     let across = label(&column_names(&[axis.field.as_str()]).pop().unwrap_or_default());
-    let (low, high) = vertical_ends(&branches, quantity, per_watt, &context.span);
+    let (low, high) = vertical_ends(&branches, shown, &context.span);
     let axes =
         (PlotAxis::around([axis.from, axis.to], 0.01, &across), PlotAxis::between(low, high, &vertical));
     let here = FieldPath::new(&axis.field).get(session.scene());
@@ -215,7 +184,7 @@ fn picture_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axis: &SweepAxis, area
     if !current {
         child.set_opacity(0.4);
     }
-    let chart = chart(&branches, quantity, per_watt, axes, here);
+    let chart = chart(&branches, shown, axes, here);
     let pane = pane_ui(&mut child, context.memory, View::UpAndDown, &style, area, chart);
     let ball = here.zip(live).and_then(|point| pane.place(0, point));
     let frame = pane.frame(0).unwrap_or(area);
@@ -223,12 +192,11 @@ fn picture_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axis: &SweepAxis, area
         child.painter().circle(at, 4.5, style.mass(), egui::Stroke::new(1.5, style.mass_edge()));
     }
     let name = format!("{vertical} over {}, turned up and down", field_name(&axis.field));
-    pane.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, name.clone()));
+    tell(&pane.response, egui::Role::Canvas, &name);
     let write = |at: egui::Pos2, align: Align2, text: &str, colour: egui::Color32| {
         haloed(ui.painter(), &style, (at, align), text, (style.small(), colour));
     };
-    if let Some(value) = pane.response.hover_pos().and_then(|at| pane.values_at(0, at)).map(|values| values.0)
-    {
+    if let Some((value, _)) = pane.response.hover_pos().and_then(|at| pane.values_at(0, at)) {
         let text = reading(&branches, value.clamp(axis.from, axis.to), quantity);
         write(frame.right_top() + vec2(-4.0, 4.0), Align2::RIGHT_TOP, &text, style.ink());
     }
@@ -253,15 +221,12 @@ fn drag(session: &mut Session, response: &egui::Response, value: impl Fn(egui::P
 }
 
 /// Intervals of the axis over which the two directions differ; each value extends halfway to its neighbours.
-fn differing([up, down]: &[WalkBranch<'_>; 2], height: f64) -> Vec<(f64, f64)> {
-    let both: Vec<(f64, bool)> = up
-        .visits
-        .iter()
-        .filter_map(|visit| {
-            let other = down.visits.iter().find(|other| other.value == visit.value)?;
-            Some((visit.value, differ(visit, other, height)))
-        })
-        .collect();
+fn differing([up, down]: &Branches<'_>, height: f64) -> Vec<(f64, f64)> {
+    let compared = |visit: &&Visit| {
+        let other = down.iter().find(|other| other.value == visit.value)?;
+        Some((visit.value, differ(visit, other, height)))
+    };
+    let both: Vec<(f64, bool)> = up.iter().filter_map(compared).collect();
     let mut spans: Vec<(f64, f64)> = Vec::new();
     for (i, (value, differs)) in both.iter().enumerate() {
         if !differs {
@@ -295,23 +260,19 @@ fn strobes(visit: &Visit) -> &[f64] {
 }
 
 /// Text on the runs nearest to `value`.
-fn reading(branches: &[WalkBranch<'_>; 2], value: f64, quantity: WalkQuantity) -> String {
+fn reading([up, down]: &Branches<'_>, value: f64, quantity: WalkQuantity) -> String {
     let number = |visit: &Visit| match quantity {
         WalkQuantity::LoadPower => power(load_power(visit)),
         WalkQuantity::Strobes | WalkQuantity::RmsVelocity => format!("{} mm/s", three(rms(visit))),
     };
-    let nearest = |branch: &WalkBranch<'_>| {
-        branch
-            .visits
-            .iter()
-            .min_by(|a, b| (a.value - value).abs().total_cmp(&(b.value - value).abs()))
-            .map(|visit| (visit.value, visit.summary.regime.name(), number(visit)))
+    let nearest = |branch: &[&'_ Visit], word: &str| {
+        let by_distance =
+            |a: &&&Visit, b: &&&Visit| (a.value - value).abs().total_cmp(&(b.value - value).abs());
+        let visit = branch.iter().min_by(by_distance)?;
+        Some((visit.value, format!("{word}: {}, {}", visit.summary.regime.name(), number(visit))))
     };
-    let text = |word: &str, regime: &str, number: &str| format!("{word}: {regime}, {number}");
-    match (nearest(&branches[0]), nearest(&branches[1])) {
-        (Some(up), Some(down)) if up.0 == down.0 => {
-            format!("{}   {}   {}", short(up.0), text("up", up.1, &up.2), text("down", down.1, &down.2))
-        }
+    match (nearest(up, "up"), nearest(down, "down")) {
+        (Some(up), Some(down)) if up.0 == down.0 => format!("{}   {}   {}", short(up.0), up.1, down.1),
         _ => three(value),
     }
 }

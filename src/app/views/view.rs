@@ -1,14 +1,21 @@
 //! Table of the views: names, and what each shows.
 
+use eframe::egui::{Ui, vec2};
+
 use crate::scene::lesson::LessonView;
 
-/// The views in the order of the menu: variant, name, and description of content and input.
+use super::context::{ViewContext, sized_ui};
+use super::phase::states_ui;
+use super::trace::{TraceQuantity, trace_ui};
+
+/// The views in the order of the menu: variant, name, least width and height in points, the function that
+/// draws it, and description of content and input.
 macro_rules! views {
-    ($($(#[doc = $doc:literal])+ $variant:ident $name:literal $about:literal;)*) => {
+    ($($variant:ident $name:literal ($width:literal, $height:literal) $draw:expr, $about:literal;)*) => {
         /// A view of the window.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
         pub enum View {
-            $($(#[doc = $doc])+ $variant,)*
+            $(#[doc = $about] $variant,)*
         }
 
         impl View {
@@ -27,97 +34,84 @@ macro_rules! views {
                     $(Self::$variant => $about,)*
                 }
             }
+
+            /// Draws it in all of `ui`.
+            pub(super) fn ui(self, ui: &mut Ui, context: &mut ViewContext<'_>) {
+                match self {
+                    $(Self::$variant => sized_ui(ui, context, vec2($width, $height), $draw),)*
+                }
+            }
         }
     };
 }
 
 views! {
-    /// The mechanism as a drawing.
-    Mechanism "Mechanism"
+    Mechanism "Mechanism" (60.0, 60.0) super::mechanism::mechanism_ui,
         "The mass between its stops, seen from the base that shakes, with its flexures or a spring in \
          their place, and a spring, magnets or a transducer beside them. The arrow is the push that the mass \
          feels. Drag the mass or a stop.";
-    /// The potential with the mass on it.
-    Well "Well"
+    Well "Well" (60.0, 60.0) super::well::well_ui,
         "The mass rides on the potential like a ball on a tray that the push tips. Drag the ball or a \
          stop.";
-    /// Displacement over time.
-    Displacement "Displacement"
+    Displacement "Displacement" (0.0, 0.0) |ui, context| trace_ui(ui, TraceQuantity::Displacement, context),
         "Where the mass is, seen from the base, over time. The wheel zooms in time; with Shift, or over \
          the numbers of the axis, in displacement. A double click is back.";
-    /// The state before the last gesture, compared with the present one.
-    BeforeNow "Before / now"
+    BeforeNow "Before / now" (0.0, 0.0) super::compare::before_now_ui,
         "What your last change did: the state before it, and the one after it.";
-    /// The pinned motions, compared with the present one.
-    Compare "Compare"
+    Compare "Compare" (0.0, 0.0) super::compare::compare_ui,
         "The present motion beside those that are pinned: what each settles to, and by how much it differs. \
          A pin goes on with the drive in step; take its scene back by a click.";
-    /// The measured data compared with the computed.
-    Measured "Measured"
+    Measured "Measured" (0.0, 0.0) super::measured::measured_ui,
         "Measured data that lie over the computed: shift and stretch them in time, and read by how much the \
          two differ.";
-    /// The present motion and a pinned one, each with its mechanism and its well.
-    SideBySide "Side by side"
+    SideBySide "Side by side" (240.0, 180.0) super::side_by_side::side_by_side_ui,
         "The present motion beside a pinned one, each in its own drawing and on its own well, at the same \
          time of the same shaking. The pinned one is not moved by hand.";
-    /// Distance of the pinned motions from the present one over time.
-    Distance "Distance"
+    Distance "Distance" (160.0, 100.0) super::distance::distance_ui,
         "How far each pinned motion is from the present one, over time. A twin begins a micrometre beside \
          the mass: chaos drives the two apart exponentially, a motion that is stable brings them together.";
-    /// Velocity over displacement.
-    PhasePortrait "Phase portrait"
+    PhasePortrait "Phase portrait" (60.0, 80.0) |ui, context| states_ui(ui, context, false),
         "Velocity over displacement: a moving mass runs clockwise. An impact is a jump of the velocity. \
          The separatrix needs just the energy to stand on the barrier. Click to let the motion go on from \
          a state.";
-    /// The stroboscopic states.
-    Section "Section"
+    Section "Section" (0.0, 0.0) super::phase::section_ui,
         "The state once in every forcing period, always at the same phase of the shaking: motion that \
          repeats is a few points, chaos is a cloud with a shape. Click to let the motion go on from a state.";
-    /// The force that holds the mass against the mechanism, over displacement.
-    ForceCurve "Force curve"
+    ForceCurve "Force curve" (60.0, 80.0) super::force::force_ui,
         "The force that would hold the mass at a place, positive to the right; the mechanism pulls with as \
          much the other way. Where the push is above the curve it drives the mass to the right, below it \
          to the left; a mass on a stop is freed when the push passes the mark there. Filled: stable. \
          Hollow: unstable. Diamond: a kink, where the stiffness jumps.";
-    /// The energy supplied, taken and stored.
-    Energy "Energy"
+    Energy "Energy" (192.0, 148.0) super::energy::energy_ui,
         "Where the energy came from, where it went, and what is there against the barrier.";
-    /// Velocity over time.
-    Velocity "Velocity"
+    Velocity "Velocity" (0.0, 0.0) |ui, context| trace_ui(ui, TraceQuantity::Velocity, context),
         "Velocity of the mass, seen from the base, over time. An impact turns it round and leaves a part \
          of it. The wheel zooms in time, a double click is back.";
-    /// Acceleration of the base over time.
-    BaseAcceleration "Base acceleration"
+    BaseAcceleration "Base acceleration" (0.0, 0.0)
+        |ui, context| trace_ui(ui, TraceQuantity::BaseAcceleration, context),
         "Acceleration of the base over time. The mass feels the opposite of it, as one does in a bus that \
          brakes. The wheel zooms in time, a double click is back.";
-    /// Power into a load, or of the base into the mass, over time.
-    Power "Power"
+    Power "Power" (0.0, 0.0) super::power::power_ui,
         "What the load of a transducer takes in a second, over time. Without a transducer the work of the \
          base on the mass; below zero the mass gives energy back to the base. The wheel zooms in time, a \
          double click is back.";
-    /// The events of the motion as a table.
-    Events "Events"
+    Events "Events" (160.0, 90.0) super::events::events_ui,
         "What happened when: impacts, rests, releases and crossings, with phase of the shaking, velocity \
          before and after, and energy lost. Click a row to look at that instant.";
-    /// The results of runs for every combination of two fields.
-    Map "Map"
+    Map "Map" (0.0, 0.0) super::map::map_ui,
         "What every combination of two settings comes to, each in a run of its own. Click to take the \
          scene there.";
-    /// The motion over a field that is walked up and down.
-    UpAndDown "Up and down"
+    UpAndDown "Up and down" (200.0, 140.0) super::up_and_down::up_and_down_ui,
         "One setting, turned up and then down slowly: each run goes on from where the one before was. Where \
          the two ways differ the motion remembers how it came: hysteresis. Drag along it to take the scene \
          there.";
-    /// The basins of attraction.
-    Basins "Basins"
+    Basins "Basins" (100.0, 100.0) super::basins::basins_ui,
         "Where the motion goes from every start, by colour, and what it is there. Each start is a \
          displacement and a velocity at time 0 of the shaking. Click to begin there.";
-    /// The spectrum of the settled motion.
-    Spectrum "Spectrum"
+    Spectrum "Spectrum" (200.0, 140.0) super::spectrum::spectrum_ui,
         "The oscillations that the settled motion is made of: their frequencies and amplitudes. One that \
          repeats has lines at multiples of its own frequency and nothing between; chaos fills the gaps.";
-    /// The cost of accuracy, and the scene computed in fixed steps.
-    Accuracy "Accuracy"
+    Accuracy "Accuracy" (180.0, 112.0) super::accuracy::accuracy_ui,
         "How far the computed motion is from the true one: what each digit costs, and what becomes of the \
          scene in fixed steps, as a game or a small applet takes them. From the scene's start.";
 }
@@ -169,19 +163,13 @@ impl View {
 
     /// Whether its upper row is a legend, for which the row of its card may have room.
     pub fn has_legend(self) -> bool {
-        matches!(self, Self::Mechanism | Self::Well | Self::ForceCurve | Self::PhasePortrait | Self::Section)
-            || self.is_over_time() && self != Self::Power
+        self.is_along_x() || self.is_over_time() && self != Self::Power
     }
 
     /// Whether its horizontal axis is time, so that it shows the cursors.
     pub fn is_over_time(self) -> bool {
         use View::{BaseAcceleration, Displacement, Distance, Power, Velocity};
         matches!(self, Displacement | Velocity | BaseAcceleration | Power | Distance)
-    }
-
-    /// Whether its axes can be zoomed and held.
-    pub fn has_axes(self) -> bool {
-        self.axes().is_some()
     }
 
     /// Whether its horizontal axis is the displacement.

@@ -37,12 +37,10 @@ impl Axes {
         ends
     }
 
-    /// The ends chosen by hand, if any.
     pub(super) fn chosen(&self, axis: Axis) -> Option<Ends> {
         self.chosen.get(&axis).map(|choice| choice.ends)
     }
 
-    /// The ends when the axis was last shown.
     pub(super) fn shown(&self, axis: Axis) -> Option<Ends> {
         self.shown.get(&axis).map(|ends| ends.1)
     }

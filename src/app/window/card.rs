@@ -31,27 +31,18 @@ pub struct Title {
     pub id: egui::Id,
 }
 
-/// What was done in the row of a card.
-#[derive(Debug, Default)]
-pub struct Answer {
-    /// The title that was clicked.
-    pub chosen: Option<View>,
-    pub fills: bool,
-}
+/// The title that was clicked, and whether the view is to fill the window or to give it back.
+type Answer = (Option<View>, bool);
 
-/// Draws a view in a card at `rect`, with the titles of all views that share it. One that is `filled` has the
-/// whole window, and a tool that gives it back.
-pub fn card_ui(
-    ui: &mut Ui,
-    rect: Rect,
-    titles: &[Title],
-    view: View,
-    context: &mut ViewContext<'_>,
-) -> Answer {
-    let style = context.style;
+/// Draws a view in a card, with the titles of all views that share it. One that is `filled` has the whole
+/// window, and a tool that gives it back.
+pub fn card_ui(ui: &mut Ui, titles: &[Title], view: View, context: &mut ViewContext<'_>) -> Answer {
+    let (rect, style) = (ui.max_rect(), context.style);
     ui.painter().rect_filled(rect, CORNER, style.ground());
     let row = rect.with_max_y(rect.top() + ROW);
-    let tools = tool_count(ui, view, context) as f32 * TOOL + 4.0;
+    let has_axes = context.memory.are_axes_held(view).is_some();
+    let count = 1 + u8::from(has_figure(ui, context)) + u8::from(has_axes);
+    let tools = f32::from(count) * TOOL + 4.0;
     let font = title_font(ui, titles, row.width() - tools - MARGIN);
     let width: f32 = titles.iter().map(|title| width_of(ui, title, &font)).sum();
     let free = LegendRow { left: row.left() + MARGIN + width, right: row.right() - tools };
@@ -72,19 +63,30 @@ pub fn card_ui(
         ui.set_clip_rect(inner.intersect(ui.clip_rect()));
         view_ui(ui, view, context);
     });
-    let mut answer = Answer::default();
-    let mut left = row.left() + MARGIN;
+    let (mut chosen, mut left) = (None, row.left() + MARGIN);
+    // a title can be dragged with its view; the one in front is underlined if there are several
+    let sense = if context.filled { Sense::hover() } else { Sense::click_and_drag() };
     for title in titles {
+        let (in_front, name) = (title.view == view, title.view.name());
         let right = left + width_of(ui, title, &font);
         let place = row.with_min_x(left - 0.5 * MARGIN).with_max_x(right - 0.5 * MARGIN);
-        if title_ui(ui, place, title, (title.view == view, titles.len() > 1), &font, context).clicked() {
-            answer.chosen = Some(title.view);
+        let response = ui.interact(place, title.id, sense);
+        response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, in_front, name));
+        let colour = if in_front || response.hovered() { style.ink() } else { style.faint() };
+        let at = pos2(place.left() + 0.5 * MARGIN, place.center().y);
+        let written = ui.painter().text(at, Align2::LEFT_CENTER, name, font.clone(), colour);
+        if in_front && titles.len() > 1 {
+            let stroke = egui::Stroke::new(2.0, style.accent());
+            ui.painter().hline(written.x_range(), place.bottom() - 3.0, stroke);
+        }
+        if response.on_hover_text(title.view.about()).clicked() {
+            chosen = Some(title.view);
         }
         left = right;
     }
-    answer.fills = tools_ui(ui, rect, row, view, context);
+    let fills = tools_ui(ui, rect, row, view, context);
     ui.painter().rect_stroke(rect, CORNER, style.card_stroke(), egui::StrokeKind::Inside);
-    answer
+    (chosen, fills)
 }
 
 /// The largest text size at which the titles fit side by side into `room`.
@@ -97,34 +99,6 @@ fn title_font(ui: &Ui, titles: &[Title], room: f32) -> FontId {
 fn width_of(ui: &Ui, title: &Title, font: &FontId) -> f32 {
     let name = title.view.name().to_owned();
     ui.painter().layout_no_wrap(name, font.clone(), egui::Color32::PLACEHOLDER).size().x + 1.5 * MARGIN
-}
-
-/// A title, which can be dragged with its view; the one in front is underlined if there are `several`.
-fn title_ui(
-    ui: &Ui,
-    place: Rect,
-    title: &Title,
-    (in_front, several): (bool, bool),
-    font: &FontId,
-    context: &ViewContext<'_>,
-) -> Response {
-    let (style, name) = (context.style, title.view.name());
-    let sense = if context.filled { Sense::hover() } else { Sense::click_and_drag() };
-    let response = ui.interact(place, title.id, sense);
-    response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, in_front, name));
-    let colour = if in_front || response.hovered() { style.ink() } else { style.faint() };
-    let at = pos2(place.left() + 0.5 * MARGIN, place.center().y);
-    let written = ui.painter().text(at, Align2::LEFT_CENTER, name, font.clone(), colour);
-    if in_front && several {
-        let stroke = egui::Stroke::new(2.0, style.accent());
-        ui.painter().hline(written.x_range(), place.bottom() - 3.0, stroke);
-    }
-    response.on_hover_text(title.view.about())
-}
-
-fn tool_count(ui: &Ui, view: View, context: &ViewContext<'_>) -> usize {
-    let is_held = context.memory.are_axes_held(view).is_some();
-    1 + usize::from(has_figure(ui, context)) + usize::from(is_held)
 }
 
 /// Whether the card has the tool for a figure: one over the whole window, or in a compact one, has not.

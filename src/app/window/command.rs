@@ -9,7 +9,6 @@ use crate::scene::Layout;
 
 use super::wanted::Wanted;
 
-/// A command of the menus, keys and buttons.
 #[derive(Debug, Clone, PartialEq)]
 #[expect(missing_docs, reason = "the table says what each one does")]
 pub enum Command {
@@ -43,11 +42,9 @@ pub enum Command {
     KeepOwn,
     Show(View, bool),
     NextTab,
-    /// Fill the window with one view, or show all again.
     Fill,
     Cover,
     Cursors,
-    /// Hold the axes of the active view, or release them.
     HoldAxes,
     FreeAxes,
     /// Zoom the vertical or the horizontal axis of the active view, in or out.

@@ -7,7 +7,7 @@ use eframe::egui::{self, Button, ComboBox, Grid, Key, RichText, TextEdit, Ui};
 use crate::app::export::figure::{FigureOrder, Place, Subject, round_times};
 use crate::app::session::Session;
 use crate::app::task::Background;
-use crate::app::ui::widgets::{dialog, dialog_width, primary};
+use crate::app::ui::widgets::{dialog_ui, primary};
 use crate::app::views::{Memory, View, stretch};
 use crate::output::{Format, RunPanel, Sheet, SheetText};
 use crate::system::files;
@@ -20,7 +20,7 @@ use super::wanted::{Wanted, path_fault};
 const LEAST_SHARE: f64 = 0.05;
 
 /// The requested figure. Its layout is kept for the next one.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Figures {
     /// The view; `None` while no figure is requested.
     view: Option<View>,
@@ -42,32 +42,16 @@ pub struct Figures {
     pub(super) problem: Option<String>,
     /// Where the mass was when the dialog was opened, in m.
     x: f64,
-    /// Whether the path has had the keyboard focus.
     had_focus: bool,
     job: Background<(), WriteResult>,
 }
 
-impl Default for Figures {
-    fn default() -> Self {
-        Self {
-            view: None,
-            path: String::new(),
-            width: "85".to_owned(),
-            font: "8".to_owned(),
-            titled: true,
-            data: false,
-            times: <[String; 2]>::default(),
-            panels: [false; RunPanel::ALL.len()],
-            before: <[String; 2]>::default(),
-            problem: None,
-            x: 0.0,
-            had_focus: false,
-            job: Background::default(),
-        }
-    }
-}
-
 impl Figures {
+    /// No figure, and the layout with which the first one begins.
+    pub(super) fn new() -> Self {
+        Self { width: "85".to_owned(), font: "8".to_owned(), titled: true, ..Self::default() }
+    }
+
     pub(super) fn is_open(&self) -> bool {
         self.view.is_some()
     }
@@ -104,9 +88,8 @@ impl Figures {
     fn order(&self, view: View, session: &Session, memory: &Memory) -> Result<FigureOrder, String> {
         let path = PathBuf::from(self.path.trim());
         let subject = self.subject(view, session, memory)?;
-        let format = Format::of(&path).map_err(|_| {
-            "The name ends in .pdf, .svg or .png, which says what kind of file it is.".to_owned()
-        })?;
+        let endings = "The name ends in .pdf, .svg or .png, which says what kind of file it is.";
+        let format = Format::of(&path).map_err(|_| endings.to_owned())?;
         let Self { width, font, titled, .. } = self;
         let text = SheetText { width_mm: width, height_mm: None, font_pt: font, dpi: None, titled: *titled };
         let sheet = Sheet::read(&text, format == Format::Png).map_err(|error| {
@@ -139,13 +122,13 @@ impl Figures {
             View::Compare | View::Distance | View::BeforeNow => {
                 Err("There is no figure of this view: it shows several scenes, and a figure one.".to_owned())
             }
-            View::Accuracy => {
-                Err("There is no figure of Accuracy: its processor times differ from run to run.".to_owned())
+            _ => {
+                let why = match view {
+                    View::Accuracy => "its processor times differ from run to run",
+                    _ => "File, Save a picture of the window has it as it stands",
+                };
+                Err(format!("There is no figure of {}: {why}.", view.name()))
             }
-            _ => Err(format!(
-                "There is no figure of {}: File, Save a picture of the window has it as it stands.",
-                view.name()
-            )),
         }
     }
 
@@ -221,19 +204,9 @@ enum Action {
 }
 
 impl Figures {
-    fn ui(&mut self, ui: &Ui, view: View, session: &Session, memory: &Memory) -> Option<Action> {
-        let answer = dialog(ui.ctx(), "figure").show(ui.ctx(), |ui| {
-            ui.set_width(dialog_width(ui, 560.0));
-            ui.heading("Save a figure");
-            ui.add_space(4.0);
-            self.contents_ui(ui, view, session, memory)
-        });
-        let closed = answer.should_close().then_some(Action::Close);
-        answer.inner.or(closed)
-    }
-
     fn contents_ui(&mut self, ui: &mut Ui, view: View, session: &Session, memory: &Memory) -> Option<Action> {
         let mut action = None;
+        ui.set_min_width(ui.available_width());
         let entered = Grid::new("figure").num_columns(2).spacing([12.0, 6.0]).show(ui, |ui| {
             self.view_choice_ui(ui, view, session, memory);
             self.fields_ui(ui, view, &mut action)
@@ -355,7 +328,10 @@ impl Figures {
 impl Window {
     pub(super) fn figure_ui(&mut self, ui: &Ui) {
         let Some(view) = self.figures.view else { return };
-        let Some(action) = self.figures.ui(ui, view, &self.session, &self.memory) else { return };
+        let (action, is_closed) = dialog_ui(ui, ("figure", 560.0), ("Save a figure", 4.0), |ui| {
+            self.figures.contents_ui(ui, view, &self.session, &self.memory)
+        });
+        let Some(action) = action.or(is_closed.then_some(Action::Close)) else { return };
         // the dialog may have chosen another view
         let view = self.figures.view.unwrap_or(view);
         let order = self.figures.order(view, &self.session, &self.memory);
@@ -369,8 +345,7 @@ impl Window {
             }
             (_, Err(problem)) => self.figures.problem = Some(problem),
             (Action::Copy, Ok(order)) => {
-                ui.ctx().copy_text(order.command_line());
-                self.messages.notify("Copied: the command line of this figure");
+                self.messages.copy(ui.ctx(), order.command_line(), "the command line of this figure");
             }
             (Action::Save, Ok(order)) => {
                 self.figures.problem = None;

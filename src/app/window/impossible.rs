@@ -16,6 +16,9 @@ impl Window {
         }
         let (session, in_lesson) = (&self.session, self.lesson().is_some());
         let is_compact = self.tiling.room().is_compact();
+        let has_whole_map = session.map.map().is_some_and(Map::is_whole);
+        let has_stops = session.model().stop_positions() != (None, None);
+        let has_barrier = session.model().mechanism().landscape.barrier.is_some();
         let (is_so, why) = match command {
             C::Arrange(_) | C::ArrangeOwn | C::KeepOwn if in_lesson => {
                 (true, "A lesson has its own views: leave the lesson first")
@@ -35,29 +38,22 @@ impl Window {
             C::NextTab if self.filled.is_some() => (true, "One view fills the window: Z shows all of them"),
             C::NextTab => (!self.tiling.has_tabs(), "No two views share a place"),
             C::HoldAxes | C::FreeAxes | C::Zoom { .. } => {
-                (!self.active_view().has_axes(), "This view has no axes to hold or to zoom")
+                let has_none = self.memory.are_axes_held(self.active_view()).is_none();
+                (has_none, "This view has no axes to hold or to zoom")
             }
             C::Save => {
                 let is_saved = session.editor.path().is_some() && !session.editor.is_dirty();
                 (is_saved, "Nothing was changed since the file was opened or saved")
             }
             C::RemoveMeasured => (session.measured.over.is_none(), "No measured data is shown"),
-            C::SaveAs(Wanted::Map) => (
-                !session.map.map().is_some_and(Map::is_whole),
-                "There is no whole map yet: show the Map first",
-            ),
+            C::SaveAs(Wanted::Map) => (!has_whole_map, "There is no whole map yet: show the Map first"),
             C::Unpin(letter) => (session.pins.get(*letter).is_none(), "No motion is pinned by this letter"),
             C::CopyMapCommand => (session.map.map().is_none(), "There is no map yet: show the Map first"),
             C::PasteScene => (cfg!(target_arch = "wasm32"), "A page cannot paste by itself: press Ctrl+V"),
             C::Undo => (!session.editor.can_undo(), "There is nothing to undo"),
             C::Redo => (!session.editor.can_redo(), "There is nothing to redo"),
-            C::NextRelease => {
-                (session.model().stop_positions() == (None, None), "No release can come: there are no stops")
-            }
-            C::NextCrossing => (
-                session.model().mechanism().landscape.barrier.is_none(),
-                "No crossing can come: there is no barrier",
-            ),
+            C::NextRelease => (!has_stops, "No release can come: there are no stops"),
+            C::NextCrossing => (!has_barrier, "No crossing can come: there is no barrier"),
             C::Notes => (!in_lesson && session.scene().notes.trim().is_empty(), "This scene has no notes"),
             C::Toggle(Setting::Dark) => (self.settings.projector, "The projector is light: P leaves it"),
             _ => return None,

@@ -4,7 +4,7 @@ use eframe::egui::{self, Context, Grid, Key, KeyboardShortcut, Modifiers, Popup,
 
 use crate::app::session::player::SPEEDS;
 use crate::app::ui::settings::Setting;
-use crate::app::ui::widgets::{close_ui, dialog, dialog_width};
+use crate::app::ui::widgets::{close_ui, dialog_ui};
 
 use super::command::{Command, Listed, Part, parts};
 
@@ -96,10 +96,7 @@ fn group_ui(ui: &mut Ui, group: &str, projector: bool) {
 
 /// Shows the list of keys, opened at time `opened` in s. Returns `false` once it is to be closed.
 pub fn list_ui(ui: &Ui, opened: f64, projector: bool) -> bool {
-    let answer = dialog(ui.ctx(), "shortcuts").show(ui.ctx(), |ui| {
-        ui.set_max_width(dialog_width(ui, 960.0));
-        ui.heading("Keys");
-        ui.add_space(4.0);
+    let (is_read, is_closed) = dialog_ui(ui, ("shortcuts", 960.0), ("Keys", 4.0), |ui| {
         let room = (ui.ctx().content_rect().height() - 130.0).max(120.0);
         // the list is scrolled to its top whenever it is opened
         let list = egui::ScrollArea::vertical().id_salt(opened.to_bits());
@@ -118,5 +115,5 @@ pub fn list_ui(ui: &Ui, opened: f64, projector: bool) -> bool {
         close_ui(ui)
     });
     let toggled = ui.input_mut(|input| input.consume_key(Modifiers::NONE, Key::F1));
-    !(answer.inner || answer.should_close() || toggled)
+    !(is_read || is_closed || toggled)
 }

@@ -82,12 +82,8 @@ impl Tiling {
     /// The tiles of the custom arrangement as they were saved; in a compact window, the same views as tabs.
     pub fn custom(saved: &Tree<View>, room: Room) -> Self {
         let tree = if room.is_compact() {
-            let view = |(id, tile): (&TileId, &Tile<View>)| match tile {
-                Tile::Pane(view) => saved.is_visible(*id).then_some(*view),
-                Tile::Container(_) => None,
-            };
-            let shown: Vec<View> = saved.tiles.iter().filter_map(view).collect();
-            let views: Vec<View> = View::ALL.into_iter().filter(|view| shown.contains(view)).collect();
+            let is_shown = |view: &View| saved.tiles.find_pane(view).is_some_and(|id| saved.is_visible(id));
+            let views: Vec<View> = View::ALL.into_iter().filter(is_shown).collect();
             compact_tree(&views, room)
         } else {
             saved.clone()
@@ -141,11 +137,9 @@ impl Tiling {
         self.tree.simplify(&simplification());
         let tiles = &mut self.tree.tiles;
         let shown = tiles.find_pane(&other).filter(|id| tiles.is_visible(*id));
-        let place = shown.and_then(|id| tiles.parent_of(id));
-        if tiles.find_pane(&view).is_none()
-            && let Some(place) =
-                place.filter(|id| matches!(tiles.get_container(*id), Some(Container::Tabs(_))))
-        {
+        let is_tabs = |id: &TileId| matches!(tiles.get_container(*id), Some(Container::Tabs(_)));
+        let place = shown.and_then(|id| tiles.parent_of(id)).filter(is_tabs);
+        if let Some(place) = place.filter(|_| tiles.find_pane(&view).is_none()) {
             let id = tiles.insert_pane(view);
             if let Some(Tile::Container(container)) = tiles.get_mut(place) {
                 container.add_child(id);
@@ -159,8 +153,8 @@ impl Tiling {
         self.tab_after(None).is_some()
     }
 
-    /// The next tab and its group: that of `view`, or else the first group with several tabs.
-    fn tab_after(&self, view: Option<View>) -> Option<(TileId, TileId)> {
+    /// The next tab in the group of `view`, or else in the first group with several tabs.
+    fn tab_after(&self, view: Option<View>) -> Option<TileId> {
         let tiles = &self.tree.tiles;
         view.into_iter().chain(View::ALL).find_map(|view| {
             let place = tiles.parent_of(tiles.find_pane(&view)?)?;
@@ -168,13 +162,18 @@ impl Tiling {
             let shown: Vec<TileId> =
                 tabs.children.iter().copied().filter(|id| tiles.is_visible(*id)).collect();
             let active = shown.iter().position(|id| Some(*id) == tabs.active)?;
-            (shown.len() > 1).then(|| (place, shown[(active + 1) % shown.len()]))
+            (shown.len() > 1).then(|| shown[(active + 1) % shown.len()])
         })
     }
 
     /// Brings the next tab to the front, in the group of `view` or else in the first group with several tabs.
     pub fn next_tab(&mut self, view: Option<View>) {
-        if let Some((place, tab)) = self.tab_after(view)
+        self.bring_to_front(self.tab_after(view));
+    }
+
+    fn bring_to_front(&mut self, tab: Option<TileId>) {
+        if let Some(tab) = tab
+            && let Some(place) = self.tree.tiles.parent_of(tab)
             && let Some(Tile::Container(Container::Tabs(tabs))) = self.tree.tiles.get_mut(place)
         {
             tabs.set_active(tab);
@@ -204,12 +203,8 @@ impl Tiling {
         self.tree.simplify(&simplification());
         let mut behavior = Behavior { titles: self.titles(), context, fill, chosen: None };
         self.tree.ui(&mut behavior, ui);
-        if let Some(id) = behavior.chosen.and_then(|view| self.tree.tiles.find_pane(&view))
-            && let Some(place) = self.tree.tiles.parent_of(id)
-            && let Some(Tile::Container(Container::Tabs(tabs))) = self.tree.tiles.get_mut(place)
-        {
-            tabs.set_active(id);
-        }
+        let chosen = behavior.chosen;
+        self.bring_to_front(chosen.and_then(|view| self.tree.tiles.find_pane(&view)));
     }
 
     /// The titles in the card of each view that is in front.
@@ -247,9 +242,9 @@ impl egui_tiles::Behavior<View> for Behavior<'_, '_> {
 
     fn pane_ui(&mut self, ui: &mut Ui, id: TileId, view: &mut View) -> UiResponse {
         let titles = self.titles.get(&id).map_or(&[][..], Vec::as_slice);
-        let answer = card_ui(ui, ui.max_rect(), titles, *view, self.context);
-        self.chosen = answer.chosen.or(self.chosen);
-        if answer.fills {
+        let (chosen, fills) = card_ui(ui, titles, *view, self.context);
+        self.chosen = chosen.or(self.chosen);
+        if fills {
             *self.fill = Some(*view);
         }
         UiResponse::None

@@ -2,7 +2,7 @@
 
 use eframe::egui::Ui;
 
-use crate::app::ui::widgets::{dialog, dialog_width, primary};
+use crate::app::ui::widgets::{dialog_ui, focus_first, primary};
 
 /// What to do once the present scene may be closed.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -40,31 +40,20 @@ pub fn comments_ui(ui: &Ui, path: &str) -> Option<Answer> {
 
 /// A question with three answers. `second` is the label of the second one; Save has the focus first.
 fn choice_ui(ui: &Ui, id: &str, heading: &str, text: &str, second: &str) -> Option<Answer> {
-    let answer = dialog(ui.ctx(), id).show(ui.ctx(), |ui: &mut Ui| {
-        ui.set_max_width(dialog_width(ui, 460.0));
-        ui.heading(heading);
-        ui.add_space(6.0);
+    let (chosen, is_closed) = dialog_ui(ui, (id, 460.0), (heading, 6.0), |ui| {
         ui.label(text);
         ui.add_space(10.0);
         ui.horizontal(|ui| {
-            let mut chosen = None;
-            for (label, answer) in
-                [("Save", Answer::Save), (second, Answer::DontSave), ("Cancel", Answer::Cancel)]
-            {
-                let button = match answer {
-                    Answer::Save => ui.add(primary(ui, label)),
-                    _ => ui.button(label),
-                };
-                if answer == Answer::Save && ui.memory(|memory| memory.focused().is_none()) {
-                    button.request_focus();
-                }
-                if button.clicked() {
-                    chosen = Some(answer);
-                }
+            let save = ui.add(primary(ui, "Save"));
+            focus_first(ui, &save);
+            let (other, cancel) = (ui.button(second).clicked(), ui.button("Cancel").clicked());
+            match (save.clicked(), other, cancel) {
+                (true, ..) => Some(Answer::Save),
+                (_, true, _) => Some(Answer::DontSave),
+                (.., cancel) => cancel.then_some(Answer::Cancel),
             }
-            chosen
         })
         .inner
     });
-    answer.inner.or_else(|| answer.should_close().then_some(Answer::Cancel))
+    chosen.or(is_closed.then_some(Answer::Cancel))
 }

@@ -24,11 +24,6 @@ impl Place {
     fn rect(self) -> Rect {
         Rect::from_min_size(self.at.into(), self.size.into())
     }
-
-    /// Whether most of it lies on a screen of this size.
-    fn is_on(self, screen: Vec2) -> bool {
-        self.rect().is_finite() && Rect::from_min_size(Pos2::ZERO, screen).contains(self.rect().center())
-    }
 }
 
 #[derive(Debug, Default)]
@@ -49,7 +44,10 @@ impl Notes {
         let zoom = ctx.zoom_factor();
         let (window, screen) =
             ctx.input(|input| (input.viewport().outer_rect, input.viewport().monitor_size));
-        let is_there = |place: &Place| !self.is_old || screen.is_none_or(|screen| place.is_on(screen * zoom));
+        // most of it lies on a screen that there is
+        let screens = screen.map(|screen| Rect::from_min_size(Pos2::ZERO, screen * zoom));
+        let is_on = |place: &Place| screens.is_none_or(|screen| screen.contains(place.rect().center()));
+        let is_there = |place: &Place| !self.is_old || is_on(place);
         if let Some(place) = self.place.filter(is_there) {
             let rect = place.rect() / zoom;
             return (Some(rect.min), rect.size());
@@ -96,7 +94,6 @@ impl Window {
         shown.action.into_iter().for_each(|action| self.act_in_lesson(action));
     }
 
-    /// Where the lecturer's notes were last.
     pub fn notes_place(&self) -> Option<Place> {
         self.lessons.notes.place
     }

@@ -13,7 +13,7 @@ use crate::app::session::explore::WalkQuantity;
 use crate::app::session::lesson::{OpenLesson, Records, Turn, answers_text};
 use crate::app::session::{CannotRun, Session};
 use crate::app::ui::style::Style;
-use crate::app::ui::widgets::{close_ui, dialog, dialog_width, panel_frame, primary};
+use crate::app::ui::widgets::{bare, close_ui, dialog_ui, panel_frame, primary};
 use crate::app::views::{Cover, Memory, View};
 use crate::app::words::capital;
 use crate::app::words::fields::name_and_unit;
@@ -38,21 +38,14 @@ pub(super) struct Lessons {
     suspended: Option<Suspended>,
     pub records: Records,
     pub notes: Notes,
-    /// The lesson that was finished, until its last words are closed.
-    finished: Option<Finished>,
+    /// Title and goal of the lesson that was finished and the lesson that comes next, until that is read.
+    finished: Option<(String, String, Option<&'static str>)>,
     /// Whether the button that goes on is to have the keyboard focus.
     urged: bool,
     /// What the buttons beside the status line ask for in this frame.
     chosen: Option<LessonAction>,
     /// Rectangles of the controls in this frame.
     controls: Vec<(String, Rect)>,
-}
-
-/// What is said at the end of a lesson: its title, what was learnt, and the lesson that comes next.
-struct Finished {
-    title: String,
-    goal: String,
-    next: Option<&'static str>,
 }
 
 impl Lessons {
@@ -109,9 +102,8 @@ pub(super) fn is_lesson(spec: &str) -> bool {
 impl Window {
     /// Opens a built-in lesson by its name or number, or a file. If that fails, an alert says why.
     pub fn open_lesson(&mut self, spec: &str) {
-        match read(spec).and_then(|document| self.begin_lesson(document)) {
-            Ok(()) => {}
-            Err(error) => self.messages.alert(CANNOT_OPEN_LESSON, error.to_string()),
+        if let Err(error) = read(spec).and_then(|document| self.begin_lesson(document)) {
+            self.messages.alert(CANNOT_OPEN_LESSON, error.to_string());
         }
     }
 
@@ -253,12 +245,11 @@ impl Window {
             LessonAction::Back => lesson.go_back(),
             LessonAction::Next if lesson.is_covering() || lesson.is_last() => {
                 self.lessons.urged = true;
-                let text = match (lesson.is_covering(), lesson.following()) {
+                return self.messages.notify(match (lesson.is_covering(), lesson.following()) {
                     (true, _) => "Nobody has chosen yet: Reveal, or Enter, shows what it does".to_owned(),
                     (false, Some(name)) => format!("The last step: Enter goes on to {}", numbered(name)),
                     (false, None) => "The last step: Enter finishes the lesson".to_owned(),
-                };
-                return self.messages.notify(text);
+                });
             }
             LessonAction::Next => lesson.go_on(),
             LessonAction::Reveal => lesson.reveal(),
@@ -280,38 +271,32 @@ impl Window {
     fn finish_lesson(&mut self) {
         let Some(open) = &self.lessons.open else { return };
         let (title, goal) = (open.lesson().title.clone(), open.lesson().goal.clone());
-        self.lessons.finished = Some(Finished { title, goal, next: open.following() });
+        self.lessons.finished = Some((title, goal, open.following()));
         self.leave_lesson();
     }
 
     /// The last words of a lesson, and the question whether one that was begun before begins anew.
     pub(super) fn lesson_dialogs_ui(&mut self, ui: &Ui) {
-        if let Some(finished) = &self.lessons.finished {
-            let mut next = None;
-            let answer = dialog(ui.ctx(), "finished").show(ui.ctx(), |ui| {
-                ui.set_max_width(dialog_width(ui, 480.0));
-                ui.heading(format!("{}: done", finished.title));
-                ui.add_space(6.0);
-                ui.label(&finished.goal);
+        if let Some((title, goal, following)) = &self.lessons.finished {
+            let (mut next, heading) = (None, format!("{title}: done"));
+            let (is_read, is_closed) = dialog_ui(ui, ("finished", 480.0), (heading, 6.0), |ui| {
+                ui.label(goal);
                 ui.add_space(8.0);
                 ui.horizontal(|ui| {
                     let name = |name: &&str| format!("Go on to {}", numbered(name));
-                    next = finished.next.filter(|next| ui.add(primary(ui, &name(next))).clicked());
+                    next = following.filter(|next| ui.add(primary(ui, &name(next))).clicked());
                     close_ui(ui)
                 })
                 .inner
             });
-            if next.is_some() || answer.inner || answer.should_close() {
+            if next.is_some() || is_read || is_closed {
                 self.lessons.finished = None;
                 next.into_iter().for_each(|name| self.open_lesson(name));
             }
         }
         let Some(lesson) = self.lessons.open.as_mut().filter(|open| open.was_begun_before()) else { return };
-        let mut anew = false;
-        let answer = dialog(ui.ctx(), "begun before").show(ui.ctx(), |ui| {
-            ui.set_max_width(dialog_width(ui, 480.0));
-            ui.heading(&lesson.lesson().title);
-            ui.add_space(6.0);
+        let (mut anew, title) = (false, &lesson.lesson().title);
+        let (goes_on, is_closed) = dialog_ui(ui, ("begun before", 480.0), (title, 6.0), |ui| {
             let (step, count) = (lesson.number() + 1, lesson.lesson().steps.len());
             ui.label(format!("This lesson was begun before, and left at step {step} of {count}."));
             ui.add_space(8.0);
@@ -323,7 +308,7 @@ impl Window {
         });
         if anew {
             self.begin_lesson_anew();
-        } else if answer.inner || answer.should_close() {
+        } else if goes_on || is_closed {
             lesson.resume();
         }
     }
@@ -334,19 +319,13 @@ impl Window {
     }
 
     fn take_turn(&mut self, turn: Turn) {
-        let Some(lesson) = &self.lessons.open else { return };
-        match turn {
-            Turn::Stay | Turn::Same => {}
-            Turn::Show(scene, plays) => match self.session_on(lesson, *scene, plays) {
-                Ok(session) => {
-                    self.session = session;
-                    self.memory = Memory::default();
-                }
-                Err(error) => {
-                    self.messages.alert("This step of the lesson cannot be shown", error.to_string());
-                    self.leave_lesson();
-                }
-            },
+        let (Some(lesson), Turn::Show(scene, plays)) = (&self.lessons.open, turn) else { return };
+        match self.session_on(lesson, *scene, plays) {
+            Ok(session) => (self.session, self.memory) = (session, Memory::default()),
+            Err(error) => {
+                self.messages.alert("This step of the lesson cannot be shown", error.to_string());
+                self.leave_lesson();
+            }
         }
     }
 
@@ -413,8 +392,7 @@ impl Window {
         else {
             return;
         };
-        let row = Panel::top("controls of the lesson").frame(panel_frame(12, around));
-        row.show_separator_line(false).show(ui, |ui| {
+        bare(Panel::top("controls of the lesson"), 12, around).show(ui, |ui| {
             if lesson.is_covering() {
                 ui.disable();
             }
@@ -440,16 +418,12 @@ impl Window {
 
     pub(super) fn copy_answers(&mut self, ctx: &egui::Context) {
         match answers_text(&self.records()) {
-            Some(text) => {
-                ctx.copy_text(text);
-                self.messages.notify("Copied: your answers as text");
-            }
+            Some(text) => self.messages.copy(ctx, text, "your answers as text"),
             None => self.messages.notify("There are no answers yet"),
         }
     }
 }
 
-/// The first question in a text.
 fn question(text: &str) -> Option<String> {
     let text = plain(text);
     let end = text.find('?')? + 1;

@@ -7,7 +7,7 @@ use eframe::egui::{self, ComboBox, Grid, RichText, Ui};
 
 use crate::app::session::measured::{MeasuredRecord, file_name, sentence};
 use crate::app::task::{Background, Wake};
-use crate::app::ui::widgets::{dialog, dialog_width, primary};
+use crate::app::ui::widgets::{dialog_ui, focus_first, primary};
 use crate::scene::{ChosenColumn, MeasuredText, Quantity, Unit};
 
 /// Extensions of the files that are taken for measured data.
@@ -104,10 +104,9 @@ impl MeasuredDialog {
 
     pub(super) fn ui(&mut self, ui: &Ui, wake: &Wake) -> Option<MeasuredAnswer> {
         self.poll(wake);
-        let answer = dialog(ui.ctx(), "measured").show(ui.ctx(), |ui| {
-            ui.set_width(dialog_width(ui, WIDTH));
-            ui.heading(format!("Measured data: {}", self.name));
-            ui.add_space(4.0);
+        let heading = format!("Measured data: {}", self.name);
+        let (answer, is_closed) = dialog_ui(ui, ("measured", WIDTH), (heading, 4.0), |ui| {
+            ui.set_min_width(ui.available_width());
             if let Some(Ok(text)) = self.text.answer().cloned() {
                 self.columns_ui(ui, &text);
             }
@@ -115,8 +114,7 @@ impl MeasuredDialog {
             ui.add_space(8.0);
             self.buttons_ui(ui)
         });
-        let closed = answer.should_close().then_some(MeasuredAnswer::Cancelled);
-        answer.inner.or(closed)
+        answer.or(is_closed.then_some(MeasuredAnswer::Cancelled))
     }
 
     fn columns_ui(&mut self, ui: &mut Ui, text: &MeasuredText) {
@@ -128,16 +126,12 @@ impl MeasuredDialog {
                 let label = ui.label(name);
                 let mut wanted = chosen[row];
                 let title = |at: usize| text.names.get(at).map_or("", String::as_str);
-                let column = ComboBox::from_id_salt((name, "column"))
-                    .width(COLUMN)
-                    .selected_text(title(at))
-                    .truncate();
-                let shown = column.show_ui(ui, |ui| {
-                    for (at, name) in text.names.iter().enumerate() {
-                        let is_chosen = at == chosen[row].0;
-                        if ui.selectable_label(is_chosen, name).clicked() {
+                let column = ComboBox::from_id_salt((name, "column")).width(COLUMN).truncate();
+                let shown = column.selected_text(title(at)).show_ui(ui, |ui| {
+                    for (i, name) in text.names.iter().enumerate() {
+                        if ui.selectable_label(i == at, name).clicked() {
                             let unit = Unit::of_name(name).filter(|unit| quantities.contains(&unit.quantity));
-                            wanted = (at, unit);
+                            wanted = (i, unit);
                         }
                     }
                 });
@@ -154,19 +148,16 @@ impl MeasuredDialog {
                         }
                     }
                 });
-                let hover = "The unit of its numbers.";
                 let unit_name = format!("unit of {name}");
                 shown.response.widget_info(|| {
                     let mut info = egui::WidgetInfo::labeled(egui::Role::ComboBox, true, &unit_name);
                     info.current_text_value = Some(words.to_owned());
                     info
                 });
-                shown.response.on_hover_text(hover);
-                let how = match (chosen[row] == guess[row], unit) {
-                    (_, None) => String::new(),
-                    (true, Some(unit)) => format!("{}, by its name", quantity_name(row, unit.quantity)),
-                    (false, Some(unit)) => quantity_name(row, unit.quantity).to_owned(),
-                };
+                shown.response.on_hover_text("The unit of its numbers.");
+                let by_name = if chosen[row] == guess[row] { ", by its name" } else { "" };
+                let quantity = unit.map(|unit| quantity_name(row, unit.quantity));
+                let how = quantity.map_or_else(String::new, |quantity| format!("{quantity}{by_name}"));
                 ui.label(RichText::new(how).small());
                 ui.end_row();
                 if wanted != chosen[row] {
@@ -192,8 +183,8 @@ impl MeasuredDialog {
         let record = self.known().and_then(Result::ok);
         ui.horizontal(|ui| {
             let lay = ui.add_enabled(record.is_some(), primary(ui, "Lay it over"));
-            if record.is_some() && ui.memory(|memory| memory.focused().is_none()) {
-                lay.request_focus();
+            if record.is_some() {
+                focus_first(ui, &lay);
             }
             let accelerates = record.is_some_and(|record| record.values.quantity == Quantity::Acceleration);
             let hover = "The excitation of the scene becomes this record, linear between its samples, from \

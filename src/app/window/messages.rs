@@ -3,8 +3,7 @@
 use eframe::egui::{self, Align2, Area, Id, Order, Ui, accesskit::Live, vec2};
 
 use crate::app::session::player::Reached;
-use crate::app::ui::style::BODY;
-use crate::app::ui::widgets::{close_ui, dialog, dialog_width, prose_ui};
+use crate::app::ui::widgets::{close_ui, dialog_ui, dialog_width, prose_ui};
 
 pub(super) const CANNOT_OPEN: &str = "This scene cannot be opened";
 
@@ -34,6 +33,12 @@ impl Messages {
         self.alert = Some((title.into(), text.into()));
     }
 
+    /// Copies a text to the clipboard and says `what` it is.
+    pub fn copy(&mut self, ctx: &egui::Context, text: String, what: &str) {
+        ctx.copy_text(text);
+        self.notify(format!("Copied: {what}"));
+    }
+
     pub fn notify(&mut self, text: impl Into<String>) {
         self.notice = Some(Notice { text: text.into(), since: None });
     }
@@ -56,12 +61,7 @@ impl Messages {
         }
     }
 
-    pub fn ui(&mut self, ui: &Ui) {
-        self.alert_ui(ui);
-        self.notice_ui(ui);
-    }
-
-    fn notice_ui(&mut self, ui: &Ui) {
+    pub fn notice_ui(&mut self, ui: &Ui) {
         let Some(notice) = &mut self.notice else { return };
         let now = ui.input(|input| input.time);
         let left = *notice.since.get_or_insert(now) + SHOWN_FOR - now;
@@ -82,18 +82,15 @@ impl Messages {
         }
     }
 
-    fn alert_ui(&mut self, ui: &Ui) {
+    pub fn alert_ui(&mut self, ui: &Ui) {
         let Some((title, text)) = &self.alert else { return };
-        let answer = dialog(ui.ctx(), "message").show(ui.ctx(), |ui| {
-            ui.set_max_width(dialog_width(ui, 560.0));
-            ui.heading(title);
-            ui.add_space(6.0);
+        let (is_read, is_closed) = dialog_ui(ui, ("message", 560.0), (title, 6.0), |ui| {
             let room = (ui.ctx().content_rect().height() - 160.0).clamp(80.0, 420.0);
-            egui::ScrollArea::vertical().max_height(room).show(ui, |ui| prose_ui(ui, text, BODY));
+            egui::ScrollArea::vertical().max_height(room).show(ui, |ui| prose_ui(ui, text));
             ui.add_space(8.0);
             close_ui(ui)
         });
-        if answer.inner || answer.should_close() {
+        if is_read || is_closed {
             self.alert = None;
         }
     }

@@ -4,6 +4,7 @@
 
 use std::sync::Arc;
 
+use eframe::CreationContext;
 use eframe::egui::{self, CentralPanel, Panel, RichText, Ui};
 
 use crate::app::panels::hint::guide_ui;
@@ -12,8 +13,9 @@ use crate::app::panels::{controls, notes, transport};
 use crate::app::session::CannotRun;
 use crate::app::session::lesson::Records;
 use crate::app::ui::settings::Settings;
-use crate::app::ui::style::{self, CONTROL, GAP, Style};
-use crate::app::ui::widgets::panel_frame;
+pub use crate::app::ui::style::install as prepare;
+use crate::app::ui::style::{CONTROL, GAP, Style};
+use crate::app::ui::widgets::{bare, panel_frame};
 use crate::app::views::{Drawn, ViewContext};
 use crate::app::words::lesson::numbered;
 use crate::scene::lesson::LESSONS;
@@ -75,7 +77,7 @@ impl Window {
         let is_close = |a: f32, b: f32| (a - b).abs() < 0.01 * b;
         if !zoom.zip(self.zoom).map_or(zoom == self.zoom, |(zoom, applied)| is_close(zoom, applied)) {
             self.zoom = zoom;
-            ctx.set_zoom_factor(self.natural_zoom());
+            ctx.set_zoom_factor(zoom.unwrap_or(1.0));
         }
         self.window_size.follow(ctx);
         self.take_choice(ctx);
@@ -127,8 +129,8 @@ impl Window {
             self.session.follow_best();
             is_over_views = compact && !self.hint.has_line;
             if !is_over_views {
-                let panel = Panel::top("guide").frame(panel_frame(12, 0)).exact_size(GUIDE);
-                let line = panel.show_separator_line(false).show(ui, |ui| self.guide_line_ui(ui, &style));
+                let panel = bare(Panel::top("guide"), 12, 0).exact_size(GUIDE);
+                let line = panel.show(ui, |ui| self.guide_line_ui(ui, &style));
                 commands.extend(line.inner);
             }
         }
@@ -172,7 +174,7 @@ impl Window {
     /// that were chosen.
     fn bars_ui(&mut self, ui: &mut Ui, style: &Style, compact: bool) -> Vec<Command> {
         let around = if compact { AROUND_BAR.1 } else { AROUND_BAR.0 };
-        let (line, covered) = (panel_frame(12, around), self.motion_is_covered());
+        let covered = self.motion_is_covered();
         let chosen = match self.filled {
             None => self.head_ui(ui, style, compact),
             Some(_) if covered => Vec::new(),
@@ -181,8 +183,8 @@ impl Window {
                 Vec::new()
             }
         };
-        let bar = Panel::bottom("transport").frame(line).show_separator_line(false);
-        bar.exact_size(if compact { TRANSPORT.1 } else { TRANSPORT.0 }).show(ui, |ui| {
+        let height = if compact { TRANSPORT.1 } else { TRANSPORT.0 };
+        bare(Panel::bottom("transport"), 12, around).exact_size(height).show(ui, |ui| {
             if self.lesson_covers() {
                 ui.disable();
             }
@@ -197,14 +199,12 @@ impl Window {
     /// commands that were chosen.
     fn head_ui(&mut self, ui: &mut Ui, style: &Style, compact: bool) -> Vec<Command> {
         let (height, around) = if compact { (MENU.1, 1) } else { (MENU.0, 2) };
-        let bar = Panel::top("menu").frame(panel_frame(8, around)).exact_size(height);
-        let bar = bar
-            .show_separator_line(false)
-            .show(ui, |ui| menu::Menus { window: self, chosen: Vec::new() }.ui(ui));
+        let bar = bare(Panel::top("menu"), 8, around).exact_size(height);
+        let bar = bar.show(ui, |ui| menu::Menus { window: self, chosen: Vec::new() }.ui(ui));
         let covered = self.motion_is_covered();
-        let status = Panel::top("status").frame(panel_frame(12, 2)).exact_size(status_line::height(ui));
+        let status = bare(Panel::top("status"), 12, 2).exact_size(status_line::height(ui));
         let leads = compact && has_column(ui) && self.lessons.open.is_some();
-        status.show_separator_line(false).show(ui, |ui| {
+        status.show(ui, |ui| {
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 if leads {
                     self.lesson_navigation_ui(ui, style);
@@ -220,38 +220,30 @@ impl Window {
 
     /// The controls: in a compact window a row, else a column with the notes. Returns the chosen command.
     fn controls_ui(&mut self, ui: &mut Ui, compact: bool) -> Option<Command> {
-        if compact && self.tiling.room() == Room::Narrow {
-            let rows = panel_frame(12, AROUND_BAR.1);
-            Panel::top("controls rows").frame(rows).show_separator_line(false).show(ui, |ui| {
-                controls::rows_ui(ui, &mut self.session, &mut self.more);
+        if compact {
+            let is_narrow = self.tiling.room() == Room::Narrow;
+            let row = Panel::top(if is_narrow { "controls rows" } else { "controls row" });
+            bare(row, 12, AROUND_BAR.1).show(ui, |ui| {
+                if is_narrow {
+                    return controls::rows_ui(ui, &mut self.session, &mut self.more);
+                }
+                ui.set_height(CONTROL);
+                controls::row_ui(ui, &mut self.session, &mut self.more);
             });
             if self.more {
-                let below = Panel::bottom("more").frame(rows).show_separator_line(false);
-                below.resizable(false).exact_size(MORE).show(ui, |ui| {
-                    let (session, width) = (&mut self.session, ui.available_width() - 100.0);
+                let panel = if is_narrow { Panel::bottom("more") } else { Panel::right("more") };
+                let panel = bare(panel, 12, AROUND_BAR.1).resizable(false).exact_size(MORE);
+                panel.show(ui, |ui| {
+                    let width = if is_narrow { ui.available_width() - 100.0 } else { 150.0 };
+                    let session = &mut self.session;
                     egui::ScrollArea::vertical().show(ui, |ui| controls::beside_ui(ui, session, width));
                 });
             }
             return None;
         }
-        if compact {
-            let line = panel_frame(12, AROUND_BAR.1);
-            Panel::top("controls row").frame(line).show_separator_line(false).show(ui, |ui| {
-                ui.set_height(CONTROL);
-                controls::row_ui(ui, &mut self.session, &mut self.more);
-            });
-            if self.more {
-                let column = Panel::right("more").frame(line).show_separator_line(false);
-                column.resizable(false).exact_size(MORE).show(ui, |ui| {
-                    let session = &mut self.session;
-                    egui::ScrollArea::vertical().show(ui, |ui| controls::beside_ui(ui, session, 150.0));
-                });
-            }
-            return None;
-        }
         let width = if ui.ctx().content_rect().width() > 1600.0 { 300.0 } else { 250.0 };
-        let column = Panel::left("controls").frame(panel_frame(12, 10)).resizable(false).exact_size(width);
-        let column = column.show_separator_line(false).show(ui, |ui| {
+        let column = bare(Panel::left("controls"), 12, 10).resizable(false).exact_size(width);
+        let column = column.show(ui, |ui| {
             let bottom = ui.max_rect().bottom();
             let contents = egui::ScrollArea::vertical().show(ui, |ui| {
                 controls::column_ui(ui, &mut self.session, &mut self.more);
@@ -308,7 +300,8 @@ impl Window {
         self.glossary = self.glossary && notes::glossary_ui(ui);
         let projector = self.settings.projector;
         self.shortcuts = self.shortcuts.filter(|opened| keys::list_ui(ui, *opened, projector));
-        self.messages.ui(ui);
+        self.messages.alert_ui(ui);
+        self.messages.notice_ui(ui);
     }
 
     fn views_ui(&mut self, ui: &mut Ui, style: Style) {
@@ -339,7 +332,7 @@ impl Window {
             return;
         };
         let title = Title { view, id: egui::Id::unique("title of the window") };
-        if card_ui(ui, ui.max_rect(), &[title], view, &mut context).fills {
+        if card_ui(ui, &[title], view, &mut context).1 {
             self.filled = None;
         }
     }
@@ -393,11 +386,7 @@ impl eframe::App for Window {
 
 /// The window on a scene, with what was kept from the last time; the first time it is `dark` or light. If the
 /// scene cannot be run, the window says why and opens on the first preset.
-pub fn begin(
-    creation: &eframe::CreationContext<'_>,
-    spec: Option<&str>,
-    dark: bool,
-) -> Result<Window, CannotRun> {
+pub fn begin(creation: &CreationContext<'_>, spec: Option<&str>, dark: bool) -> Result<Window, CannotRun> {
     prepare(&creation.egui_ctx);
     let kept = creation.storage.and_then(|storage| eframe::get_value(storage, eframe::APP_KEY));
     let settings = kept.unwrap_or(Settings { dark, ..Settings::default() });
@@ -408,11 +397,6 @@ pub fn begin(
     }
     window.remember_file();
     Ok(window)
-}
-
-/// Installs fonts and spacing; to be called once for a context.
-pub fn prepare(ctx: &egui::Context) {
-    style::install(ctx);
 }
 
 /// Input that follows the release of a pointer button, deferred to the next frame.

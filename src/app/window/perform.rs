@@ -85,9 +85,8 @@ impl Window {
                 end => self.messages.notify(format!("The run ends at {end:.2} s, which is behind")),
             },
             Command::Speed(index) => {
-                if let Some(speed) = SPEEDS.get(index) {
-                    self.session.player.speed = speed.0;
-                }
+                let speed = SPEEDS.get(index).map(|speed| speed.0);
+                self.session.player.speed = speed.unwrap_or(self.session.player.speed);
             }
             Command::Arrange(layout) => {
                 self.show_arrangement(Arrangement::Layout(layout));
@@ -96,15 +95,7 @@ impl Window {
                     self.tiling.show_beside(View::Spectrum, View::UpAndDown);
                 }
             }
-            Command::ArrangeOwn => {
-                // the custom arrangement begins as a copy of the present tiles
-                if self.custom.is_none() {
-                    self.custom = self.tiling.tree_to_save().cloned();
-                    let text = "Your own arrangement begins as these views: drag their titles to change it";
-                    self.messages.notify(text);
-                }
-                self.show_arrangement(Arrangement::Custom);
-            }
+            Command::ArrangeOwn => self.show_own_arrangement(),
             Command::KeepOwn => {
                 self.custom = self.tiling.tree_to_save().cloned().or(self.custom.take());
                 self.arrangement = Arrangement::Custom;
@@ -122,25 +113,20 @@ impl Window {
             Command::Cursors => self.switch_cursors(),
             Command::HoldAxes => self.hold_axes(),
             Command::FreeAxes => self.memory.free_axes(self.active_view()),
-            Command::Zoom { upwards, closer } => {
-                self.memory.zoom_by_key(self.active_view(), upwards, closer);
-            }
+            Command::Zoom { upwards, closer } => self.memory.zoom_by_key(self.active_view(), upwards, closer),
             Command::Fill => {
                 let wanted = self.memory.hovered.unwrap_or(View::Well);
-                self.filled = if self.filled.is_some() { None } else { Some(wanted) };
+                self.filled = self.filled.is_none().then_some(wanted);
             }
             Command::Cover => self.covered = !self.covered,
             Command::Magnify(1) => gui_zoom::zoom_in(ctx),
             Command::Magnify(-1) => gui_zoom::zoom_out(ctx),
-            Command::Magnify(_) => ctx.set_zoom_factor(self.natural_zoom()),
+            Command::Magnify(_) => ctx.set_zoom_factor(self.zoom.unwrap_or(1.0)),
             Command::FullScreen => {
                 let full = ctx.input(|input| input.viewport().fullscreen.unwrap_or(false));
                 ctx.send_viewport_cmd(egui::ViewportCommand::Fullscreen(!full));
             }
-            Command::Toggle(setting) => {
-                let value = self.settings.of(setting);
-                *value = !*value;
-            }
+            Command::Toggle(setting) => *self.settings.of(setting) ^= true,
             Command::Grab => self.memory.grab = true,
             Command::Pin(kind) => self.pin(kind),
             Command::Unpin(letter) => self.session.pins.unpin(letter),
@@ -165,25 +151,22 @@ impl Window {
     fn copy_link(&mut self, ctx: &egui::Context) {
         match self.session.editor.document().link() {
             Ok(link) => {
-                ctx.copy_text(page_address() + &link);
-                self.messages.notify("Copied: a link that opens this scene");
+                self.messages.copy(ctx, page_address() + &link, "a link that opens this scene");
             }
             Err(error) => self.messages.alert("This scene has no link", error.to_string()),
         }
     }
 
     fn copy_command(&mut self, ctx: &egui::Context) {
-        let Some((line, runs)) = export::command_line(&self.session) else { return self.alert_unnamed() };
-        ctx.copy_text(line);
-        self.messages.notify(format!("Copied: the command line of {runs}"));
+        match export::command_line(&self.session) {
+            Some((line, runs)) => self.messages.copy(ctx, line, &format!("the command line of {runs}")),
+            None => self.alert_unnamed(),
+        }
     }
 
     fn copy_map_command(&mut self, ctx: &egui::Context) {
         match export::map_command_line(&self.session) {
-            Some(line) => {
-                ctx.copy_text(line);
-                self.messages.notify("Copied: the command line of the map");
-            }
+            Some(line) => self.messages.copy(ctx, line, "the command line of the map"),
             None if self.session.map.map().is_some() => self.alert_unnamed(),
             None => {}
         }
@@ -211,6 +194,16 @@ impl Window {
         self.arrange(self.tiling.room());
     }
 
+    /// Shows the arrangement that the user has made, which begins as a copy of the present tiles.
+    fn show_own_arrangement(&mut self) {
+        if self.custom.is_none() {
+            self.custom = self.tiling.tree_to_save().cloned();
+            let text = "Your own arrangement begins as these views: drag their titles to change it";
+            self.messages.notify(text);
+        }
+        self.show_arrangement(Arrangement::Custom);
+    }
+
     /// Shows or hides the cursors over time, with a view over time if none is shown.
     fn switch_cursors(&mut self) {
         self.memory.switch_cursors(&self.session);
@@ -222,13 +215,9 @@ impl Window {
 
     fn hold_axes(&mut self) {
         let view = self.active_view();
-        if view.has_axes() {
-            let what = match self.memory.hold_axes(view) {
-                true => "held: L again lets go of them",
-                false => "by themselves again",
-            };
-            self.messages.notify(format!("{}: its axes are {what}", view.name()));
-        }
+        let is_held = self.memory.hold_axes(view);
+        let what = if is_held { "held: L again lets go of them" } else { "by themselves again" };
+        self.messages.notify(format!("{}: its axes are {what}", view.name()));
     }
 
     /// The view that keys act on: it fills the window, is under the pointer or has the focus.
@@ -263,8 +252,8 @@ impl Window {
     fn go_to_first(&mut self, kind: EventKind) {
         let model = self.session.model();
         let ahead = model.duration().max(TIMES_AHEAD * model.characteristic_time());
-        let until = self.session.player.watch().time() + ahead;
-        self.session.player.go_to(Goal::First(kind, until));
+        let player = &mut self.session.player;
+        player.go_to(Goal::First(kind, player.watch().time() + ahead));
     }
 
     fn show_notes(&mut self) {

@@ -89,19 +89,18 @@ impl Window {
     /// A window on a scene file, a built-in scene or a lesson file, or with a file of measured data over the
     /// first preset. Without `spec` it opens the first preset.
     pub fn open(spec: Option<&str>, settings: Settings, wake: Wake) -> Result<Self, CannotRun> {
+        let lesson = spec.filter(|spec| lessons::is_lesson(spec)).map(lessons::read).transpose()?;
+        let measured = spec.map(Path::new).filter(|path| lesson.is_none() && is_measured(path));
         let first = PRESETS.first().map_or("paper", |preset| preset.name);
-        if let Some(spec) = spec.filter(|spec| lessons::is_lesson(spec)) {
-            let lesson = lessons::read(spec)?;
-            let mut window = Self::with_editor(Editor::open(first)?, settings, wake)?;
+        let scene = spec.filter(|_| lesson.is_none() && measured.is_none()).unwrap_or(first);
+        let mut window = Self::with_editor(Editor::open(scene)?, settings, wake)?;
+        if let Some(lesson) = lesson {
             window.begin_lesson(lesson)?;
-            return Ok(window);
         }
-        if let Some(path) = spec.map(Path::new).filter(|path| is_measured(path)) {
-            let mut window = Self::with_editor(Editor::open(first)?, settings, wake)?;
+        if let Some(path) = measured {
             window.open_measured(path);
-            return Ok(window);
         }
-        Self::with_editor(Editor::open(spec.unwrap_or(first))?, settings, wake)
+        Ok(window)
     }
 
     /// Like [`Self::open`]; if that fails, a window on the first preset with an alert that says why.
@@ -145,7 +144,7 @@ impl Window {
             file_dialog: Background::default(),
             opens_dialogs: true,
             path_dialog: None,
-            figures: Figures::default(),
+            figures: Figures::new(),
             columns: None,
             deferred: DeferredInput::default(),
             lessons: Lessons::default(),
@@ -172,7 +171,6 @@ impl Window {
         self.recent.truncate(MOST_RECENT);
     }
 
-    /// The title of the window.
     pub fn title(&self) -> &str {
         &self.shown_title
     }
@@ -184,12 +182,6 @@ impl Window {
             false => self.announcer.spoken().map_or("", |(_, sentence)| sentence),
         };
         self.message().or_else(|| self.notice()).unwrap_or_else(sentence)
-    }
-
-
-    /// The zoom to which Ctrl+0 returns.
-    pub(super) fn natural_zoom(&self) -> f32 {
-        self.zoom.unwrap_or(1.0)
     }
 
     pub fn message(&self) -> Option<&str> {

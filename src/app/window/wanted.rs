@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use eframe::egui::{Key, RichText, TextEdit, Ui};
 
-use crate::app::ui::widgets::{dialog, dialog_width, primary};
+use crate::app::ui::widgets::{dialog_ui, primary};
 use crate::system::files;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -84,7 +84,6 @@ pub(super) fn path_fault(path: &Path) -> Option<&'static str> {
 pub(super) struct PathDialog {
     pub wanted: Wanted,
     pub path: String,
-    /// Whether the field has had the keyboard focus.
     had_focus: bool,
 }
 
@@ -112,18 +111,16 @@ impl PathDialog {
     }
 
     pub fn ui(&mut self, ui: &Ui) -> Option<PathAnswer> {
-        let answer = dialog(ui.ctx(), "path").show(ui.ctx(), |ui| {
-            ui.set_width(dialog_width(ui, 520.0));
-            let (question, ..) = self.wanted.words();
-            ui.heading(question);
+        let (question, ..) = self.wanted.words();
+        let (answer, is_closed) = dialog_ui(ui, ("path", 520.0), (question, 0.0), |ui| {
+            ui.set_min_width(ui.available_width());
             ui.label(format!("{NO_DIALOG}."));
             ui.add_space(4.0);
             let name = ui.label("path of the file");
             let field = TextEdit::singleline(&mut self.path).desired_width(f32::INFINITY);
             let field = ui.add(field).labelled_by(name.id);
-            if !self.had_focus {
+            if !std::mem::replace(&mut self.had_focus, true) {
                 field.request_focus();
-                self.had_focus = true;
             }
             let (taken, remark) = self.remark();
             ui.label(RichText::new(remark.unwrap_or(" ")).small());
@@ -142,7 +139,6 @@ impl PathDialog {
             })
             .inner
         });
-        let closed = answer.should_close().then_some(PathAnswer::Cancelled);
-        answer.inner.or(closed)
+        answer.or(is_closed.then_some(PathAnswer::Cancelled))
     }
 }

@@ -36,10 +36,7 @@ impl Window {
 
     pub(super) fn copy_scene(&mut self, ctx: &egui::Context) {
         match self.session.editor.text() {
-            Ok(text) => {
-                ctx.copy_text(text);
-                self.messages.notify("Copied: the scene as text");
-            }
+            Ok(text) => self.messages.copy(ctx, text, "the scene as text"),
             Err(error) => self.messages.alert("The scene was not copied", error),
         }
     }

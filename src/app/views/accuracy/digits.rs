@@ -1,8 +1,9 @@
 //! Table of runs at several tolerances, with a plot of error over processor time where there is room.
 
-use eframe::egui::{self, Grid, RichText, Ui, WidgetInfo};
+use eframe::egui::{self, Grid, RichText, Ui};
 
 use crate::app::ui::style::Style;
+use crate::app::ui::widgets::tell;
 use crate::numeric::elementary;
 use crate::output::{Chart, Marks, Panel, PlotAxis, Role};
 use crate::study::Table;
@@ -12,7 +13,7 @@ use crate::study::accuracy::scene::{
 
 use super::super::ViewContext;
 use super::super::pane::fresh_pane_ui;
-use super::waiting::waiting_ui;
+use super::waiting_ui;
 
 /// Smallest height in points of the plot of error over processor time.
 const PICTURE: f32 = 110.0;
@@ -44,10 +45,8 @@ pub fn digits_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         }
         let rest = ui.available_rect_before_wrap();
         if rest.height() > PICTURE && rest.width() > 200.0 {
-            let chart = chart(&known, tolerance, stepped.as_ref());
-            let pane = fresh_pane_ui(ui, &style, rest, chart);
-            pane.response
-                .widget_info(|| WidgetInfo::labeled(egui::Role::Image, true, "error over processor time"));
+            let pane = fresh_pane_ui(ui, &style, rest, chart(&known, tolerance, stepped.as_ref()));
+            tell(&pane.response, egui::Role::Image, "error over processor time");
         }
     });
 }
@@ -55,13 +54,11 @@ pub fn digits_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
 fn table_ui(ui: &mut Ui, style: &Style, known: &Tolerances, tolerance: f64) {
     let column = (ui.available_width() / 4.0 - 10.0).clamp(40.0, 130.0);
     Grid::new("digits").num_columns(4).min_col_width(column).spacing([8.0, 4.0]).show(ui, |ui| {
+        let of_error = "How far the displacement is off at most, beside a run with a hundredth of the \
+                        smallest tolerance.";
         let heads = [
             ("tolerance", "Error allowed in a step, in parts of the scene's length and speed."),
-            (
-                "error",
-                "How far the displacement is off at most, beside a run with a hundredth of the smallest \
-                 tolerance.",
-            ),
+            ("error", of_error),
             ("time", "Processor time of the whole run."),
             ("steps", "Steps of the whole run."),
         ];
@@ -71,15 +68,16 @@ fn table_ui(ui: &mut Ui, style: &Style, known: &Tolerances, tolerance: f64) {
         ui.end_row();
         for run in &known.runs {
             let is_of_scene = run.tolerance == tolerance;
-            let text = |text: String| {
-                let text = RichText::new(text);
-                if is_of_scene { text.heading() } else { text }
+            let text = |text: String| match is_of_scene {
+                true => RichText::new(text).heading(),
+                false => RichText::new(text),
             };
             let name = ui.label(text(format!("{:e}", run.tolerance)));
             if is_of_scene {
                 name.on_hover_text("The tolerance of this scene: under More, Advanced.");
             }
-            ui.label(text(error(run, known))).on_hover_text(error_details(run, known));
+            let (error, details) = error(run, known);
+            ui.label(text(error)).on_hover_text(details);
             ui.label(text(duration(run.statistics.cpu_s)));
             ui.label(text(format!("{}", run.statistics.steps)));
             ui.end_row();
@@ -87,23 +85,20 @@ fn table_ui(ui: &mut Ui, style: &Style, known: &Tolerances, tolerance: f64) {
     });
 }
 
-/// Text on the error: the time up to which the path is trusted if it diverges, else the largest error.
-fn error(run: &AtTolerance, known: &Tolerances) -> String {
-    match run.trusted {
-        Some(t) => format!("trust to {}", moment(t)),
-        None if run.outcome.ended_at().is_some() => "ended early".to_owned(),
+/// The time up to which the path is trusted if it diverges, else the largest error; and its details.
+fn error(run: &AtTolerance, known: &Tolerances) -> (String, String) {
+    let mm = length_mm(run.error);
+    if let Some(t) = run.trusted.map(moment) {
+        return (
+            format!("trust to {t}"),
+            format!("Off by 1 % of the travel at {t}, and by {mm} mm later on."),
+        );
+    }
+    let error = match run.outcome.ended_at() {
+        Some(_) => "ended early".to_owned(),
         None => small_length(run.error, known.travel).replace("about ", ""),
-    }
-}
-
-/// Details of the error, for the hover text.
-fn error_details(run: &AtTolerance, known: &Tolerances) -> String {
-    match run.trusted {
-        Some(t) => {
-            format!("Off by 1 % of the travel at {}, and by {} mm later on.", moment(t), length_mm(run.error))
-        }
-        None => format!("Off by {} mm at most, in {}.", length_mm(run.error), duration(known.span)),
-    }
+    };
+    (error, format!("Off by {mm} mm at most, in {}.", duration(known.span)))
 }
 
 /// Share of the travel at which a zero error is drawn: the digits of a double.
@@ -121,12 +116,12 @@ fn chart(known: &Tolerances, tolerance: f64, stepped: Option<&StepSize>) -> Char
     let across = PlotAxis::decades(all().map(|point| point.0), "processor time (s)");
     let mut panel = Panel::new(across, PlotAxis::decades(all().map(|point| point.1), "error (mm)"));
     let places: Vec<(f64, f64)> = runs.iter().map(|point| logs(*point)).collect();
-    let words = known.runs.iter().zip(&places).map(|(run, at)| (*at, format!("{:e}", run.tolerance)));
-    let mut words: Vec<((f64, f64), String)> = words.collect();
+    let names = known.runs.iter().map(|run| format!("{:e}", run.tolerance));
+    let mut words: Vec<((f64, f64), String)> = places.iter().copied().zip(names).collect();
     panel.draw(Role::Motion, Marks::Path(places.clone()));
     panel.draw(Role::Interval, Marks::Points(places.clone()));
-    let of_scene = known.runs.iter().zip(places).filter(|run| run.0.tolerance == tolerance);
-    let of_scene: Vec<(f64, f64)> = of_scene.map(|run| run.1).collect();
+    let is_of_scene = |run: &(&AtTolerance, (f64, f64))| run.0.tolerance == tolerance;
+    let of_scene: Vec<_> = known.runs.iter().zip(places).filter(is_of_scene).map(|run| run.1).collect();
     if !of_scene.is_empty() {
         panel.layer(Role::Unstable, "the tolerance of the scene", Marks::Points(of_scene));
     }

@@ -7,11 +7,11 @@ use crate::output::{Chart, Marks, Panel, PlotAxis, Role};
 use crate::scene::read_number;
 use crate::study::Table;
 use crate::study::accuracy::methods::Scheme;
-use crate::study::accuracy::scene::{StepSize, step_name};
+use crate::study::accuracy::scene::{StepSize, duration, step_name};
 
 use super::super::pane::pane_ui;
 use super::super::{View, ViewContext};
-use super::waiting::waiting_ui;
+use super::waiting_ui;
 
 /// Ends of the slider in s.
 const RANGE: (f64, f64) = (1e-5, 1.0 / 30.0);
@@ -49,13 +49,9 @@ pub fn steps_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     };
     let known = match known {
         Ok(known) => known.clone(),
-        Err(unfit) => {
-            ui.label(format!("Not for this scene: {unfit}."));
-            return;
-        }
+        Err(unfit) => return drop(ui.label(format!("Not for this scene: {unfit}."))),
     };
-    let (left, right) = model.stop_positions();
-    let [left, right] = [left, right].map(|stop| stop.map_or(f64::NAN, |x| x * 1e3));
+    let stops = <[_; 2]>::from(model.stop_positions()).map(|stop| stop.map_or(f64::NAN, |x| x * 1e3));
     ui.scope(|ui| {
         if !current {
             ui.set_opacity(0.5);
@@ -81,7 +77,7 @@ pub fn steps_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         let plot = rest.with_max_y((rest.bottom() - below).max(rest.top()));
         let mut top = rest.top();
         if plot.height() >= PLOT {
-            pane_ui(ui, context.memory, View::Accuracy, &style, plot, chart(&known, (left, right)));
+            pane_ui(ui, context.memory, View::Accuracy, &style, plot, chart(&known, stops.into()));
             top = plot.bottom() + 4.0;
         }
         ui.scope_builder(UiBuilder::new().max_rect(rest.with_min_y(top)), |ui| {
@@ -92,25 +88,25 @@ pub fn steps_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
 
 /// Description of the run and of the comparison.
 fn about(known: &StepSize) -> String {
+    let (span, count, step) = (duration(known.span), known.stepped.steps, step_name(known.step));
     format!(
-        "The first {} of the scene from its start, {} steps of {}. A step that ends beyond a stop is put \
-         onto it, and the mass bounces from there (clamp and bounce). The true run locates each impact; it \
-         counts those down to a millionth of the scene's speed, and the rest of a chatter in one sum.",
-        crate::study::accuracy::scene::duration(known.span),
-        known.stepped.steps,
-        step_name(known.step)
+        "The first {span} of the scene from its start, {count} steps of {step}. A step that ends beyond a \
+         stop is put onto it, and the mass bounces from there (clamp and bounce). The true run locates each \
+         impact; it counts those down to a millionth of the scene's speed, and the rest of a chatter in one \
+         sum."
     )
 }
 
 fn choice_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let accuracy = &mut context.session.accuracy;
-    if ui.available_width() > ONE_ROW {
-        ui.horizontal(|ui| {
-            method_ui(ui, accuracy);
+    let is_one_row = ui.available_width() > ONE_ROW;
+    ui.horizontal(|ui| {
+        method_ui(ui, accuracy);
+        if is_one_row {
             step_ui(ui, accuracy);
-        });
-    } else {
-        ui.horizontal(|ui| method_ui(ui, accuracy));
+        }
+    });
+    if !is_one_row {
         ui.horizontal(|ui| step_ui(ui, accuracy));
     }
     if ui.available_height() < NAMES {
@@ -182,7 +178,6 @@ fn parsed(text: &str) -> Option<f64> {
     Some(read_number(number).ok()? * unit).filter(|step| step.is_finite())
 }
 
-/// The run in fixed steps over the true one.
 fn chart(known: &StepSize, stops: (f64, f64)) -> Chart {
     let path = |points: &[(f64, f64)]| points.iter().map(|(t, x)| (*t, x * 1e3)).collect::<Vec<_>>();
     let (truth, stepped) = (path(&known.truth), path(&known.ghost));

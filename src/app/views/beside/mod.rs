@@ -20,6 +20,7 @@ use crate::scene::{Moments, Transducer};
 
 mod transducer;
 
+use super::flexures::Sketch;
 use super::labels::Taken;
 
 /// Smallest size in points of a drawing whose parts are labelled.
@@ -89,16 +90,9 @@ pub(super) struct Places {
     pub body: Rect,
     /// Position of x = 0.
     pub zero: f32,
-    /// The flexures below the mass, if any.
-    pub below: Option<LowerFlexures>,
-}
-
-/// The flexures below the mass.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct LowerFlexures {
-    /// Points per m along the flexures.
-    pub along: f32,
-    /// The lines of their feet, next to the clamp.
+    /// Points per m along the flexures, if there are any.
+    pub along: Option<f32>,
+    /// The lines of the feet of the flexures below the mass, next to the clamp.
     pub feet: Vec<Vec<Pos2>>,
 }
 
@@ -121,18 +115,14 @@ impl Attachments {
         parts
     }
 
-    pub fn has_magnets(&self) -> bool {
-        self.magnets.is_some()
-    }
-
     /// Whether a part stands on a clamp below the mass.
     pub fn stands_below(&self) -> bool {
-        self.has_magnets() || self.transducer != Transducer::None
+        self.magnets.is_some() || self.transducer != Transducer::None
     }
 
     /// Whether there is a spring or magnets.
     pub fn is_drawn(&self) -> bool {
-        self.stiffness != 0.0 || self.has_magnets()
+        self.stiffness != 0.0 || self.magnets.is_some()
     }
 
     /// Height of the arrow of the push above the middle of the mass, in half heights: clear of the spring.
@@ -141,28 +131,16 @@ impl Attachments {
     }
 
     /// Draws the parts, most of them in the shape reserved `behind` the flexures.
-    pub fn draw(
-        &self,
-        ui: &Ui,
-        painter: &Painter,
-        style: &Style,
-        behind: ShapeIdx,
-        places: &Places,
-        taken: &mut Taken,
-    ) {
+    pub fn draw(&self, ui: &Ui, sketch: &mut Sketch, behind: ShapeIdx, places: &Places) {
         let mut shapes = Vec::new();
         let named = places.rect.width() >= MIN_LABELLED.x && places.rect.height() >= MIN_LABELLED.y;
-        let is_free_on_the_right = self.transducer == Transducer::None;
-        let has_magnets = self.has_magnets();
-        let taken = RefCell::new(taken);
-        let pen = Pen { ui, painter, style, places, named, is_free_on_the_right, has_magnets, taken };
-        pen.spring(self.stiffness, &mut shapes);
+        let Sketch { painter, style, taken, .. } = sketch;
+        let pen = Pen { ui, painter, style, parts: self, places, named, taken: RefCell::new(taken) };
+        pen.spring(&mut shapes);
         if let Some(pair) = self.magnets {
-            pen.magnets(pair, self.pairs, &mut shapes);
+            pen.magnets(pair, &mut shapes);
         }
-        if self.transducer != Transducer::None {
-            pen.transducer(&self.transducer, &mut shapes);
-        }
+        pen.transducer(&mut shapes);
         painter.set(behind, Shape::Vec(shapes));
     }
 }
@@ -172,13 +150,10 @@ struct Pen<'a> {
     ui: &'a Ui,
     painter: &'a Painter,
     style: &'a Style,
+    parts: &'a Attachments,
     places: &'a Places,
     /// Whether the parts are labelled.
     named: bool,
-    /// Whether there is no load.
-    is_free_on_the_right: bool,
-    /// Whether magnets hang below the mass.
-    has_magnets: bool,
     /// What is drawn already.
     taken: RefCell<&'a mut Taken>,
 }
@@ -197,18 +172,13 @@ impl Pen<'_> {
         }
     }
 
-    /// Has names keep clear of a line.
-    fn keep(&self, line: Vec<Pos2>) -> Vec<Pos2> {
-        self.taken.borrow_mut().lines.push(line.clone());
-        line
-    }
-
     fn explain(&self, place: Rect, part: &str, words: &str) {
         let id = self.ui.scope_id().with(("beside", part));
         self.ui.interact(place.expand(2.0), id, Sense::hover()).on_hover_text(words);
     }
 
-    fn spring(&self, stiffness: f64, shapes: &mut Vec<Shape>) {
+    fn spring(&self, shapes: &mut Vec<Shape>) {
+        let stiffness = self.parts.stiffness;
         let Places { rect, body, .. } = *self.places;
         let y = body.center().y + SPRING_AT * 0.5 * body.height();
         let wall = Rect::from_min_max(pos2(rect.left() + 2.0, y - 14.0), pos2(rect.left() + 10.0, y + 14.0));
@@ -219,26 +189,27 @@ impl Pen<'_> {
         shapes.push(Shape::rect_filled(wall, 0.0, self.style.frame_colour()));
         let edge = [wall.right_top(), wall.right_bottom()];
         shapes.push(Shape::line_segment(edge, Stroke::new(1.5, self.style.faint())));
-        let line = self.keep(coil((from, to), HALF_TURNS, SPRING, (END / (to.x - from.x)).min(0.25)));
-        shapes.push(Shape::line(line, self.style.flexure_stroke()));
-        let text = format!("spring {} N/m", short(stiffness));
+        let line = coil((from, to), HALF_TURNS, SPRING, (END / (to.x - from.x)).min(0.25));
+        shapes.push(Shape::line(line.clone(), self.style.flexure_stroke()));
+        self.taken.borrow_mut().lines.push(line);
+        let n_per_m = short(stiffness);
+        let text = format!("spring {n_per_m} N/m");
         // below the stops, or above them
         let below = (text.as_str(), pos2(from.x + 6.0, body.bottom() + 7.0), Align2::LEFT_TOP);
         let above = (text.as_str(), pos2(from.x + 6.0, body.top() - 7.0), Align2::LEFT_BOTTOM);
         self.name(&[below, above], (rect.left(), rect.right()));
         let effect = if stiffness > 0.0 { "draws the mass there" } else { "pushes the mass away from there" };
         let words = format!(
-            "A spring of {} N/m between the frame and the mass. It has no force at x = 0 and {effect}, \
-             harder the further out the mass is.",
-            short(stiffness)
+            "A spring of {n_per_m} N/m between the frame and the mass. It has no force at x = 0 and \
+             {effect}, harder the further out the mass is."
         );
         let place = Rect::from_two_pos(from - vec2(0.0, SPRING), to + vec2(0.0, SPRING));
         self.explain(place, "spring", &words);
     }
 
-    fn magnets(&self, pair: Pair, pairs: usize, shapes: &mut Vec<Shape>) {
+    fn magnets(&self, pair: Pair, shapes: &mut Vec<Shape>) {
         let Pair { strength, gap, moments } = pair;
-        let Places { rect, bottom, body, zero, ref below } = *self.places;
+        let Places { rect, bottom, body, zero, along, .. } = *self.places;
         let room = bottom - body.bottom();
         let pole = POLE.min((room - 6.0) / 4.0);
         if pole < MIN_POLE {
@@ -246,7 +217,7 @@ impl Pen<'_> {
         }
         // distance between the middles of the two magnets
         let (closest, farthest) = (2.0 * pole + 3.0, (room - 2.0 * pole - 3.0).max(2.0 * pole + 3.0));
-        let wanted = below.as_ref().map_or(0.5 * (closest + farthest), |lower| lower.along * gap as f32);
+        let wanted = along.map_or(0.5 * (closest + farthest), |along| along * gap as f32);
         let distance = wanted.clamp(closest, farthest);
         let attract = pair.stiffness() > 0.0;
         let hung = pos2(body.center().x, body.bottom() + pole);
@@ -262,36 +233,30 @@ impl Pen<'_> {
                     .map(|(at, north)| self.pole(Rect::from_center_size(at, size), north))
             }
         };
-        let verb = if attract { "attract" } else { "repel" };
-        let name = format!("magnets {verb}");
-        let right = (name.as_str(), pos2(zero + MAGNET + 6.0, stood.y), Align2::LEFT_CENTER);
-        let left = (name.as_str(), pos2(zero - MAGNET - 6.0, stood.y), Align2::RIGHT_CENTER);
-        // the side away from the flexures first
-        let sides = match body.center().x < zero && self.is_free_on_the_right {
-            true => [right, left],
-            false => [left, right],
-        };
+        let name = if attract { "magnets attract" } else { "magnets repel" };
+        let right = (name, pos2(zero + MAGNET + 6.0, stood.y), Align2::LEFT_CENTER);
+        let left = (name, pos2(zero - MAGNET - 6.0, stood.y), Align2::RIGHT_CENTER);
+        // the side away from the flexures first, unless the load is there
+        let is_right = body.center().x < zero && self.parts.transducer == Transducer::None;
+        let sides = if is_right { [right, left] } else { [left, right] };
         self.name(&sides, (rect.left() + WORDS_ROOM, rect.right()));
         let effect = if attract { "draw the mass to x = 0" } else { "push the mass away from x = 0" };
-        let mm = |metres: f64| three(1e3 * metres);
-        let more = match pairs {
+        let [mm, twice_mm] = [gap, 2.0 * gap].map(|metres| three(1e3 * metres));
+        let stiffest = "pairs of magnets this one is the stiffest there; the others are not drawn.";
+        let more = match self.parts.pairs {
             1 => String::new(),
-            n => {
-                format!(" Of {n} pairs of magnets this one is the stiffest there; the others are not drawn.")
-            }
+            pairs => format!(" Of {pairs} {stiffest}"),
         };
         let strength = three((1e12 * strength).abs());
         let words = match moments {
             Moments::Facing => format!(
-                "Two magnets, {} mm apart where they face each other at x = 0, with a strength of {strength} \
-                 N mm⁴. They {effect} up to {} mm from it, and further out the other way.{more}",
-                mm(gap),
-                mm(2.0 * gap)
+                "Two magnets, {mm} mm apart where they face each other at x = 0, with a strength of \
+                 {strength} N mm⁴. They {effect} up to {twice_mm} mm from it, and further out the other \
+                 way.{more}"
             ),
             Moments::Transverse => format!(
-                "Two magnets, {} mm apart at x = 0 and magnetised across the drawing, with a strength of \
-                 {strength} N mm⁴. They {effect}.{more}",
-                mm(gap)
+                "Two magnets, {mm} mm apart at x = 0 and magnetised across the drawing, with a strength of \
+                 {strength} N mm⁴. They {effect}.{more}"
             ),
         };
         self.explain(Rect::from_center_size(stood, vec2(2.0 * MAGNET, 2.0 * pole)), "magnets", &words);

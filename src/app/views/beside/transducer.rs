@@ -37,10 +37,10 @@ const LOAD: f32 = 34.0;
 const SCALE_ROOM: f32 = 67.0;
 
 impl Pen<'_> {
-    pub(super) fn transducer(&self, transducer: &Transducer, shapes: &mut Vec<Shape>) {
-        let Places { rect, bottom, body, zero, ref below } = *self.places;
+    pub(super) fn transducer(&self, shapes: &mut Vec<Shape>) {
+        let Places { rect, bottom, body, zero, along, .. } = *self.places;
         let height = (bottom - body.bottom() - 12.0).clamp(8.0, 24.0);
-        let (name, part, coupled, (load, unit), words) = match *transducer {
+        let (name, part, coupled, (load, unit), words) = match self.parts.transducer {
             Transducer::None => return,
             Transducer::Electromagnetic { coupling_v_s_per_m, load_ohm, .. } => {
                 let part = self.coil(shapes);
@@ -52,7 +52,7 @@ impl Pen<'_> {
             }
             Transducer::Piezoelectric { coupling_n_per_v, load_kohm, .. } => {
                 // patches lie where the flexures stand
-                let aside = if below.is_some() { 0.0 } else { ASIDE };
+                let aside = if along.is_some() { 0.0 } else { ASIDE };
                 let corner = pos2(zero + aside - 0.5 * LAYER, bottom - 3.0 - height);
                 let part = Rect::from_min_size(corner, vec2(LAYER, height));
                 self.patches(part, shapes);
@@ -66,17 +66,17 @@ impl Pen<'_> {
         };
         let none = if coupled == 0.0 { " Its coupling is 0: it does nothing." } else { "" };
         self.explain(part, "transducer", &format!("{words}{none}"));
-        let right = rect.right() - if below.is_some() { SCALE_ROOM } else { 8.0 };
+        let right = rect.right() - if along.is_some() { SCALE_ROOM } else { 8.0 };
         self.load(part, load, unit, name, right, shapes);
     }
 
     /// Distance from x = 0 that the flexures below the mass reach at a height above the clamp, with the mass
     /// at an end of the picture. Their shape is a cubic, upright at both ends. Without flexures: [`FOOT`].
     fn reach_at(&self, height: f32) -> f32 {
-        let Places { rect, bottom, body, ref below, .. } = *self.places;
+        let Places { rect, bottom, body, along, .. } = *self.places;
         let share = (height / (bottom - body.bottom()).max(1.0)).min(1.0);
         let bent = share * share * (3.0 - 2.0 * share);
-        FOOT + if below.is_some() { 0.5 * rect.width() * bent } else { 0.0 }
+        FOOT + if along.is_some() { 0.5 * rect.width() * bent } else { 0.0 }
     }
 
     /// Draws a coil around x = 0 in section, and in it the magnet of the mass, if there is room and no other
@@ -86,7 +86,7 @@ impl Pen<'_> {
         let length = 2.0 * WINDING.0.min(WINDING.1 * rect.width());
         let row = |top: f32| Rect::from_center_size(pos2(zero, top + 0.5 * WOUND), vec2(length, WOUND));
         let pole = POLE.min(0.5 * (bottom - body.bottom() - CLEAR - 2.0 * WOUND) - 2.5);
-        let hangs = pole >= MIN_POLE && !self.has_magnets;
+        let hangs = pole >= MIN_POLE && self.parts.magnets.is_none();
         let rows = match hangs {
             true => [body.bottom() + CLEAR, body.bottom() + CLEAR + WOUND + 2.0 * pole + 3.0],
             false => [bottom - 2.0 * WOUND - 1.0, bottom - WOUND - 1.0],
@@ -111,9 +111,9 @@ impl Pen<'_> {
 
     /// Draws patches on the flexures, or without flexures a layer between two electrodes.
     fn patches(&self, part: Rect, shapes: &mut Vec<Shape>) {
-        if let Some(below) = &self.places.below {
+        if self.places.along.is_some() {
             let stroke = Stroke::new(PATCHES, self.style.frame_colour());
-            shapes.extend(below.feet.iter().map(|foot| Shape::line(foot.clone(), stroke)));
+            shapes.extend(self.places.feet.iter().map(|foot| Shape::line(foot.clone(), stroke)));
             return;
         }
         let layer = part.with_min_y(part.bottom() - 8.0);
@@ -139,8 +139,8 @@ impl Pen<'_> {
         let (text, words) = match value {
             0.0 => {
                 wire(&[pos2(begin, y[0]), pos2(begin + LOAD, y[0])]);
-                let words = "A short circuit: the load is 0 and takes no power.";
-                ("short circuit".to_owned(), words.to_owned())
+                let words = "A short circuit: the load is 0 and takes no power.".to_owned();
+                ("short circuit".to_owned(), words)
             }
             f64::INFINITY => {
                 for x in [begin, begin + LOAD] {
@@ -152,9 +152,8 @@ impl Pen<'_> {
             value => {
                 shapes.push(Shape::rect_filled(resistor, 0.0, self.style.ground()));
                 shapes.push(Shape::rect_stroke(resistor, 0.0, self.thin(), StrokeKind::Inside));
-                let text = format!("load {} {unit}", short(value));
-                let words = format!("The load, {} {unit}, which takes the power.", short(value));
-                (text, words)
+                let value = short(value);
+                (format!("load {value} {unit}"), format!("The load, {value} {unit}, which takes the power."))
             }
         };
         let beside = (pos2(end + 6.0, y[1] + 2.0), Align2::LEFT_BOTTOM);

@@ -1,22 +1,24 @@
 //! View of the map: every combination of two fields, each run from rest.
 
-mod best;
 mod pointer;
 mod tools;
 mod trail;
 
 use eframe::egui::{self, Align2, Color32, Painter, Pos2, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
 
+use crate::app::session::best::LIMIT;
 use crate::app::session::map::{Map, short};
 use crate::app::ui::style::Style;
+use crate::app::ui::widgets::tell;
 use crate::app::words::columns::{ShownColumn, said};
 use crate::app::words::kind::Kind;
 use crate::app::words::numbers::three;
 use crate::app::words::status::speed;
 use crate::dynamics::{Regime, Summary};
-use crate::output::{Cell as DrawnCell, Chart, Marks, PlotAxis, RMS, View as MapShape, suited_unit};
+use crate::output::{Cell as DrawnCell, Marks, PlotAxis, RMS, View as MapShape, suited_unit};
 use crate::study::{SummaryField, label_and_unit};
 
+use super::labels::haloed;
 use super::pane::{Pane, kept_pane_ui};
 use super::{LegendRow, ViewContext, too_small_ui};
 
@@ -30,11 +32,15 @@ const MAP: usize = 0;
 const ACROSS: usize = 1;
 const UPWARD: usize = 2;
 
+/// Half the diagonal in points of the mark of the best stops.
+const BEST: f32 = 7.0;
+
+/// The values of a scene on both axes of a map; `None` for a field that it lacks.
+type Place = [Option<f64>; 2];
+
 pub fn map_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let style = context.style;
-    ui.painter().rect_filled(ui.max_rect(), 0.0, style.ground());
-    let time = ui.input(|input| input.time);
-    if context.session.want_map(time) {
+    if context.session.want_map(ui.input(|input| input.time)) {
         ui.ctx().request_repaint_after(std::time::Duration::from_millis(100));
     }
     tools::tools_ui(ui, context);
@@ -61,7 +67,9 @@ pub fn map_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let is_short = LegendRow::given(ui).is_some();
     let key = (context.session.map.version(), quantity.name, look, style, shape.clone(), is_short);
     let pane = kept_pane_ui(ui, &style, area, key, || {
-        let mut chart = map_chart(map, quantity, &shape);
+        // one that cannot be a surface is seen from above
+        let above = || map.chart(quantity, &MapShape::Cuts(Vec::new()));
+        let mut chart = map.chart(quantity, &shape).or_else(|_| above()).unwrap_or_default();
         if look.surface && quantity.shown_words().is_some() {
             let rest = if is_short { String::new() } else { format!("; {}", chart.subtitle) };
             chart.subtitle = format!("words have no height: seen from above{rest}");
@@ -80,8 +88,8 @@ pub fn map_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
             .collect(),
     };
     for (rect, name) in names {
-        let spoken = ui.interact(rect, ui.scope_id().with(("cells", name)), Sense::hover());
-        spoken.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, name));
+        let response = ui.interact(rect, ui.scope_id().with(("cells", name)), Sense::hover());
+        tell(&response, egui::Role::Image, name);
     }
     let at = match pane.surface() {
         Some(_) => {
@@ -89,42 +97,48 @@ pub fn map_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
                 surface_cuts(&painter, &style, &pane, scene);
             }
             let ball = [height(&pane, scene).unwrap_or(0.0), 0.0].map(|z| surface_place(&pane, scene, z));
+            // the scene is a ball above its place on the floor
             if let ([Some(at), Some(floor)], true) = (ball, is_inside(map, place)) {
-                surface_ball(&painter, &style, at, floor);
+                for stroke in style.marker_strokes() {
+                    painter.line_segment([at, floor], Stroke::new(0.6 * stroke.width, stroke.color));
+                }
+                painter.circle(at, 6.5, style.mass(), Stroke::new(1.5, Color32::BLACK));
             }
             ball[0].unwrap_or(rect.left_top())
         }
         None => {
             trail::draw(&painter, &pane, &style, &trail);
-            best::draw(&painter, &pane, map, place, context.session.best.limit_mm(), &style);
+            best_stops(&painter, &style, &pane, map, place, context.session.best.limit_mm());
             cut_marks(&painter, &style, &pane, scene);
             marker(&painter, &pane, &style, place)
         }
     };
-    veil(&painter, rect, &style, current, context.session.map.problem().is_some());
+    if !current {
+        // a veil over a map that is not that of the scene
+        painter.rect_filled(rect, 0.0, style.veil());
+        let has_problem = context.session.map.problem().is_some();
+        let words = if has_problem { "not of this scene" } else { "of the scene before" };
+        let at = rect.center_top() + vec2(0.0, 8.0);
+        painter.text(at, Align2::CENTER_TOP, words, style.body(), style.ink());
+    }
     let cell_at = |at: Pos2| cell_at(&pane, map, scene, at);
-    hover(&pane, &painter, &style, map, quantity, &cell_at);
-    let places = Targets { cell_at: &cell_at, pane: &pane, rect, scene: (at, scene) };
+    let pointed = pane.response.hover_pos().filter(|_| !pane.response.dragged()).and_then(cell_at);
+    if let Some(cell) = pointed {
+        point_out(&painter, &style, &pane, map, cell);
+        let over = pane.response.clone().on_hover_cursor(egui::CursorIcon::PointingHand);
+        over.on_hover_text_at_pointer(reading(map, quantity, cell));
+    }
     let is_enlarged = context.session.map.is_enlarged();
-    let wanted = pointer::action_ui(ui, map, &mut context.memory.map_pointer, is_enlarged, &style, &places);
+    let targets =
+        Targets { map, is_enlarged, style, cell_at: &cell_at, pane: &pane, rect, scene: (at, scene) };
+    let wanted = pointer::action_ui(ui, &mut context.memory.map_pointer, &targets);
     pointer::perform(context, wanted);
 }
 
-/// The picture of the map; one that cannot be a surface is seen from above.
-fn map_chart(map: &Map, quantity: &SummaryField, shape: &MapShape) -> Chart {
-    let above = || map.chart(quantity, &MapShape::Cuts(Vec::new()));
-    map.chart(quantity, shape).or_else(|_| above()).unwrap_or_default()
-}
-
-/// The drawn cell of a surface or a map.
-fn drawn_cell(pane: &Pane, (column, row): (usize, usize)) -> Option<DrawnCell> {
-    let (cells, _) = pane.chart.panels().next()?.surface()?;
-    Some(cells.at(column, row))
-}
-
 /// The height of the surface at a cell, in the unit of its axis.
-fn height(pane: &Pane, cell: (usize, usize)) -> Option<f64> {
-    match drawn_cell(pane, cell)? {
+fn height(pane: &Pane, (column, row): (usize, usize)) -> Option<f64> {
+    let (cells, _) = pane.chart.panels().next()?.surface()?;
+    match cells.at(column, row) {
         DrawnCell::Value(value) => Some(value),
         DrawnCell::Rest => Some(0.0),
         DrawnCell::Missing | DrawnCell::Blank => None,
@@ -153,14 +167,6 @@ fn surface_cuts(painter: &Painter, style: &Style, pane: &Pane, (column, row): (u
     }
 }
 
-/// Draws the scene as a ball on the surface, above its place on the floor.
-fn surface_ball(painter: &Painter, style: &Style, at: Pos2, floor: Pos2) {
-    for stroke in style.marker_strokes() {
-        painter.line_segment([at, floor], Stroke::new(0.6 * stroke.width, stroke.color));
-    }
-    painter.circle(at, 6.5, style.mass(), Stroke::new(1.5, Color32::BLACK));
-}
-
 /// Rings the cell of the scene in each cut.
 fn cut_marks(painter: &Painter, style: &Style, pane: &Pane, scene: (usize, usize)) {
     let panels: Vec<_> = pane.chart.panels().collect();
@@ -183,41 +189,37 @@ fn cut_marks(painter: &Painter, style: &Style, pane: &Pane, scene: (usize, usize
     }
 }
 
-/// Draws a veil over a map that is not that of the scene.
-fn veil(painter: &Painter, rect: Rect, style: &Style, current: bool, has_problem: bool) {
-    if current {
-        return;
+/// Draws a diamond where the scene would stand with its best stops, at `limit` in mm, if the map has an axis
+/// of the travel limit that reaches so far.
+fn best_stops(painter: &Painter, style: &Style, pane: &Pane, map: &Map, place: Place, limit: Option<f64>) {
+    let axis = map.question.axes.iter().position(|axis| axis.field == LIMIT);
+    let (Some(axis), Some(limit)) = (axis, limit) else { return };
+    let Some(other) = place[1 - axis] else { return };
+    let (x, y) = if axis == 0 { (limit, other) } else { (other, limit) };
+    let inside = pane.axes(MAP).is_some_and(|[across, up]| across.contains(x) && up.contains(y));
+    let Some(at) = pane.place(MAP, (x, y)).filter(|_| inside) else { return };
+    let corners = [vec2(0.0, -BEST), vec2(BEST, 0.0), vec2(0.0, BEST), vec2(-BEST, 0.0)];
+    for stroke in style.marker_strokes() {
+        painter.add(Shape::closed_line(corners.map(|corner| at + corner).to_vec(), stroke));
     }
-    painter.rect_filled(rect, 0.0, style.veil());
-    let words = if has_problem { "not of this scene" } else { "of the scene before" };
-    let at = rect.center_top() + vec2(0.0, 8.0);
-    painter.text(at, Align2::CENTER_TOP, words, style.body(), style.ink());
+    let words = (at + vec2(0.0, -BEST - 3.0), Align2::CENTER_BOTTOM);
+    haloed(painter, style, words, "best stops", (style.small(), style.ink()));
 }
 
-/// Outlines the cell under the pointer and describes it.
-fn hover(
-    pane: &Pane,
-    painter: &Painter,
-    style: &Style,
-    map: &Map,
-    quantity: &SummaryField,
-    cell_at: &dyn Fn(Pos2) -> Option<(usize, usize)>,
-) {
-    let pointer = pane.response.hover_pos().filter(|_| !pane.response.dragged());
-    let Some((column, row)) = pointer.and_then(cell_at) else { return };
-    match height(pane, (column, row)).and_then(|z| surface_place(pane, (column, row), z)) {
-        Some(at) => _ = painter.circle_stroke(at, 5.0, style.cell_stroke()),
-        None => {
-            _ = outline(pane, map, column, row)
-                .map(|rect| painter.rect_stroke(rect, 0.0, style.cell_stroke(), egui::StrokeKind::Outside))
-        }
+/// Marks a cell: its place on the surface, or its outline on the map.
+fn point_out(painter: &Painter, style: &Style, pane: &Pane, map: &Map, (column, row): (usize, usize)) {
+    let (x, y) = (&map.edges[0].edges, &map.edges[1].edges);
+    let corners = [(x[column], y[row]), (x[column + 1], y[row + 1])].map(|corner| pane.place(MAP, corner));
+    if let Some(at) = height(pane, (column, row)).and_then(|z| surface_place(pane, (column, row), z)) {
+        painter.circle_stroke(at, 5.0, style.cell_stroke());
+    } else if let [Some(a), Some(b)] = corners {
+        let cell = Rect::from_two_pos(a, b);
+        painter.rect_stroke(cell, 0.0, style.cell_stroke(), egui::StrokeKind::Outside);
     }
-    let over = pane.response.clone().on_hover_cursor(egui::CursorIcon::PointingHand);
-    over.on_hover_text_at_pointer(reading(map, quantity, column, row));
 }
 
 /// Whether a scene lies within the map.
-fn is_inside(map: &Map, place: [Option<f64>; 2]) -> bool {
+fn is_inside(map: &Map, place: Place) -> bool {
     place.iter().zip(&map.edges).all(|(value, edges)| value.is_some_and(|value| edges.cell(value).is_some()))
 }
 
@@ -238,13 +240,6 @@ fn cell_at(pane: &Pane, map: &Map, scene: (usize, usize), at: Pos2) -> Option<(u
     }
 }
 
-/// The place of a cell of the map on the screen.
-fn outline(pane: &Pane, map: &Map, column: usize, row: usize) -> Option<Rect> {
-    let (x, y) = (&map.edges[0].edges, &map.edges[1].edges);
-    let [a, b] = [(x[column], y[row]), (x[column + 1], y[row + 1])].map(|corner| pane.place(MAP, corner));
-    Some(Rect::from_two_pos(a?, b?))
-}
-
 /// The columns that every reading contains.
 const IN_EVERY_READING: [&str; 6] = [RMS, "regime", "max_abs_x_m", "impacts", "crossings", "period"];
 
@@ -262,63 +257,49 @@ fn value_text(quantity: &SummaryField, summary: &Summary) -> Option<String> {
 }
 
 /// Text on a cell.
-fn reading(map: &Map, quantity: &SummaryField, column: usize, row: usize) -> String {
+fn reading(map: &Map, quantity: &SummaryField, (column, row): (usize, usize)) -> String {
     let names = map.grid().columns();
     let place = [map.edges[0].values[column], map.edges[1].values[row]];
-    let mut lines: Vec<String> = names.iter().zip(place).map(|(name, value)| named(name, value)).collect();
-    match map.cell(column, row) {
-        None => lines.push("not run yet".to_owned()),
-        Some((cell, has_run)) => {
-            if !has_run {
-                lines.push("not run yet; its neighbour:".to_owned());
-            }
-            if !cell.is_done() {
-                lines.push(format!("the run ended early: {}", cell.outcome().replace('_', " ")));
-            }
-            if let Some(settled) = cell.settled() {
-                lines.push(Kind::from(settled.regime).name().to_owned());
-            }
-            let moves = |summary: &&Summary| summary.regime != Regime::Rest;
-            if let Some(settled) = cell.settled().filter(moves) {
-                let rms = settled.rms_velocity.map_or("-".to_owned(), speed);
-                lines.push(format!("RMS velocity {rms} mm/s"));
-                if let Some(reach) = settled.max_abs_x {
-                    lines.push(format!("reach {:.2} mm", reach * 1e3));
-                }
-                lines.push(format!(
-                    "{} impacts, {} crossings in {} s",
-                    settled.impacts,
-                    settled.crossings,
-                    map.window_s()
-                ));
-                if let Some(period) = settled.period {
-                    let plural = if period == 1 { "" } else { "s" };
-                    lines.push(format!("repeats after {period} forcing period{plural}"));
-                }
-                match settled.settled {
-                    Some(false) if settled.is_transient() => {
-                        lines.push("not settled in this time".to_owned())
-                    }
-                    Some(false) => lines.push("averages steady".to_owned()),
-                    _ => {}
-                }
-            }
-            let value = cell.summary().and_then(|summary| value_text(quantity, summary));
-            lines.extend(value.filter(|_| !IN_EVERY_READING.contains(&quantity.name)));
-            lines.push("click: take the scene there; drag: enlarge".to_owned());
+    // such as `travel limit 1.5 mm`
+    let named = |(column, value): (&String, f64)| {
+        let (name, unit) = label_and_unit(column);
+        format!("{name} {} {unit}", short(value)).trim_end().to_owned()
+    };
+    let mut lines: Vec<String> = names.iter().zip(place).map(named).collect();
+    let Some((cell, has_run)) = map.cell(column, row) else {
+        lines.push("not run yet".to_owned());
+        return lines.join("\n");
+    };
+    if !has_run {
+        lines.push("not run yet; its neighbour:".to_owned());
+    }
+    if !cell.is_done() {
+        lines.push(format!("the run ended early: {}", cell.outcome().replace('_', " ")));
+    }
+    lines.extend(cell.settled().map(|settled| Kind::from(settled.regime).name().to_owned()));
+    if let Some(settled) = cell.settled().filter(|settled| settled.regime != Regime::Rest) {
+        let rms = settled.rms_velocity.map_or("-".to_owned(), speed);
+        lines.push(format!("RMS velocity {rms} mm/s"));
+        lines.extend(settled.max_abs_x.map(|reach| format!("reach {:.2} mm", reach * 1e3)));
+        let (impacts, crossings) = (settled.impacts, settled.crossings);
+        lines.push(format!("{impacts} impacts, {crossings} crossings in {} s", map.window_s()));
+        if let Some(period) = settled.period {
+            let plural = if period == 1 { "" } else { "s" };
+            lines.push(format!("repeats after {period} forcing period{plural}"));
+        }
+        if settled.settled == Some(false) {
+            let is_steady = !settled.is_transient();
+            lines.push(if is_steady { "averages steady" } else { "not settled in this time" }.to_owned());
         }
     }
+    let value = cell.summary().and_then(|summary| value_text(quantity, summary));
+    lines.extend(value.filter(|_| !IN_EVERY_READING.contains(&quantity.name)));
+    lines.push("click: take the scene there; drag: enlarge".to_owned());
     lines.join("\n")
 }
 
-/// Name, value and unit of a column: `travel limit 1.5 mm`.
-fn named(column: &str, value: f64) -> String {
-    let (name, unit) = label_and_unit(column);
-    format!("{name} {} {unit}", short(value)).trim_end().to_owned()
-}
-
 /// Marks the scene by a ring, or by an arrow at the edge that it lies beyond. Returns the place.
-fn marker(painter: &Painter, pane: &Pane, style: &Style, place: [Option<f64>; 2]) -> Pos2 {
+fn marker(painter: &Painter, pane: &Pane, style: &Style, place: Place) -> Pos2 {
     let (Some([across, up]), Some(frame)) = (pane.axes(MAP), pane.frame(MAP)) else { return Pos2::ZERO };
     // no stops count as stops far out
     let (x, y) = (place[0].unwrap_or(f64::INFINITY), place[1].unwrap_or(f64::INFINITY));
@@ -343,8 +324,7 @@ fn marker(painter: &Painter, pane: &Pane, style: &Style, place: [Option<f64>; 2]
     painter.add(Shape::convex_polygon(points, line.color, Stroke::new(1.5, halo.color)));
     let words = if place[0].is_none() { "no stops" } else { "now: further out" };
     let galley = painter.layout_no_wrap(words.to_owned(), style.body(), Color32::PLACEHOLDER);
-    let room = frame.shrink(4.0);
-    let size = galley.size();
+    let (room, size) = (frame.shrink(4.0), galley.size());
     let wanted = back - direction * (10.0 + 0.5 * size.x) - 0.5 * size;
     let corner = pos2(
         wanted.x.clamp(room.left(), (room.right() - size.x).max(room.left())),

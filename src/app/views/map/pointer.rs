@@ -4,6 +4,7 @@ use eframe::egui::{self, CursorIcon, Key, Pos2, Rect, Sense, Stroke, StrokeKind,
 
 use crate::app::session::map::{Map, part};
 use crate::app::ui::style::{GRAB, Style};
+use crate::app::ui::widgets::{keep_arrows, tell};
 use crate::scene::SweepAxis;
 
 use super::super::ViewContext;
@@ -32,6 +33,9 @@ pub enum MapAction {
 
 /// What pointer and keyboard act on.
 pub struct Targets<'a> {
+    pub map: &'a Map,
+    pub is_enlarged: bool,
+    pub style: Style,
     /// The cell at a screen position.
     pub cell_at: &'a dyn Fn(Pos2) -> Option<(usize, usize)>,
     pub pane: &'a Pane,
@@ -42,21 +46,14 @@ pub struct Targets<'a> {
 }
 
 /// Handles pointer and keyboard. Returns the action, if any.
-pub fn action_ui(
-    ui: &Ui,
-    map: &Map,
-    state: &mut PointerState,
-    is_enlarged: bool,
-    style: &Style,
-    targets: &Targets<'_>,
-) -> Option<MapAction> {
+pub fn action_ui(ui: &Ui, state: &mut PointerState, targets: &Targets<'_>) -> Option<MapAction> {
     // a double click has a meaning only on an enlarged map
     let second = ui.options(|options| options.input_options.max_double_click_delay);
-    let wait = if is_enlarged { second } else { 0.0 };
-    if let Some(action) = cross_hair_ui(ui, map, style, targets) {
+    let wait = if targets.is_enlarged { second } else { 0.0 };
+    if let Some(action) = cross_hair_ui(ui, targets) {
         return Some(action);
     }
-    let time = ui.input(|input| input.time);
+    let (time, style) = (ui.input(|input| input.time), targets.style);
     let response = &targets.pane.response;
     // no box is drawn over a surface
     if let Some(frame) = targets.pane.frame(MAP) {
@@ -73,7 +70,11 @@ pub fn action_ui(
             if response.drag_stopped() {
                 state.corner = None;
                 let large = dragged.width() >= MIN_BOX && dragged.height() >= MIN_BOX;
-                return axes_of(targets.pane, map, dragged).filter(|_| large).map(MapAction::Part);
+                let (left, low) = targets.pane.values_at(MAP, dragged.left_bottom())?;
+                let (right, high) = targets.pane.values_at(MAP, dragged.right_top())?;
+                let [across, up] = &targets.map.question.axes;
+                let axes = [part(across, left, right), part(up, low, high)];
+                return large.then_some(MapAction::Part(axes));
             }
         }
     } else {
@@ -96,20 +97,13 @@ pub fn action_ui(
     Some(MapAction::Cell(column, row))
 }
 
-fn axes_of(pane: &Pane, map: &Map, dragged: Rect) -> Option<[SweepAxis; 2]> {
-    let (left, low) = pane.values_at(MAP, dragged.left_bottom())?;
-    let (right, high) = pane.values_at(MAP, dragged.right_top())?;
-    let [across, up] = &map.question.axes;
-    Some([part(across, left, right), part(up, low, high)])
-}
-
 /// Handles the cross-hair: dragging, moving by the arrow keys, and enlarging around it.
-fn cross_hair_ui(ui: &Ui, map: &Map, style: &Style, targets: &Targets<'_>) -> Option<MapAction> {
+fn cross_hair_ui(ui: &Ui, targets: &Targets<'_>) -> Option<MapAction> {
     let (at, (column, row)) = targets.scene;
     let grab = Rect::from_center_size(at, Vec2::splat(2.0 * GRAB));
     let id = ui.scope_id().with("cross-hair");
     let response = ui.interact(grab, id, Sense::drag()).on_hover_and_drag_cursor(CursorIcon::Move);
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Slider, true, "cross-hair"));
+    tell(&response, egui::Role::Slider, "cross-hair");
     if response.dragged() || response.drag_stopped() {
         let inside = |at: Pos2| targets.rect.shrink(0.5).clamp(at);
         let cell = response.interact_pointer_pos().and_then(|at| (targets.cell_at)(inside(at)));
@@ -118,10 +112,8 @@ fn cross_hair_ui(ui: &Ui, map: &Map, style: &Style, targets: &Targets<'_>) -> Op
     if !response.has_focus() {
         return None;
     }
-    ui.painter().circle_stroke(at, GRAB, style.focus_stroke());
-    let filter =
-        egui::EventFilter { horizontal_arrows: true, vertical_arrows: true, ..egui::EventFilter::default() };
-    ui.memory_mut(|memory| memory.set_focus_lock_filter(id, filter));
+    ui.painter().circle_stroke(at, GRAB, targets.style.focus_stroke());
+    keep_arrows(ui, id, true);
     let presses = |key| ui.input(|input| i64::try_from(input.num_presses(key)).unwrap_or(0));
     if presses(Key::Plus) + presses(Key::Equals) > 0 {
         return Some(MapAction::Closer(column, row));
@@ -134,7 +126,7 @@ fn cross_hair_ui(ui: &Ui, map: &Map, style: &Style, targets: &Targets<'_>) -> Op
     if (across, up) == (0, 0) {
         return None;
     }
-    let [columns, rows] = map.size();
+    let [columns, rows] = targets.map.size();
     let moved = |i: usize, by: i64, count: usize| i.saturating_add_signed(by as isize).min(count - 1);
     Some(MapAction::Cell(moved(column, across, columns), moved(row, up, rows)))
 }

@@ -1,11 +1,11 @@
 //! Controls over the map, its progress and its legend.
 
-use eframe::egui::containers::menu::{MenuButton, MenuConfig};
-use eframe::egui::{self, ComboBox, PopupCloseBehavior, Rect, RichText, Ui, UiBuilder};
+use eframe::egui::{self, ComboBox, Rect, RichText, Ui, UiBuilder};
 
 use crate::app::panels::controls;
 use crate::app::session::map::Mapping;
 use crate::app::ui::knob::refuse;
+use crate::app::ui::widgets::{choices_ui, tell};
 use crate::app::words::columns::{COLUMNS, ShownColumn};
 use crate::scene::SweepAxis;
 use crate::study::SummaryField;
@@ -65,10 +65,7 @@ fn row_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     if has_axes {
         fields_ui(ui, context);
     }
-    let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
-    MenuButton::new("Options").config(config).ui(ui, |ui| {
-        // a menu style would hide that the numbers can be typed
-        *ui.style_mut() = (*ui.ctx().global_style()).clone();
+    choices_ui(ui, "Options", |ui| {
         ui.label("Every cell is a run of its own from rest.");
         ui.horizontal(|ui| look_ui(ui, &mut context.memory.map_look, context.session.map.quantity()));
         trail_items_ui(ui, context);
@@ -108,8 +105,7 @@ fn quantity_ui(ui: &mut Ui, mapping: &mut Mapping) {
             });
         }
     });
-    let name = format!("map of {}", chosen.title());
-    inner.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, name.clone()));
+    tell(&inner.response, egui::Role::ComboBox, &format!("map of {}", chosen.title()));
     inner.response.on_hover_text(chosen.about);
 }
 
@@ -132,8 +128,12 @@ fn look_ui(ui: &mut Ui, look: &mut MapLook, quantity: &SummaryField) {
 fn axes_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     fields_ui(ui, context);
     let Some(axes) = context.session.map_axes() else { return };
-    ranges_ui(ui, context, &axes);
-    trail_ui(ui, context);
+    choices_ui(ui, "Range", |ui| ranges_items_ui(ui, context, &axes)).on_hover_text(
+        "Ends and steps of both axes. A box drawn over the map enlarges it as well; on the cross-hair the \
+         keys + and - do.",
+    );
+    let button = choices_ui(ui, "Trail", |ui| trail_items_ui(ui, context));
+    button.on_hover_text("Where the live motion has been since the scene was opened, as a line that fades.");
     controls::best_stops_ui(ui, context.session, "Best stops");
 }
 
@@ -141,28 +141,15 @@ fn axes_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
 fn fields_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let Some(axes) = context.session.map_axes() else { return };
     let known = context.session.map_fields();
-    let mut wanted: Option<(usize, String)> = None;
-    for (i, (axis, word)) in axes.iter().zip(["over", "and"]).enumerate() {
+    let mut chosen = axes.clone();
+    for (i, (axis, (word, role))) in axes.iter().zip([("over", "across"), ("and", "up")]).enumerate() {
         ui.label(word);
         let choices: Vec<String> = known.iter().filter(|path| **path != axes[1 - i].field).cloned().collect();
-        let role = if i == 0 { "across" } else { "up" };
-        wanted = field_ui(ui, axis, role, &choices).map(|path| (i, path)).or(wanted);
+        if let Some(path) = field_ui(ui, axis, role, &choices) {
+            chosen[i] = context.session.map_axis(&path);
+            context.session.map.choose(Some(chosen.clone()));
+        }
     }
-    if let Some((i, path)) = wanted {
-        let mut chosen = axes;
-        chosen[i] = context.session.map_axis(&path);
-        context.session.map.choose(Some(chosen));
-    }
-}
-
-/// Menu of the trail of the scene.
-fn trail_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
-    let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
-    let (button, _) = MenuButton::new("Trail").config(config).ui(ui, |ui| {
-        *ui.style_mut() = (*ui.ctx().global_style()).clone();
-        trail_items_ui(ui, context);
-    });
-    button.on_hover_text("Where the live motion has been since the scene was opened, as a line that fades.");
 }
 
 fn trail_items_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
@@ -172,21 +159,6 @@ fn trail_items_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         trail.clear();
         ui.close();
     }
-}
-
-/// Menu with the ends and steps of both axes.
-fn ranges_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axes: &[SweepAxis; 2]) {
-    let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
-    let menu = MenuButton::new("Range").config(config);
-    let (button, _) = menu.ui(ui, |ui| {
-        // a menu style would hide that the numbers can be typed
-        *ui.style_mut() = (*ui.ctx().global_style()).clone();
-        ranges_items_ui(ui, context, axes);
-    });
-    button.on_hover_text(
-        "Ends and steps of both axes. A box drawn over the map enlarges it as well; on the cross-hair the \
-         keys + and - do.",
-    );
 }
 
 fn ranges_items_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axes: &[SweepAxis; 2]) {
@@ -199,9 +171,7 @@ fn ranges_items_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axes: &[SweepAxis
     if wanted != *axes {
         match context.session.map_problem(&wanted) {
             None => context.session.map.choose(Some(wanted)),
-            Some((i, part, why)) => {
-                refuse(ui, range_id(["across", "up"][i], part), why);
-            }
+            Some((i, part, why)) => refuse(ui, range_id(["across", "up"][i], part), why),
         }
     }
     if ui.button("As the scene has it").on_hover_text("The ranges that the map began with.").clicked() {
