@@ -4,12 +4,13 @@ use std::fmt::Display;
 use std::path::Path;
 use std::sync::Arc;
 
-use super::{Error, Progress, check_until_settled};
-use crate::dynamics::{Model, Outcome, Request, Run, Summary};
+use super::grid::check_until;
+use super::{Error, Progress};
+use crate::dynamics::{Model, Outcome, Request, Run};
 use crate::mechanics::{ForceCurve, Mechanism};
 use crate::numeric::number_text;
 use crate::scene::{Axis, Document, Excitation, Files, Scene};
-use crate::study::{Grid, Keep, Sampling, Table, sample_times, simulate};
+use crate::study::{Grid, Keep, Recorded, Sampling, sample_times, simulate};
 
 /// A checked scene with its model: what every question is asked of.
 ///
@@ -35,17 +36,6 @@ pub struct Simulation {
     document: Document,
     model: Model,
     warnings: Vec<String>,
-}
-
-/// The answer of [`Simulation::record`]: one run with its samples and events, in SI units.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Recorded {
-    /// `t_s,x_m,v_m_per_s,base_accel_m_per_s2,phase`, with a transducer also `voltage_v,current_a,power_w`.
-    pub samples: Table,
-    /// `t_s,kind,side,v_in_m_per_s,v_out_m_per_s` in order of time.
-    pub events: Table,
-    /// Statistics, outcome and energy ledger.
-    pub summary: Summary,
 }
 
 impl Simulation {
@@ -160,14 +150,14 @@ impl Simulation {
         until_settled: Option<f64>,
         progress: &Progress,
     ) -> Result<Recorded, Error> {
-        self.check_until_settled(until_settled)?;
+        check_until(until_settled, &self.document, &self.model)?;
         let times = sample_times(&self.document.scene, &self.model, sampling, until_settled)
             .map_err(|problem| Error::argument(problem.argument(), "", problem))?;
         let keep = Keep { times, events: true, until_settled };
-        let run = simulate(&self.model, &keep, Some(progress.stop()));
-        match run.summary.outcome {
+        let recorded = simulate(&self.model, &keep, Some(progress.stop()));
+        match recorded.summary.outcome {
             Outcome::Cancelled { .. } => Err(Error::Cancelled),
-            _ => Ok(Recorded { samples: run.samples, events: run.events, summary: run.summary }),
+            _ => Ok(recorded),
         }
     }
 
@@ -196,11 +186,6 @@ impl Simulation {
         let name = &self.document.name;
         let of_tables = self.mechanism().warnings().map(move |warning| format!("{name}: {warning}"));
         self.warnings.iter().cloned().chain(of_tables)
-    }
-
-    pub(super) fn check_until_settled(&self, until: Option<f64>) -> Result<(), Error> {
-        let check = |until: f64| check_until_settled(until, &number_text(until), &self.document, &self.model);
-        until.map_or(Ok(()), check)
     }
 
     /// The grid over these fields; if there are none, the grid of the scene's `sweep`.

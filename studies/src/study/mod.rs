@@ -4,7 +4,7 @@
 //! returns a [`Table`]. It reads no arguments and writes no files, so that the window and the command line
 //! call the same studies and show the same tables.
 
-/// An enum whose variants each have a word, which is used in arguments and tables.
+/// An enum whose variants each have a word for arguments and tables, or a clause for sentences.
 macro_rules! words {
     ($(#[$about:meta])* $name:ident { $($(#[$of:meta])* $variant:ident = $word:literal,)+ }) => {
         $(#[$about])*
@@ -113,7 +113,7 @@ pub use orbit::{
 pub use section::{IMPACTS, MAX_SECTION, SectionAt, SectionOptions, Sections, section};
 pub use settled::{Standing, followed_until, lasts, settled, standing};
 pub use simulate::{
-    Keep, Sampling, Simulation, TimesError, ended_remedy, events_table, sample_times, samples_table, simulate,
+    Keep, Recorded, Sampling, TimesError, ended_remedy, events_table, sample_times, samples_table, simulate,
 };
 pub use slice::{Shard, Slice};
 pub use spectrum::{NoSpectrum, Signal, Spectrum, SpectrumOptions, spectrum};

@@ -69,7 +69,7 @@ pub fn branch_chart(branches: &[Branch], phase_deg: f64, ranges: Ranges) -> Char
     periods.dedup();
     let periods: Vec<String> = periods.iter().map(u32::to_string).collect();
     let end = match branches {
-        [branch] => format!("; the branch ends {}", branch.end),
+        [branch] => format!("; the branch ends {}", branch.end.name()),
         _ => format!("; {} branches", branches.len()),
     };
     let about = format!(

@@ -267,8 +267,8 @@ impl<'a> Walk<'a> {
         });
         let nearest = ahead.into_iter().min_by(|a, b| distance(&a.0).total_cmp(&distance(&b.0)));
         let (grazing, beside) = nearest?;
-        let times = grazing.times();
-        let row = grazing.at_phase(self.options.phase);
+        let times = grazing.touch.times(&self.corrector);
+        let row = grazing.touch.at_phase(&self.corrector, &grazing.point, self.options.phase);
         let event = (BranchEvent::Grazing, grazing.point.clone(), row);
         if self.compliant {
             let mut stretch = self.smooth(next?, beyond.is_some())?;

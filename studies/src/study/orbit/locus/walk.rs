@@ -31,20 +31,15 @@ const UPRIGHT: f64 = 1e-2;
 
 /// A walk along a locus.
 pub(super) struct Walk<'a> {
-    curve: Curve<'a>,
-    locus: Locus,
-    at: Spot,
+    pub curve: Curve<'a>,
+    pub locus: Locus,
+    pub at: Spot,
     /// The phase of the rows, in forcing periods.
-    phase: f64,
-    second: &'a FieldRange,
+    pub phase: f64,
+    pub second: &'a FieldRange,
 }
 
-impl<'a> Walk<'a> {
-    /// A walk from a point; `phase` is that of the rows in forcing periods.
-    pub fn new(curve: Curve<'a>, locus: Locus, at: Spot, second: &'a FieldRange, phase: f64) -> Self {
-        Self { curve, locus, at, phase, second }
-    }
-
+impl Walk<'_> {
     /// The locus to its end. `range` is that of the first field.
     pub fn run_out(
         mut self,
