@@ -65,11 +65,9 @@ pub struct Rated {
     pub sensitivity: Option<(f64, String)>,
 }
 
-/// A part of the work: rating a scene, or finding its crossing threshold with one size changed.
-struct Part {
-    scene: usize,
-    change: Option<(String, f64)>,
-}
+/// A part of the work: rating the scene with this index, or finding its crossing threshold with one size
+/// changed.
+type Part = (usize, Option<(String, f64)>);
 
 /// Number of parts of the work.
 pub fn comparison_parts(scenes: &[Alternative]) -> u64 {
@@ -77,11 +75,11 @@ pub fn comparison_parts(scenes: &[Alternative]) -> u64 {
 }
 
 fn parts(scenes: &[Alternative]) -> Vec<Part> {
-    let unchanged = (0..scenes.len()).map(|scene| Part { scene, change: None });
+    let unchanged = (0..scenes.len()).map(|scene| (scene, None));
     let changed = scenes.iter().enumerate().flat_map(|(scene, alternative)| {
         let change = |field: &String| [-1.0, 1.0].map(|way| Some((field.clone(), way * SIZE_CHANGE)));
         let changes: Vec<_> = sizes(&alternative.scene).iter().flat_map(change).collect();
-        changes.into_iter().map(move |change| Part { scene, change })
+        changes.into_iter().map(move |change| (scene, change))
     });
     unchanged.chain(changed).collect()
 }
@@ -106,7 +104,7 @@ pub fn alternatives(
     let silent = Task { tick: &|| (), cancel: task.cancel };
     let rating = Rating { until_settled, pool, task: &silent };
     let work = |_: &mut (), index: usize| {
-        let Part { scene, change } = &parts[index];
+        let (scene, change) = &parts[index];
         let done = match change {
             None => rating.rate(&scenes[*scene]).map(|rated| (Some(Box::new(rated)), None)),
             Some((field, by)) => rating.changed(&scenes[*scene], field, *by).map(|found| (None, found)),
@@ -116,7 +114,7 @@ pub fn alternatives(
     };
     let done = pool.map(parts.len(), || (), work).ok()?;
     let mut rated: Vec<Rated> = Vec::new();
-    for (Part { scene, change }, (unchanged, threshold)) in parts.into_iter().zip(done) {
+    for ((scene, change), (unchanged, threshold)) in parts.into_iter().zip(done) {
         rated.extend(unchanged.map(|unchanged| *unchanged));
         let Some((field, _)) = change else { continue };
         let Some(before) = rated[scene].crossing_g() else { continue };
@@ -215,10 +213,7 @@ impl Rating<'_> {
             let mut outside = values[outside];
             while (outside / inside - 1.0).abs() > BAND_RESOLUTION {
                 let middle = decimal((inside * outside).sqrt());
-                match ask(&[middle])?[0] {
-                    true => inside = middle,
-                    false => outside = middle,
-                }
+                if ask(&[middle])?[0] { inside = middle } else { outside = middle }
             }
             Ok(inside)
         };

@@ -28,7 +28,7 @@ pub(super) fn of_orbit(
     periods: u32,
 ) -> Result<Option<Exponents>, NoExponents> {
     let Some((orbit, distance, moved)) = find(tangent, start, periods)? else { return Ok(None) };
-    let time = tangent.period() * f64::from(periods);
+    let time = tangent.map.period() * f64::from(periods);
     if orbit.jacobian.is_zero() {
         return Ok(Some(Exponents::of_rest(Some(periods), (periods, time), tangent)));
     }
@@ -82,26 +82,26 @@ fn find(
             Err(_) if step > 0 => break, // a step led to a state whose motion ends early
             Err(error) => return Err(error),
         };
-        let off = tangent.units().apart(state, orbit.state);
+        let off = tangent.units.apart(state, orbit.state);
         let distance = elementary::hypot(elementary::hypot(off[0], off[1]), off[2]);
         if step == 0 && !(distance <= NEAR) || best.is_some_and(|best| !(distance < best.1)) {
             break;
         }
         best = Some((orbit, distance, step > 0));
         let Some(by) = newton_step(&orbit.jacobian, off) else { break };
-        let next = tangent.units().moved(state, by);
+        let next = tangent.units.moved(state, by);
         if distance <= ROUNDING || !has_room(tangent, next) {
             break;
         }
         state = next;
     }
-    let close = (10.0 * tangent.model().tolerance()).clamp(CLOSE.0, CLOSE.1);
+    let close = (10.0 * tangent.map.model().tolerance()).clamp(CLOSE.0, CLOSE.1);
     Ok(best.filter(|best| best.1 <= close))
 }
 
 /// Whether the mass can have this state.
 fn has_room(tangent: &Tangent, MapState { x, v, electrical }: MapState) -> bool {
-    let model = tangent.model();
+    let model = tangent.map.model();
     let (low, high) = model.mechanism().curve.domain();
     let (left, right) = model.stop_positions();
     let rigid = model.compliant().is_none();

@@ -15,19 +15,14 @@ pub enum Unjudged {
     /// It was cancelled.
     #[error("cancelled")]
     Cancelled,
-    /// The scene cannot be run.
-    #[error("{field}: {problem}")]
-    Scene {
-        /// The field at fault.
-        field: String,
-        /// What is wrong with it.
-        problem: String,
-    },
+    /// The scene cannot be run: the field at fault, and what is wrong with it.
+    #[error("{0}: {1}")]
+    Scene(String, String),
 }
 
 impl Unjudged {
     pub(super) fn of(field: &str, problem: &str) -> Self {
-        Self::Scene { field: field.to_owned(), problem: problem.to_owned() }
+        Self::Scene(field.to_owned(), problem.to_owned())
     }
 }
 
@@ -144,8 +139,7 @@ impl Judge<'_> {
             "up" => value(&self.subject.walked_to()?[0], name),
             "down" => value(&self.subject.walked_to()?[1], name),
             "walk" => {
-                let turns = self.subject.turns()?;
-                let (up, down) = (turns.up_crosses_from, turns.down_crosses_to);
+                let [up, down] = self.subject.turns()?;
                 let number = match name {
                     "up_crosses_from" => up,
                     "down_crosses_to" => down,
