@@ -337,7 +337,6 @@ fn ranges(over: &[String], document: &Document) -> Result<Vec<DesignRange>, Erro
     Ok(ranges)
 }
 
-/// Columns that exist only with a transducer.
 const TRANSDUCER_COLUMNS: [&str; 3] = ["mean_load_power_w", "mean_coil_power_w", "voltage_rms_v"];
 
 /// Alias for the column of the power into the load, and the name of that column.

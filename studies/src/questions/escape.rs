@@ -62,7 +62,6 @@ impl Default for Escape {
     }
 }
 
-/// Numbers of runs of a cell.
 const RUNS: RangeInclusive<u64> = 1..=1_000_000;
 
 /// Largest number of runs of all cells together.

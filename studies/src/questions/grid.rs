@@ -122,12 +122,12 @@ impl Section {
             check_until(self.options.until_settled, document, &run)?;
             let found = section(simulation.model(), simulation.scene(), &self.options, progress.stop());
             let (table, _) = found.map_err(|fault| Error::faults_of(document, vec![fault]))?;
-            return unless_stopped(progress, table.without(IMPACTS));
+            let stopped = progress.stop().load(std::sync::atomic::Ordering::Relaxed);
+            return if stopped { Err(Error::Cancelled) } else { Ok(table.without(IMPACTS)) };
         }
         let grid = simulation.grid(&self.over)?;
         let study = Sections::new(&document.scene, &document.files, grid).with(self.options);
-        check_first(self.options.until_settled, &study, document, progress)?;
-        Ok(all_rows(&study, document, progress)?.without(IMPACTS))
+        Ok(all_rows(&study, self.options.until_settled, document, progress)?.without(IMPACTS))
     }
 }
 
@@ -164,7 +164,6 @@ pub struct Exponents {
     pub options: ExponentOptions,
 }
 
-/// Numbers of forcing periods of an average.
 const AVERAGED: RangeInclusive<u32> = 1..=10_000_000;
 
 impl Exponents {
@@ -190,8 +189,7 @@ impl Exponents {
         let grid = simulation.grid(&self.over)?;
         let options = ExponentOptions { circuits: may_have_circuit(document, grid.axes()), ..self.options };
         let study = ExponentCells::new(&document.scene, &document.files, grid).with(options);
-        check_first(self.options.until_settled, &study, document, progress)?;
-        all_rows(&study, document, progress)
+        all_rows(&study, self.options.until_settled, document, progress)
     }
 }
 
@@ -345,27 +343,19 @@ pub(super) fn check_until(until: Option<f64>, document: &Document, model: &Model
     until.map_or(Ok(()), |until| check_until_settled(until, &number_text(until), document, model))
 }
 
-/// Checks the time up to which runs of a grid may continue, with the model of the first cell. If that cell
-/// has no model, its faults are reported later, when all cells are checked.
-pub(super) fn check_first<Q: Question>(
-    until: Option<f64>,
-    study: &GridStudy<Q>,
-    document: &Document,
-    progress: &Progress,
-) -> Result<(), Error> {
-    let task = Task { tick: &|| (), cancel: progress.stop() };
-    study.first_model(&task).map_or(Ok(()), |model| check_until(until, document, &model))
-}
-
-/// Checks all cells, then runs them and returns all rows.
+/// Checks the time up to which runs may continue, with the model of the first cell, and all cells; then runs
+/// these and returns all rows.
 pub(super) fn all_rows<Q: Question>(
     study: &GridStudy<Q>,
+    until: Option<f64>,
     document: &Document,
     progress: &Progress,
 ) -> Result<Table, Error> {
+    let silent = Task { tick: &|| (), cancel: progress.stop() };
+    // the faults of a first cell without a model are found with those of the others
+    study.first_model(&silent).map_or(Ok(()), |model| check_until(until, document, &model))?;
     let mut all = study.empty_table();
     progress.pool(|pool| {
-        let silent = Task { tick: &|| (), cancel: progress.stop() };
         study.validate(pool, &silent).map_err(|cell| Error::cells_of(document, vec![cell]))?;
         let write = |rows: &Table| {
             all.append(rows);
@@ -377,13 +367,6 @@ pub(super) fn all_rows<Q: Question>(
         end.map_err(|_| Error::Cancelled)
     })??;
     Ok(all)
-}
-
-fn unless_stopped<T>(progress: &Progress, answer: T) -> Result<T, Error> {
-    match progress.stop().load(std::sync::atomic::Ordering::Relaxed) {
-        true => Err(Error::Cancelled),
-        false => Ok(answer),
-    }
 }
 
 /// A model for the check of `until_settled`, which depends only on the drive and the run of `scene`: a mass

@@ -218,7 +218,6 @@ fn shown(EvenRange { from, to, count }: EvenRange) -> String {
     format!("{from}:{to}:{count}")
 }
 
-/// The error for a scene that has no basins.
 fn no_basins(document: &Document, problem: NoBasins, x_mm: EvenRange) -> Error {
     match problem {
         NoBasins::Faults(faults) => Error::faults_of(document, faults),

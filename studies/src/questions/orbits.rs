@@ -146,7 +146,6 @@ impl Branch {
         FieldRange { field: self.field.clone(), range: self.range }
     }
 
-    /// The options of the study; an error if an argument is wrong.
     fn options(&self) -> Result<BranchOptions, Error> {
         check_period(self.period)?;
         if !STEPS.contains(&self.step) {
@@ -165,7 +164,6 @@ impl Branch {
 const STEPS: std::ops::RangeInclusive<f64> = 1e-4..=0.05;
 /// Largest number of levels of branch switching; the last of ten has a period of 1024.
 const MOST_LEVELS: u32 = 10;
-/// Numbers of orbits of a branch.
 const COUNTS: std::ops::RangeInclusive<usize> = 1..=1_000_000;
 
 /// Checks fields that take all values of a range, each with the argument that gives it.

@@ -105,7 +105,6 @@ impl<'a> Progress<'a> {
         self.pool(|pool| self.task(Some(all), |task| work(pool, task)))
     }
 
-    /// Runs `work` with a thread pool.
     pub(super) fn pool<R>(&self, work: impl FnOnce(&Pool) -> R) -> Result<R, Error> {
         let count = self.threads.unwrap_or_else(processors);
         if count == 0 {

@@ -112,18 +112,9 @@ pub fn columns_read<const N: usize>(record: &Measured<N>) -> String {
 impl Identify {
     /// The question about a record whose columns are found by the units in their names.
     pub fn of(of: WhatToIdentify) -> Self {
-        let none = || [None, None];
-        Self {
-            of,
-            time: none(),
-            column: none(),
-            position: none(),
-            base: none(),
-            between: [None, None],
-            impact_times: false,
-            stops_mm: [None, None],
-            points: None,
-        }
+        let [time, column, position, base] = [const { [None, None] }; 4];
+        let (between, stops_mm) = ([None; 2], [None; 2]);
+        Self { of, time, column, position, base, between, impact_times: false, stops_mm, points: None }
     }
 
     /// Reads the record at `path` and identifies the quantity.

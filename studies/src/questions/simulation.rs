@@ -41,38 +41,32 @@ pub struct Simulation {
 impl Simulation {
     /// The simulation of a built-in scene, such as `paper`.
     pub fn preset(name: &str) -> Result<Self, Error> {
-        Self::of(Document::preset(name)?)
+        Self::of(Document::preset(name)?, None)
     }
 
     /// The simulation of a scene file.
     pub fn from_file(path: impl AsRef<Path>) -> Result<Self, Error> {
-        Self::of(Document::from_file(path.as_ref())?)
+        Self::of(Document::from_file(path.as_ref())?, None)
     }
 
     /// The simulation of a scene in RON. Messages call it `name`. Files in it must have absolute paths or be
     /// built-in tables.
     pub fn from_text(name: &str, text: &str) -> Result<Self, Error> {
-        Self::of(Document::from_text(name, text, Files::default())?)
+        Self::of(Document::from_text(name, text, Files::default())?, None)
     }
 
     /// The simulation of a scene that has been read.
     pub fn new(document: &Document) -> Result<Self, Error> {
-        Self::of(document.clone())
+        Self::of(document.clone(), None)
     }
 
-    fn of(mut document: Document) -> Result<Self, Error> {
+    /// The simulation of a document with its mechanism, if that is known.
+    fn of(mut document: Document, known: Option<&Arc<Mechanism>>) -> Result<Self, Error> {
         let start_moved = document.settle_within();
         let warnings = start_moved.into_iter().chain(document.check()?).collect();
-        let built = Mechanism::build(&document.scene.mechanism, &document.files);
-        let mechanism = built.map_err(|error| Error::unbuilt(&document, error))?;
-        Self::with_mechanism(document, Arc::new(mechanism), warnings)
-    }
-
-    fn with_mechanism(
-        document: Document,
-        mechanism: Arc<Mechanism>,
-        warnings: Vec<String>,
-    ) -> Result<Self, Error> {
+        let built = || Mechanism::build(&document.scene.mechanism, &document.files).map(Arc::new);
+        let mechanism = known.map_or_else(built, |known| Ok(Arc::clone(known)));
+        let mechanism = mechanism.map_err(|error| Error::unbuilt(&document, error))?;
         match Model::build(&document.scene, mechanism) {
             Ok(model) => Ok(Self { document, model, warnings }),
             Err(faults) => Err(Error::faults_of(&document, faults)),
@@ -95,14 +89,10 @@ impl Simulation {
     }
 
     /// The simulation of a changed document, with the same mechanism if that is not changed.
-    pub(super) fn with_document(&self, mut document: Document) -> Result<Self, Error> {
+    pub(super) fn with_document(&self, document: Document) -> Result<Self, Error> {
         let same_mechanism = document.scene.mechanism == self.document.scene.mechanism;
-        if !same_mechanism || document.files != self.document.files {
-            return Self::of(document);
-        }
-        let start_moved = document.settle_within();
-        let warnings = start_moved.into_iter().chain(document.check()?).collect();
-        Self::with_mechanism(document, Arc::clone(self.mechanism()), warnings)
+        let known = same_mechanism && document.files == self.document.files;
+        Self::of(document, known.then(|| self.mechanism()))
     }
 
     /// The simulation with this force curve in place of its mechanism. The fields of the mechanism are then
@@ -112,7 +102,7 @@ impl Simulation {
         let mut document = self.document.clone();
         document.scene.mechanism = curve.to_scene();
         document.scene.sweep.retain(|axis| !axis.field.starts_with("mechanism"));
-        Self::of(document)
+        Self::of(document, None)
     }
 
     /// The simulation with this drive in place of its excitation, such as one that

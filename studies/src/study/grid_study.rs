@@ -78,7 +78,6 @@ pub trait Question: Default + Sync {
 /// Number of cells with small results that a thread may begin ahead.
 pub(super) const AHEAD: u64 = 4096;
 
-/// The mechanism of a cell, or why it has none.
 pub(super) type Built = Result<Arc<Mechanism>, BuildError>;
 
 /// A scene, the grid over it, and the mechanisms that its cells share.
@@ -246,7 +245,6 @@ impl<Q: Question> GridStudy<Q> {
         self.grid().mechanisms() * self.cells.mechanisms_per_cell()
     }
 
-    /// Number of rows per cell.
     fn rows_per_cell(&self) -> u64 {
         self.question.carry().map_or(1, |carry| carry.directions().len() as u64)
     }
@@ -321,23 +319,17 @@ impl<Q: Question> GridStudy<Q> {
     }
 
     /// Like [`validate`](Self::validate), for the cells of a slice from its row `from` on.
-    pub fn validate_rows(
-        &self,
-        slice: &Slice,
-        from: u64,
-        pool: &Pool,
-        task: &Task,
-    ) -> Result<(), CellFaults> {
+    pub fn validate_rows(&self, part: &Slice, from: u64, pool: &Pool, task: &Task) -> Result<(), CellFaults> {
         let faults = |scene: &mut Scene, place: u64| {
             task.check_cancelled().ok()?;
-            let index = self.cell(slice.row(from + place));
+            let index = self.cell(part.row(from + place));
             let faults = match self.cells.model(index, 0, scene, task)? {
                 Ok(model) => vec![self.question.fault(&self.question.model(model), scene)?],
                 Err(faults) => faults,
             };
             Some(CellFaults { cell: self.grid().describe(index), faults })
         };
-        pool.find_first(slice.rows() - from, || self.cells.base.clone(), faults).map_or(Ok(()), Err)
+        pool.find_first(part.rows() - from, || self.cells.base.clone(), faults).map_or(Ok(()), Err)
     }
 
     /// Replaces a mechanism that would be built.

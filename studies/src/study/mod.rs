@@ -143,10 +143,13 @@ impl Task<'_> {
     }
 
     /// An error if the study was cancelled.
-    fn check_cancelled(&self) -> Result<(), Cancelled> {
+    fn check_cancelled(&self) -> Result<()> {
         if self.is_cancelled() { Err(Cancelled) } else { Ok(()) }
     }
 }
+
+/// The result of a part of a study that can be cancelled.
+type Result<T, E = Cancelled> = std::result::Result<T, E>;
 
 /// Displacement in m and velocity in m/s.
 type State = (f64, f64);

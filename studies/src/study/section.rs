@@ -52,7 +52,6 @@ pub struct Sectioned {
 }
 
 impl Sectioned {
-    /// The number of its rows.
     fn len(&self) -> usize {
         self.states.len() + self.impacts.len()
     }

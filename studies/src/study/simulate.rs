@@ -229,12 +229,10 @@ impl Fraction {
         })
     }
 
-    /// This divided by `n`.
     fn over(self, n: u128) -> Option<Self> {
         Some(Self { numerator: self.numerator, denominator: self.denominator.checked_mul(n)? })
     }
 
-    /// 1 over this.
     fn inverse(self) -> Self {
         Self { numerator: self.denominator, denominator: self.numerator }
     }
@@ -261,7 +259,6 @@ impl Fraction {
         numerator as f64 / denominator as f64
     }
 
-    /// How many times this fits into `whole`.
     fn fits_into(self, whole: Self) -> Option<u64> {
         let above = whole.numerator.checked_mul(self.denominator)?;
         let below = whole.denominator.checked_mul(self.numerator)?;

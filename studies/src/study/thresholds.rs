@@ -252,7 +252,6 @@ const SHARING: usize = 5;
 /// Number of values of a bisection that are then run at a time.
 const SHARED_AHEAD: usize = 3;
 
-/// A search over the values of a field.
 pub(super) struct Search<'a> {
     pub family: Family<'a>,
     pub onset: Onset,
@@ -351,7 +350,6 @@ pub struct Verdict {
 }
 
 impl Verdict {
-    /// The verdict on a value without a valid model.
     pub(super) const NO_MODEL: Self = Self { does: false, known: false };
 }
 

@@ -52,7 +52,6 @@ const BAND_PERIODS: f64 = 60.0;
 /// Number of last forcing periods that are then shown.
 const SHOWN_PERIODS: f64 = 24.0;
 
-/// Largest number of stroboscopic states.
 const MAX_STROBES: u32 = 300;
 
 /// Samples of a phase portrait.
@@ -132,10 +131,7 @@ pub fn simulate_with_trace(
 
 /// First time in s of the phase portrait of a run with this settled window.
 fn portrait_from(model: &Model, (settle, end): (f64, f64)) -> f64 {
-    match model.forcing_period() {
-        Some(period) => settle.max(end - PORTRAIT_PERIODS * period).min(end),
-        None => 0.0,
-    }
+    model.forcing_period().map_or(0.0, |period| settle.max(end - PORTRAIT_PERIODS * period).min(end))
 }
 
 fn shown_from(model: &Model, end: f64) -> f64 {

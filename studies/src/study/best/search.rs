@@ -20,7 +20,6 @@ const SIDES: [usize; 4] = [4, 2, 1, 1];
 /// Inverse of the resolution of a field relative to its range.
 const PARTS: f64 = 5e3;
 
-/// Result of the search.
 #[derive(Debug)]
 pub(super) struct Found {
     pub optimum: Optimum,

@@ -110,7 +110,6 @@ pub fn escape_table(
     Ok(with_columns(grid.table(|| 0..grid.cells()), options, &found))
 }
 
-/// The columns of the escapes.
 fn with_columns(table: Table, options: &EscapeOptions, found: &[Escapes]) -> Table {
     let count = |of: fn(&Waited) -> bool| {
         move |cell: &Escapes| cell.as_ref().map(|(all, _)| all.iter().filter(|one| of(one)).count() as u64)
@@ -163,7 +162,6 @@ fn prepared(scene: &Scene, run: u64, within: f64) -> Scene {
     scene
 }
 
-/// Gives each noise the seed of run number `run`.
 fn reseed(excitation: &mut Excitation, run: u64) {
     match excitation {
         Excitation::Noise { seed, .. } => *seed = (*seed + run) % (MAX_SEED + 1),

@@ -29,7 +29,6 @@ pub fn average_exponents(
     average(&Tangent::of(model, phase)?, state.into(), periods, cancel)
 }
 
-/// Like [`average_exponents`], for a map.
 pub(super) fn average(
     tangent: &Tangent,
     mut state: MapState,
@@ -163,10 +162,7 @@ impl Batches {
         };
         let means = self.sums.iter().zip(0..).map(|(sum, batch)| sum / length(batch));
         let squares: f64 = means.map(|value| (value - mean) * (value - mean)).sum();
-        let error = match count {
-            1 => f64::NAN,
-            n => (squares / (n - 1) as f64 / n as f64).sqrt(),
-        };
+        let error = if count == 1 { f64::NAN } else { (squares / (count - 1) as f64 / count as f64).sqrt() };
         Estimate { per_s: mean / period + 0.0, error: error / period }
     }
 }

@@ -77,7 +77,6 @@ pub fn exponents(
 /// The exponents of every cell of a grid.
 pub type ExponentCells = GridStudy<ExponentOptions>;
 
-/// The exponents of a cell, if it has any.
 type Found = Option<Exponents>;
 
 impl Question for ExponentOptions {
@@ -126,11 +125,10 @@ pub fn exponents_row(found: &Exponents) -> Table {
     with_columns(Table::new(), &[Some(*found)], found.third.is_some())
 }
 
-fn with_columns(table: Table, found: &[Found], has_circuit: bool) -> Table {
+fn with_columns(mut table: Table, found: &[Found], has_circuit: bool) -> Table {
     let number = |of: fn(&Exponents) -> f64| move |cell: &Found| cell.as_ref().map(of);
     let estimate =
         |place: usize, of: fn(Estimate) -> f64| move |cell: &Found| cell.as_ref()?.estimates()[place].map(of);
-    let mut table = table;
     for place in 0..if has_circuit { 3 } else { 2 } {
         let name = |ending: &str| format!("exponent_{}_{ending}", place + 1);
         table = table.each(&name("per_s"), found, estimate(place, |estimate| estimate.per_s)).each(

@@ -12,7 +12,6 @@ const LOST: f64 = 1e-12;
 /// Share below which the determinant of a period is computed as the product of those of its parts. Near the
 /// top of a barrier all perturbations turn into the unstable direction and grow up to 1e6-fold in a period.
 const FEW_LEFT: f64 = 1e-4;
-/// Number of these parts.
 const PARTS: u32 = 8;
 
 /// The stroboscopic map of a model, with perturbations in units of its scales.

@@ -126,7 +126,6 @@ fn remarks(
     remarks
 }
 
-/// A decay through some turning points.
 struct Decay {
     turns: usize,
     span: (f64, f64),

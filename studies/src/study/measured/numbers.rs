@@ -44,12 +44,10 @@ pub fn table(
     assembled(&rows, rms(&apart), rms(measured))
 }
 
-/// Root mean square.
 pub(super) fn rms(values: &[f64]) -> f64 {
     (values.iter().map(|value| value * value).sum::<f64>() / values.len() as f64).sqrt()
 }
 
-/// RMS, minimum and maximum of measured and computed values.
 pub(super) fn statistics(unit: &'static str, measured: &[f64], computed: &[f64]) -> [Row; 3] {
     let fold = |values: &[f64], of: fn(f64, f64) -> f64| values.iter().copied().fold(f64::NAN, of);
     let both = |name, of: &dyn Fn(&[f64]) -> f64| (name, unit, of(measured), of(computed));

@@ -66,7 +66,6 @@ impl Beside {
     }
 }
 
-/// The touch of an orbit that grazes a stop.
 #[derive(Debug, Clone)]
 pub(super) struct Touch {
     side: Side,
@@ -175,7 +174,6 @@ impl Touch {
         [self.solution.x, self.solution.x + corrector.flight()]
     }
 
-    /// The touch with another solution.
     pub fn at(&self, solution: Vector4<f64>) -> Self {
         Self { solution, ..self.clone() }
     }

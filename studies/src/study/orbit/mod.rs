@@ -33,7 +33,6 @@ pub use locus::{FieldRange, Locus, LocusEnd, LocusEvent, loci, loci_table};
 pub use switch::switched;
 use walk::Walk;
 
-/// Largest number of steps of Newton's method.
 const MAX_STEPS: usize = 40;
 
 /// Longest step, as a share of the scales, since the guess should be near the orbit.
@@ -224,7 +223,6 @@ pub(super) fn newton_step(jacobian: &Jacobian, off: [f64; 3]) -> Option<[f64; 3]
     Some([x / determinant, v / determinant, 0.0])
 }
 
-/// The orbit with its smallest period.
 fn shortest(map: &StroboscopicMap, orbit: Orbit) -> Orbit {
     let units = Units::of(map.model(), 1.0);
     let divisors = (1..orbit.period).filter(|period| orbit.period.is_multiple_of(*period));
@@ -355,7 +353,6 @@ pub struct Branch {
 }
 
 impl Branch {
-    /// A branch before its first orbit.
     fn empty(field: &str) -> Self {
         Self {
             field: field.to_owned(),

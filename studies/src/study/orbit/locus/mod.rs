@@ -127,8 +127,10 @@ pub fn loci(
         };
         found.push(match Curve::new(family, orbit, value, range, (of, second), options) {
             Some((curve, start)) => {
-                let walk = Walk { curve, locus, at: start, phase: options.phase, second };
-                walk.run_out(range, options, task)?
+                let ranges = [range, second.range];
+                let mut walk = Walk { curve, locus, at: start, ranges, options: *options };
+                walk.locus.end = walk.run_out(task)?;
+                walk.locus
             }
             None => Locus {
                 values: vec![[value, second.range.0]],
