@@ -1,17 +1,17 @@
 //! Questions about designs: comparison of scenes, and the best design for an environment.
 
-use super::grid::drive_alone;
-use super::{Error, Progress, Simulation, check_until_settled, sweep};
-use crate::numeric::number_text;
+use super::grid::{check_until, drive_alone};
+use super::{Error, Progress, Simulation, sweep};
 use crate::scene::{
     Axis, Document, Excitation, FieldPath, RunSettings, Start, Transducer, find_name, is_whole, read_number,
 };
 use crate::study::{
     Alternative, BestDesign, BestQuestion, Constraint, DesignRange, Environment, INTERVALS, MOST_FIELDS,
-    NoBest, Rated, Read, SUMMARY_FIELDS, SummaryField, Table, Variation, alternatives, best,
+    NoBest, Rated, Read, SUMMARY_FIELDS, SummaryField, Table, Task, Variation, alternatives, best,
     comparison_parts, comparison_table, names, place, quantity, scan_runs,
 };
 use crate::system::files::{canonical, is_file};
+use crate::system::threads::Pool;
 
 /// Comparison of scenes under the sine and with the run settings of the first one, each from rest.
 ///
@@ -60,14 +60,12 @@ impl Compare {
         let mut all = Vec::new();
         for (name, other) in std::iter::once(first).chain(others) {
             let other = other.with_document(in_environment(other.document(), simulation.document()))?;
-            other.check_until_settled(self.until_settled)?;
+            check_until(self.until_settled, other.document(), other.model())?;
             let (document, mechanism) = (other.document().clone(), other.mechanism().clone());
             all.push(Alternative { name, scene: document.scene, files: document.files, mechanism });
         }
-        let rated = progress.pool(|pool| {
-            progress
-                .task(Some(comparison_parts(&all)), |task| alternatives(&all, self.until_settled, pool, task))
-        })?;
+        let rate = |pool: &Pool, task: &Task| alternatives(&all, self.until_settled, pool, task);
+        let rated = progress.shared(comparison_parts(&all), rate)?;
         rated.ok_or(Error::Cancelled)
     }
 
@@ -197,10 +195,8 @@ impl Best {
     /// Searches for the best design.
     pub fn run(&self, simulation: &Simulation, progress: &Progress) -> Result<BestAnswer, Error> {
         let question = self.question(simulation.document())?;
-        let found = progress.pool(|pool| {
-            progress.task(Some(scan_runs(&question)), |task| best(&question, pool, task, &mut |_| ()))
-        })?;
-        match found {
+        let search = |pool: &Pool, task: &Task| best(&question, pool, task, &mut |_| ());
+        match progress.shared(scan_runs(&question), search)? {
             Ok(design) => Ok(BestAnswer { question, design }),
             Err(why) => Err(self.no_best(why, &question, simulation.document())),
         }
@@ -208,20 +204,19 @@ impl Best {
 
     /// Parses and checks the texts of the question.
     pub fn question(&self, document: &Document) -> Result<BestQuestion, Error> {
-        let mut question = BestQuestion {
+        let question = BestQuestion {
             over: ranges(&self.over, document)?,
             maximise: number("maximise", &self.maximise, &self.maximise)?,
             subject_to: self.subject_to.iter().map(|text| constraint(text)).collect::<Result<_, _>>()?,
             environments: environments(&self.environment, document)?,
             vary: self.vary.iter().map(|text| variation(text, document)).collect::<Result<_, _>>()?,
             seed: self.seed,
-            until_settled: None,
+            until_settled: self.until_settled,
         };
         check_fields(&question)?;
-        if let (Some(until), [first, ..]) = (self.until_settled, &question.environments[..]) {
-            let model = drive_alone(document, first.scene.clone())?;
-            check_until_settled(until, &number_text(until), document, &model)?;
-            question.until_settled = Some(until);
+        if self.until_settled.is_some() {
+            let model = drive_alone(document, question.environments[0].scene.clone())?;
+            check_until(self.until_settled, document, &model)?;
         }
         Ok(question)
     }
@@ -342,7 +337,6 @@ fn ranges(over: &[String], document: &Document) -> Result<Vec<DesignRange>, Erro
     Ok(ranges)
 }
 
-/// Columns that exist only with a transducer.
 const TRANSDUCER_COLUMNS: [&str; 3] = ["mean_load_power_w", "mean_coil_power_w", "voltage_rms_v"];
 
 /// Alias for the column of the power into the load, and the name of that column.

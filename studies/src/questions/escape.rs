@@ -62,7 +62,6 @@ impl Default for Escape {
     }
 }
 
-/// Numbers of runs of a cell.
 const RUNS: RangeInclusive<u64> = 1..=1_000_000;
 
 /// Largest number of runs of all cells together.
@@ -78,10 +77,9 @@ impl Escape {
         let grid = grid_or_one(&self.over, simulation)?;
         let options = self.options(document, &grid)?;
         let (scene, files) = (&document.scene, &document.files);
-        let found = progress.pool(|pool| {
-            let runs = grid.cells() * options.runs;
-            progress.task(Some(runs), |task| escape_table(scene, files, &grid, &options, pool, task))
-        })?;
+        let runs = grid.cells() * options.runs;
+        let found =
+            progress.shared(runs, |pool, task| escape_table(scene, files, &grid, &options, pool, task))?;
         found.map_err(|end| no_table(document, end))
     }
 
@@ -154,11 +152,8 @@ impl ProbableThreshold {
         let (scan, chance) = (self.scan(document)?, self.chance(document, &grid)?);
         refuse_searched(&grid, &scan)?;
         let (scene, files) = (&document.scene, &document.files);
-        let found = progress.pool(|pool| {
-            let runs = grid.cells() * chance.runs;
-            progress.task(Some(runs), |task| {
-                probable_threshold_table(scene, files, &grid, &scan, &chance, pool, task)
-            })
+        let found = progress.shared(grid.cells() * chance.runs, |pool, task| {
+            probable_threshold_table(scene, files, &grid, &scan, &chance, pool, task)
         })?;
         found.map_err(|end| no_table(document, end))
     }
@@ -184,7 +179,7 @@ impl ProbableThreshold {
 }
 
 /// The grid over these fields, or that of the scene alone.
-fn grid_or_one(over: &Over, simulation: &Simulation) -> Result<Grid, Error> {
+pub(super) fn grid_or_one(over: &Over, simulation: &Simulation) -> Result<Grid, Error> {
     if over.is_empty() { Ok(Grid::of_one()) } else { simulation.grid(over) }
 }
 
@@ -193,12 +188,11 @@ fn check_runs(runs: u64, within: f64, grid: &Grid) -> Result<(), Error> {
     if !RUNS.contains(&runs) {
         return Err(Error::argument("runs", runs, format!("give 1 to {} runs", RUNS.end())));
     }
-    if runs * grid.cells() > MAX_RUNS {
-        let problem = format!(
-            "makes {} runs in {} cells; at most {MAX_RUNS} are possible: take fewer",
-            runs * grid.cells(),
-            grid.cells()
-        );
+    let cells = grid.cells();
+    let all = runs * cells;
+    if all > MAX_RUNS {
+        let problem =
+            format!("makes {all} runs in {cells} cells; at most {MAX_RUNS} are possible: take fewer");
         return Err(Error::argument("runs", runs, problem));
     }
     let durations = field_info("run.duration_s").map(|field| field.range);

@@ -4,6 +4,7 @@
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 
+use super::escape::grid_or_one;
 use super::motion::may_have_circuit;
 use super::orbits::phase;
 use super::{Error, Progress, Simulation, Sweep, check_until_settled, no_table, refuse_searched};
@@ -13,9 +14,9 @@ use crate::numeric::number_text;
 use crate::scene::Mechanism::Linear;
 use crate::scene::{Axis, Damping, Document, Scene, Start, Stops, Transducer, is_whole};
 use crate::study::{
-    ExponentCells, ExponentOptions, Grid, GridStudy, IMPACTS, MAX_SECTION, NoExponents, Onset, Question,
-    Scan, SectionAt, SectionOptions, Sections, SweepEnd, Table, Task, drive_fault, exponents, exponents_row,
-    section, suits_melnikov, threshold_table, with_melnikov,
+    ExponentCells, ExponentOptions, GridStudy, IMPACTS, MAX_SECTION, NoExponents, Onset, Question, Scan,
+    SectionAt, SectionOptions, Sections, Table, Task, drive_fault, exponents, exponents_row, section,
+    suits_melnikov, threshold_table, with_melnikov,
 };
 
 /// Fields, each with its values.
@@ -121,12 +122,12 @@ impl Section {
             check_until(self.options.until_settled, document, &run)?;
             let found = section(simulation.model(), simulation.scene(), &self.options, progress.stop());
             let (table, _) = found.map_err(|fault| Error::faults_of(document, vec![fault]))?;
-            return unless_stopped(progress, table.without(IMPACTS));
+            let stopped = progress.stop().load(std::sync::atomic::Ordering::Relaxed);
+            return if stopped { Err(Error::Cancelled) } else { Ok(table.without(IMPACTS)) };
         }
         let grid = simulation.grid(&self.over)?;
         let study = Sections::new(&document.scene, &document.files, grid).with(self.options);
-        check_first(self.options.until_settled, &study, document, progress)?;
-        Ok(all_rows(&study, document, progress)?.without(IMPACTS))
+        Ok(all_rows(&study, self.options.until_settled, document, progress)?.without(IMPACTS))
     }
 }
 
@@ -163,7 +164,6 @@ pub struct Exponents {
     pub options: ExponentOptions,
 }
 
-/// Numbers of forcing periods of an average.
 const AVERAGED: RangeInclusive<u32> = 1..=10_000_000;
 
 impl Exponents {
@@ -178,7 +178,7 @@ impl Exponents {
             if let Some(fault) = drive_fault(simulation.model(), simulation.scene()) {
                 return Err(Error::faults_of(document, vec![fault]));
             }
-            simulation.check_until_settled(self.options.until_settled)?;
+            check_until(self.options.until_settled, document, simulation.model())?;
             let found = exponents(simulation.model(), &self.options, progress.stop());
             return match found {
                 Ok(found) => Ok(exponents_row(&found)),
@@ -189,8 +189,7 @@ impl Exponents {
         let grid = simulation.grid(&self.over)?;
         let options = ExponentOptions { circuits: may_have_circuit(document, grid.axes()), ..self.options };
         let study = ExponentCells::new(&document.scene, &document.files, grid).with(options);
-        check_first(self.options.until_settled, &study, document, progress)?;
-        all_rows(&study, document, progress)
+        all_rows(&study, self.options.until_settled, document, progress)
     }
 }
 
@@ -263,10 +262,7 @@ impl Threshold {
         if self.melnikov && !suits_melnikov(&document.scene, &scan.field) {
             return Err(Error::argument("melnikov", &scan.field, NO_MELNIKOV));
         }
-        let grid = match self.over.is_empty() {
-            true => Grid::of_one(),
-            false => simulation.grid(&self.over)?,
-        };
+        let grid = grid_or_one(&self.over, simulation)?;
         refuse_searched(&grid, &scan)?;
         if self.until_settled.is_some() {
             let mut first = document.scene.clone();
@@ -276,11 +272,9 @@ impl Threshold {
         }
         let values = grid.cells() * scan.values.len() as u64;
         let (scene, files) = (&document.scene, &document.files);
-        let found = progress.pool(|pool| {
-            progress.task(Some(values), |task| {
-                let table = threshold_table(scene, files, &grid, &scan, self.of, pool, task)?;
-                if self.melnikov { with_melnikov(table, scene, files, &grid, pool, task) } else { Ok(table) }
-            })
+        let found = progress.shared(values, |pool, task| {
+            let table = threshold_table(scene, files, &grid, &scan, self.of, pool, task)?;
+            if self.melnikov { with_melnikov(table, scene, files, &grid, pool, task) } else { Ok(table) }
         })?;
         found.map_err(|end| no_table(document, end))
     }
@@ -344,52 +338,35 @@ impl Threshold {
     }
 }
 
-fn check_until(until: Option<f64>, document: &Document, model: &Model) -> Result<(), Error> {
+/// Checks the time up to which runs of `model` may continue, if one is given.
+pub(super) fn check_until(until: Option<f64>, document: &Document, model: &Model) -> Result<(), Error> {
     until.map_or(Ok(()), |until| check_until_settled(until, &number_text(until), document, model))
 }
 
-/// Checks the time up to which runs of a grid may continue, with the model of the first cell. If that cell
-/// has no model, its faults are reported later, when all cells are checked.
-pub(super) fn check_first<Q: Question>(
-    until: Option<f64>,
-    study: &GridStudy<Q>,
-    document: &Document,
-    progress: &Progress,
-) -> Result<(), Error> {
-    let task = Task { tick: &|| (), cancel: progress.stop() };
-    study.first_model(&task).map_or(Ok(()), |model| check_until(until, document, &model))
-}
-
-/// Checks all cells, then runs them and returns all rows.
+/// Checks the time up to which runs may continue, with the model of the first cell, and all cells; then runs
+/// these and returns all rows.
 pub(super) fn all_rows<Q: Question>(
     study: &GridStudy<Q>,
+    until: Option<f64>,
     document: &Document,
     progress: &Progress,
 ) -> Result<Table, Error> {
+    let silent = Task { tick: &|| (), cancel: progress.stop() };
+    // the faults of a first cell without a model are found with those of the others
+    study.first_model(&silent).map_or(Ok(()), |model| check_until(until, document, &model))?;
     let mut all = study.empty_table();
     progress.pool(|pool| {
-        let silent = Task { tick: &|| (), cancel: progress.stop() };
         study.validate(pool, &silent).map_err(|cell| Error::cells_of(document, vec![cell]))?;
-        let write = |rows: &Table| -> Result<bool, std::convert::Infallible> {
+        let write = |rows: &Table| {
             all.append(rows);
-            Ok(true)
+            Ok::<_, std::convert::Infallible>(true)
         };
-        let end =
-            progress.task(Some(study.rows() * study.runs_per_row()), |task| study.run(pool, task, write));
-        match end {
-            Ok(_) => Ok(()),
-            Err(SweepEnd::Cancelled) => Err(Error::Cancelled),
-            Err(SweepEnd::Write(never)) => match never {},
-        }
+        let runs = study.rows() * study.runs_per_row();
+        let end = progress.task(Some(runs), |task| study.run(pool, task, write));
+        // rows in memory can always be written
+        end.map_err(|_| Error::Cancelled)
     })??;
     Ok(all)
-}
-
-fn unless_stopped<T>(progress: &Progress, answer: T) -> Result<T, Error> {
-    match progress.stop().load(std::sync::atomic::Ordering::Relaxed) {
-        true => Err(Error::Cancelled),
-        false => Ok(answer),
-    }
 }
 
 /// A model for the check of `until_settled`, which depends only on the drive and the run of `scene`: a mass

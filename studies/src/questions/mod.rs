@@ -78,12 +78,12 @@ pub use motion::{Basins, BasinsAnswer, Curve, Spectrum, may_have_circuit};
 pub use orbits::{Branch, Locus, Orbit, branches_remarks, check_fields};
 pub use progress::Progress;
 pub use record::{Identify, IdentifyAnswer, WhatToIdentify, columns_read};
-pub use simulation::{Recorded, Simulation};
+pub use simulation::Simulation;
 pub use sweep::{Sweep, assign as assign_uncertain, column_names, draws as uncertain_draws};
 
 pub use crate::scene::Uncertain;
 
 pub use crate::study::{
     Answer, BestDesign, BestQuestion, Carry, Column, EvenRange, ExponentOptions, Grid, Identified, Onset,
-    Rated, Sampling, SectionAt, SectionOptions, Signal, Table, Until, Values,
+    Rated, Recorded, Sampling, SectionAt, SectionOptions, Signal, Table, Until, Values,
 };

@@ -1,5 +1,6 @@
 //! Questions about one scene: force curve, spectrum and basins of attraction.
 
+use super::grid::check_until;
 use super::{Error, Progress, Simulation};
 use crate::numeric::{Taper, number_text};
 use crate::scene::{Axis, Document, Transducer};
@@ -100,11 +101,11 @@ impl Default for Spectrum {
 impl Spectrum {
     /// Runs the scene and transforms its settled window.
     pub fn run(&self, simulation: &Simulation, progress: &Progress) -> Result<study::Spectrum, Error> {
-        simulation.check_until_settled(self.until_settled)?;
+        let document = simulation.document();
+        check_until(self.until_settled, document, simulation.model())?;
         let Self { of: signal, taper, rate_hz, until_settled } = *self;
         let options = SpectrumOptions { signal, taper, rate_hz, until_settled };
         let task = Task { tick: &|| (), cancel: progress.stop() };
-        let document = simulation.document();
         spectrum(simulation.model(), &options, &task).map_err(|problem| match problem {
             NoSpectrum::Cancelled => Error::Cancelled,
             NoSpectrum::EndedEarly { .. } => Error::failed(document, problem),
@@ -171,24 +172,22 @@ impl Basins {
     }
 
     fn starts(&self) -> Result<Starts, Error> {
-        let EvenRange { from, to, count } = self.x_mm;
-        let shown = |range: EvenRange| format!("{}:{}:{}", range.from, range.to, range.count);
-        let wrong = |name: &str, value: String, problem: StartsError| Error::argument(name, value, problem);
+        let wrong = |name: &'static str, value: String| {
+            move |problem: StartsError| Error::argument(name, value, problem)
+        };
         match self.random {
             None => {
-                self.x_mm.check().map_err(|problem| wrong("x_mm", shown(self.x_mm), problem))?;
-                self.v.check().map_err(|problem| wrong("v", shown(self.v), problem))?;
-                Starts::grid(&self.x_mm, &self.v)
-                    .map_err(|problem| wrong("x_mm", format!("{from}:{to}:{count}"), problem))
+                self.x_mm.check().map_err(wrong("x_mm", shown(self.x_mm)))?;
+                self.v.check().map_err(wrong("v", shown(self.v)))?;
+                Starts::grid(&self.x_mm, &self.v).map_err(wrong("x_mm", shown(self.x_mm)))
             }
             Some((count, seed)) => {
-                let (x_mm, v) = ((from, to), (self.v.from, self.v.to));
-                Starts::random(x_mm, (0.0, 0.0), 1, 0)
-                    .map_err(|problem| wrong("x_mm", format!("{from}:{to}"), problem))?;
-                Starts::random(v, (0.0, 0.0), 1, 0)
-                    .map_err(|problem| wrong("v", format!("{}:{}", v.0, v.1), problem))?;
-                Starts::random(x_mm, v, count, seed)
-                    .map_err(|problem| wrong("random", count.to_string(), problem))
+                let [x_mm, v] = [self.x_mm, self.v].map(|range| (range.from, range.to));
+                for (name, (from, to)) in [("x_mm", x_mm), ("v", v)] {
+                    let checked = Starts::random((from, to), (0.0, 0.0), 1, 0);
+                    checked.map_err(wrong(name, format!("{from}:{to}")))?;
+                }
+                Starts::random(x_mm, v, count, seed).map_err(wrong("random", count.to_string()))
             }
         }
     }
@@ -214,13 +213,15 @@ impl Basins {
     }
 }
 
-/// The error for a scene that has no basins.
+/// A range as an argument of the command line.
+fn shown(EvenRange { from, to, count }: EvenRange) -> String {
+    format!("{from}:{to}:{count}")
+}
+
 fn no_basins(document: &Document, problem: NoBasins, x_mm: EvenRange) -> Error {
     match problem {
         NoBasins::Faults(faults) => Error::faults_of(document, faults),
-        NoBasins::Beyond { .. } => {
-            Error::argument("x_mm", format!("{}:{}:{}", x_mm.from, x_mm.to, x_mm.count), problem)
-        }
+        NoBasins::Beyond { .. } => Error::argument("x_mm", shown(x_mm), problem),
         _ => Error::unfit(document, problem),
     }
 }

@@ -146,7 +146,6 @@ impl Branch {
         FieldRange { field: self.field.clone(), range: self.range }
     }
 
-    /// The options of the study; an error if an argument is wrong.
     fn options(&self) -> Result<BranchOptions, Error> {
         check_period(self.period)?;
         if !STEPS.contains(&self.step) {
@@ -165,7 +164,6 @@ impl Branch {
 const STEPS: std::ops::RangeInclusive<f64> = 1e-4..=0.05;
 /// Largest number of levels of branch switching; the last of ten has a period of 1024.
 const MOST_LEVELS: u32 = 10;
-/// Numbers of orbits of a branch.
 const COUNTS: std::ops::RangeInclusive<usize> = 1..=1_000_000;
 
 /// Checks fields that take all values of a range, each with the argument that gives it.
@@ -199,13 +197,12 @@ pub fn check_fields<'a>(
 
 /// The remarks of each branch, with its number if there are several.
 pub fn branches_remarks(branches: &[study::Branch], range: (f64, f64)) -> Vec<String> {
-    let mut all = Vec::new();
-    for (number, branch) in (1..).zip(branches) {
-        let remarks = branch.remarks(range).into_iter();
-        let several = branches.len() > 1;
-        all.extend(remarks.map(|line| if several { format!("branch {number}: {line}") } else { line }));
-    }
-    all
+    let several = branches.len() > 1;
+    let of_branch = |(number, branch): (u64, &study::Branch)| {
+        let remark = move |line| if several { format!("branch {number}: {line}") } else { line };
+        branch.remarks(range).into_iter().map(remark)
+    };
+    (1..).zip(branches).flat_map(of_branch).collect()
 }
 
 impl study::Branch {
@@ -224,7 +221,7 @@ impl study::Branch {
         let why = match self.end {
             BranchEnd::Range if (at - to).abs() < (at - from).abs() => return lines,
             BranchEnd::Range => "it came back to the value at which it began".to_owned(),
-            other => other.to_string(),
+            other => other.name().to_owned(),
         };
         lines.push(format!("the branch ends at {field} = {at}: {why}"));
         lines
@@ -309,7 +306,7 @@ impl Locus {
             second.range.0,
             of.name(),
             found.values.last().unwrap_or(from),
-            found.end
+            found.end.name()
         )
     }
 }
@@ -319,7 +316,7 @@ impl study::Locus {
     pub fn remark(&self, number: usize) -> Option<String> {
         let [first, second] = &self.fields;
         let [at, and] = self.values.last()?;
-        Some(format!("locus {number} ends at {first} = {at}, {second} = {and}: {}", self.end))
+        Some(format!("locus {number} ends at {first} = {at}, {second} = {and}: {}", self.end.name()))
     }
 }
 

@@ -100,7 +100,11 @@ impl<'a> Progress<'a> {
         work(&Task { tick: &tick, cancel: self.stop })
     }
 
-    /// Runs `work` with a thread pool.
+    /// Runs `work` with a thread pool and a task that counts its parts, which are `all`.
+    pub(super) fn shared<R>(&self, all: u64, work: impl FnOnce(&Pool, &Task) -> R) -> Result<R, Error> {
+        self.pool(|pool| self.task(Some(all), |task| work(pool, task)))
+    }
+
     pub(super) fn pool<R>(&self, work: impl FnOnce(&Pool) -> R) -> Result<R, Error> {
         let count = self.threads.unwrap_or_else(processors);
         if count == 0 {

@@ -1,7 +1,7 @@
 //! Questions about measured records.
 
 use std::fmt::Display;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use super::Error;
 use crate::scene::{Channel, ColumnRequest, Measured, Quantity, Timing, read_measured};
@@ -112,24 +112,15 @@ pub fn columns_read<const N: usize>(record: &Measured<N>) -> String {
 impl Identify {
     /// The question about a record whose columns are found by the units in their names.
     pub fn of(of: WhatToIdentify) -> Self {
-        let none = || [None, None];
-        Self {
-            of,
-            time: none(),
-            column: none(),
-            position: none(),
-            base: none(),
-            between: [None, None],
-            impact_times: false,
-            stops_mm: [None, None],
-            points: None,
-        }
+        let [time, column, position, base] = [const { [None, None] }; 4];
+        let (between, stops_mm) = ([None; 2], [None; 2]);
+        Self { of, time, column, position, base, between, impact_times: false, stops_mm, points: None }
     }
 
     /// Reads the record at `path` and identifies the quantity.
     pub fn run(&self, path: &Path) -> Result<IdentifyAnswer, Error> {
         self.check()?;
-        Record { question: self, file: path.to_owned() }.answer()
+        self.answer(path)
     }
 
     /// Refuses options that do not belong to the quantity, and impossible values.
@@ -167,9 +158,8 @@ impl Identify {
             let problem = "give a time before and one after";
             return Err(Error::argument("from", format!("{from} --to {to}"), problem));
         }
-        if self.points.is_some_and(|points| !(4..=100_000).contains(&points)) {
-            let value = self.points.unwrap_or_default();
-            return Err(Error::argument("points", value, "give 4 to 100000 points"));
+        if let Some(points) = self.points.filter(|points| !(4..=100_000).contains(points)) {
+            return Err(Error::argument("points", points, "give 4 to 100000 points"));
         }
         self.check_restitution()
     }
@@ -203,94 +193,83 @@ impl Identify {
         }
         Ok(())
     }
-}
 
-/// The file of a record and the question about it.
-struct Record<'a> {
-    question: &'a Identify,
-    file: PathBuf,
-}
-
-impl Record<'_> {
-    fn answer(&self) -> Result<IdentifyAnswer, Error> {
-        let question = self.question;
+    fn answer(&self, path: &Path) -> Result<IdentifyAnswer, Error> {
         let request = |quantities: &[Quantity], [column, unit]: &[Option<String>; 2], names| {
             ColumnRequest::by_options(quantities, column, unit, names)
         };
-        let times = request(&[Quantity::Time], &question.time, ["--time", "--time-unit"]);
-        let values_request = |quantities: &[_]| request(quantities, &question.column, ["--column", "--unit"]);
+        let times = request(&[Quantity::Time], &self.time, ["--time", "--time-unit"]);
+        let values_request = |quantities: &[_]| request(quantities, &self.column, ["--column", "--unit"]);
         let answer = |found: Result<Identified, Unidentified>, timing, across, values, columns| {
-            let found = found.map_err(|problem| self.about(problem))?;
+            let found = found.map_err(|problem| about(path, problem))?;
             Ok(IdentifyAnswer { found, timing, across, values, columns })
         };
-        match question.of {
+        match self.of {
             WhatToIdentify::Force => {
-                let positions = &question.position;
-                let positions =
-                    request(&[Quantity::Displacement], positions, ["--position", "--position-unit"]);
-                let (record, columns) = self.read(&[positions, values_request(&[Quantity::Force])])?;
+                let names = ["--position", "--position-unit"];
+                let positions = request(&[Quantity::Displacement], &self.position, names);
+                let (record, columns) = read(path, &[positions, values_request(&[Quantity::Force])])?;
                 let [x, values] = record.channels;
-                let points = question.points.map_or(FORCE_POINTS, |points| points as usize);
+                let points = self.points.map_or(FORCE_POINTS, |points| points as usize);
                 let found = force(&x.values, &values.values, points);
                 answer(found, None, x.values, values, columns)
             }
             WhatToIdentify::Damping => {
                 let any = [Quantity::Displacement, Quantity::Velocity, Quantity::Acceleration];
-                let (record, columns) = self.read(&[times, values_request(&any)])?;
-                let [times, values] = self.cut(record)?.channels;
+                let (record, columns) = read(path, &[times, values_request(&any)])?;
+                let [times, values] = self.cut(record, path)?.channels;
                 let found = damping(&times.values, &values);
                 answer(found, Some(Timing::of(&times.values)), times.values, values, columns)
             }
-            WhatToIdentify::Restitution if question.impact_times => {
-                let (record, columns) = self.read(&[times])?;
-                let [times] = self.cut(record)?.channels;
+            WhatToIdentify::Restitution if self.impact_times => {
+                let (record, columns) = read(path, &[times])?;
+                let [times] = self.cut(record, path)?.channels;
                 let found = restitution_of_times(&times.values);
                 let values = Channel { quantity: Quantity::Displacement, values: Vec::new(), ..times };
                 answer(found, None, Vec::new(), values, columns)
             }
             WhatToIdentify::Restitution => {
                 let values = values_request(&[Quantity::Displacement]);
-                let ([times, values], base, columns) = if question.base[0].is_some() {
-                    let base = request(&[Quantity::Acceleration], &question.base, ["--base", "--base-unit"]);
-                    let (record, columns) = self.read(&[times, values, base])?;
-                    let [times, values, base] = self.cut(record)?.channels;
+                let ([times, values], base, columns) = if self.base[0].is_some() {
+                    let base = request(&[Quantity::Acceleration], &self.base, ["--base", "--base-unit"]);
+                    let (record, columns) = read(path, &[times, values, base])?;
+                    let [times, values, base] = self.cut(record, path)?.channels;
                     ([times, values], Some(base.values), columns)
                 } else {
-                    let (record, columns) = self.read(&[times, values])?;
-                    (self.cut(record)?.channels, None, columns)
+                    let (record, columns) = read(path, &[times, values])?;
+                    (self.cut(record, path)?.channels, None, columns)
                 };
-                let places = question.stops_mm.map(|place| place.map(|mm| mm * 1e-3));
+                let places = self.stops_mm.map(|place| place.map(|mm| mm * 1e-3));
                 let found = restitution(&times.values, &values.values, base.as_deref(), places);
                 answer(found, Some(Timing::of(&times.values)), times.values, values, columns)
             }
         }
     }
 
-    fn read<const N: usize>(&self, requests: &[ColumnRequest; N]) -> Result<(Measured<N>, String), Error> {
-        let record = read_measured(&self.file, requests).map_err(|problem| self.about(problem))?;
-        let columns = columns_read(&record);
-        Ok((record, columns))
-    }
-
     /// Keeps only the rows in the time range of the question; the first channel is the time.
-    fn cut<const N: usize>(&self, mut record: Measured<N>) -> Result<Measured<N>, Error> {
+    fn cut<const N: usize>(&self, mut record: Measured<N>, path: &Path) -> Result<Measured<N>, Error> {
         let times = &record.channels[0].values;
-        let [from, to] = self.question.between;
+        let [from, to] = self.between;
         let from = times.partition_point(|t| *t < from.unwrap_or(f64::NEG_INFINITY));
         let to = times.partition_point(|t| *t <= to.unwrap_or(f64::INFINITY));
         if to < from + 2 {
             let (first, last) = (times[0], times[times.len() - 1]);
-            return Err(self.about(format!(
-                "less than 2 samples from --from to --to; the record goes from {first} to {last} s"
-            )));
+            let few = "less than 2 samples from --from to --to; the record goes";
+            return Err(about(path, format!("{few} from {first} to {last} s")));
         }
         for channel in &mut record.channels {
             channel.values = channel.values[from..to].to_vec();
         }
         Ok(record)
     }
+}
 
-    fn about(&self, problem: impl Display) -> Error {
-        Error::Unfit { scene: self.file.display().to_string(), problem: problem.to_string() }
-    }
+fn read<const N: usize>(path: &Path, requests: &[ColumnRequest; N]) -> Result<(Measured<N>, String), Error> {
+    let record = read_measured(path, requests).map_err(|problem| about(path, problem))?;
+    let columns = columns_read(&record);
+    Ok((record, columns))
+}
+
+fn about(path: &Path, problem: impl Display) -> Error {
+    Error::Unfit { scene: path.display().to_string(), problem: problem.to_string() }
 }

@@ -4,12 +4,13 @@ use std::fmt::Display;
 use std::path::Path;
 use std::sync::Arc;
 
-use super::{Error, Progress, check_until_settled};
-use crate::dynamics::{Model, Outcome, Request, Run, Summary};
+use super::grid::check_until;
+use super::{Error, Progress};
+use crate::dynamics::{Model, Outcome, Request, Run};
 use crate::mechanics::{ForceCurve, Mechanism};
 use crate::numeric::number_text;
 use crate::scene::{Axis, Document, Excitation, Files, Scene};
-use crate::study::{Grid, Keep, Sampling, Table, sample_times, simulate};
+use crate::study::{Grid, Keep, Recorded, Sampling, sample_times, simulate};
 
 /// A checked scene with its model: what every question is asked of.
 ///
@@ -37,52 +38,35 @@ pub struct Simulation {
     warnings: Vec<String>,
 }
 
-/// The answer of [`Simulation::record`]: one run with its samples and events, in SI units.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Recorded {
-    /// `t_s,x_m,v_m_per_s,base_accel_m_per_s2,phase`, with a transducer also `voltage_v,current_a,power_w`.
-    pub samples: Table,
-    /// `t_s,kind,side,v_in_m_per_s,v_out_m_per_s` in order of time.
-    pub events: Table,
-    /// Statistics, outcome and energy ledger.
-    pub summary: Summary,
-}
-
 impl Simulation {
     /// The simulation of a built-in scene, such as `paper`.
     pub fn preset(name: &str) -> Result<Self, Error> {
-        Self::of(Document::preset(name)?)
+        Self::of(Document::preset(name)?, None)
     }
 
     /// The simulation of a scene file.
     pub fn from_file(path: impl AsRef<Path>) -> Result<Self, Error> {
-        Self::of(Document::from_file(path.as_ref())?)
+        Self::of(Document::from_file(path.as_ref())?, None)
     }
 
     /// The simulation of a scene in RON. Messages call it `name`. Files in it must have absolute paths or be
     /// built-in tables.
     pub fn from_text(name: &str, text: &str) -> Result<Self, Error> {
-        Self::of(Document::from_text(name, text, Files::default())?)
+        Self::of(Document::from_text(name, text, Files::default())?, None)
     }
 
     /// The simulation of a scene that has been read.
     pub fn new(document: &Document) -> Result<Self, Error> {
-        Self::of(document.clone())
+        Self::of(document.clone(), None)
     }
 
-    fn of(mut document: Document) -> Result<Self, Error> {
+    /// The simulation of a document with its mechanism, if that is known.
+    fn of(mut document: Document, known: Option<&Arc<Mechanism>>) -> Result<Self, Error> {
         let start_moved = document.settle_within();
         let warnings = start_moved.into_iter().chain(document.check()?).collect();
-        let built = Mechanism::build(&document.scene.mechanism, &document.files);
-        let mechanism = built.map_err(|error| Error::unbuilt(&document, error))?;
-        Self::with_mechanism(document, Arc::new(mechanism), warnings)
-    }
-
-    fn with_mechanism(
-        document: Document,
-        mechanism: Arc<Mechanism>,
-        warnings: Vec<String>,
-    ) -> Result<Self, Error> {
+        let built = || Mechanism::build(&document.scene.mechanism, &document.files).map(Arc::new);
+        let mechanism = known.map_or_else(built, |known| Ok(Arc::clone(known)));
+        let mechanism = mechanism.map_err(|error| Error::unbuilt(&document, error))?;
         match Model::build(&document.scene, mechanism) {
             Ok(model) => Ok(Self { document, model, warnings }),
             Err(faults) => Err(Error::faults_of(&document, faults)),
@@ -105,14 +89,10 @@ impl Simulation {
     }
 
     /// The simulation of a changed document, with the same mechanism if that is not changed.
-    pub(super) fn with_document(&self, mut document: Document) -> Result<Self, Error> {
+    pub(super) fn with_document(&self, document: Document) -> Result<Self, Error> {
         let same_mechanism = document.scene.mechanism == self.document.scene.mechanism;
-        if !same_mechanism || document.files != self.document.files {
-            return Self::of(document);
-        }
-        let start_moved = document.settle_within();
-        let warnings = start_moved.into_iter().chain(document.check()?).collect();
-        Self::with_mechanism(document, Arc::clone(self.mechanism()), warnings)
+        let known = same_mechanism && document.files == self.document.files;
+        Self::of(document, known.then(|| self.mechanism()))
     }
 
     /// The simulation with this force curve in place of its mechanism. The fields of the mechanism are then
@@ -122,7 +102,7 @@ impl Simulation {
         let mut document = self.document.clone();
         document.scene.mechanism = curve.to_scene();
         document.scene.sweep.retain(|axis| !axis.field.starts_with("mechanism"));
-        Self::of(document)
+        Self::of(document, None)
     }
 
     /// The simulation with this drive in place of its excitation, such as one that
@@ -160,14 +140,14 @@ impl Simulation {
         until_settled: Option<f64>,
         progress: &Progress,
     ) -> Result<Recorded, Error> {
-        self.check_until_settled(until_settled)?;
+        check_until(until_settled, &self.document, &self.model)?;
         let times = sample_times(&self.document.scene, &self.model, sampling, until_settled)
             .map_err(|problem| Error::argument(problem.argument(), "", problem))?;
         let keep = Keep { times, events: true, until_settled };
-        let run = simulate(&self.model, &keep, Some(progress.stop()));
-        match run.summary.outcome {
+        let recorded = simulate(&self.model, &keep, Some(progress.stop()));
+        match recorded.summary.outcome {
             Outcome::Cancelled { .. } => Err(Error::Cancelled),
-            _ => Ok(Recorded { samples: run.samples, events: run.events, summary: run.summary }),
+            _ => Ok(recorded),
         }
     }
 
@@ -196,11 +176,6 @@ impl Simulation {
         let name = &self.document.name;
         let of_tables = self.mechanism().warnings().map(move |warning| format!("{name}: {warning}"));
         self.warnings.iter().cloned().chain(of_tables)
-    }
-
-    pub(super) fn check_until_settled(&self, until: Option<f64>) -> Result<(), Error> {
-        let check = |until: f64| check_until_settled(until, &number_text(until), &self.document, &self.model);
-        until.map_or(Ok(()), check)
     }
 
     /// The grid over these fields; if there are none, the grid of the scene's `sweep`.

@@ -1,6 +1,6 @@
 //! Sweeps: a run for each cell of a grid, with bands where inputs are uncertain.
 
-use super::grid::{Over, all_rows, check_first};
+use super::grid::{Over, all_rows};
 use super::{Error, Progress, Simulation};
 use crate::numeric::number_text;
 use crate::scene::{
@@ -96,11 +96,10 @@ impl Sweep {
         let draws = self.draws(&simulation, &grid)?;
         let written = draws.columns(&columns);
         let study = study::Sweep::new(&document.scene, &document.files, grid);
-        check_first(self.until_settled, &study, document, progress)?;
         let until_settled = self.until_settled;
         let fields = columns.iter().filter_map(|name| SummaryField::find(name)).collect();
         let options = SweepOptions { columns: fields, until_settled, carry: self.carry, draws };
-        Ok(all_rows(&study.with(options), document, progress)?.only(&written))
+        Ok(all_rows(&study.with(options), until_settled, document, progress)?.only(&written))
     }
 }
 
@@ -135,7 +134,6 @@ pub fn column_names(chosen: &[String], grid: &Grid, carry: Option<Carry>) -> Res
     Ok(names)
 }
 
-/// The form of an uncertain input.
 const FORM: &str = "write FIELD=VALUE+-SIGMA, FIELD=+-SIGMA or FIELD=+-5%, such as damping.xi=0.023+-0.002";
 
 /// The least share of a normal distribution that must lie in the range of its field: a half, as at an end of
@@ -194,7 +192,8 @@ pub fn draws(
         if laws.iter().any(|known| known.field == field) {
             return Err(wrong("the field is given twice; give it once".to_owned()));
         }
-        let values = axis.map_or_else(|| vec![of_scene(field, document)], |axis| axis.values.clone());
+        let of_scene = FieldPath::new(field).get(&document.scene).unwrap_or(f64::NAN);
+        let values = axis.map_or_else(|| vec![of_scene], |axis| axis.values.clone());
         if axis.is_none() && law.relative && values[0] == 0.0 {
             let problem = "a percentage of 0 is nothing; give SIGMA in the unit of the field";
             return Err(wrong(problem.to_owned()));
@@ -210,7 +209,7 @@ pub fn draws(
         let problem = format!("give a whole number from 1 to {MAX_DRAWS}");
         return Err(Error::argument("draws", draws, problem));
     }
-    let made = Draws::new(laws, *draws, *seed, &document.scene, grid);
+    let made = Draws::new(laws, uncertain, &document.scene, grid);
     match grid.cells().checked_mul(made.runs()) {
         Some(runs) if runs <= MAX_CELLS => Ok(made),
         _ => {
@@ -222,10 +221,6 @@ pub fn draws(
             Err(Error::argument("draws", runs - 1, problem))
         }
     }
-}
-
-fn of_scene(field: &str, document: &Document) -> f64 {
-    FieldPath::new(field).get(&document.scene).unwrap_or(f64::NAN)
 }
 
 /// Checks that a normal distribution about a value lies mostly in the range of its field.

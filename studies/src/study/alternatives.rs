@@ -7,7 +7,7 @@ use super::amplitudes::{Above, crossing, frees_at};
 use super::bisection::multiple;
 use super::grid::{is_of_mechanism, name_of};
 use super::settled::{followed, settled_within, shared_runs};
-use super::{Cancelled, Family, Found, Onset, SummaryField, Table, Task};
+use super::{Cancelled, Family, Found, Onset, Result, SummaryField, Table, Task};
 use crate::dynamics::{Model, Run, Summary};
 use crate::mechanics::Mechanism;
 use crate::numeric::elementary;
@@ -28,7 +28,6 @@ pub struct Alternative {
     pub mechanism: Arc<Mechanism>,
 }
 
-/// Relative change of each size.
 const SIZE_CHANGE: f64 = 0.01;
 
 /// Crossings are searched from the frequency of the drive divided by this factor to the frequency times it.
@@ -37,7 +36,6 @@ pub const SEARCHED_SPAN: f64 = 10.0;
 /// Number of frequencies tried on each side of that of the drive.
 const STEPS: i32 = 40;
 
-/// Relative resolution of the ends of the band.
 const BAND_RESOLUTION: f64 = 1e-3;
 
 /// Names of the fields that are sizes: lengths, thicknesses, and the gap between magnets.
@@ -65,11 +63,9 @@ pub struct Rated {
     pub sensitivity: Option<(f64, String)>,
 }
 
-/// A part of the work: rating a scene, or finding its crossing threshold with one size changed.
-struct Part {
-    scene: usize,
-    change: Option<(String, f64)>,
-}
+/// A part of the work: rating the scene with this index, or finding its crossing threshold with one size
+/// changed.
+type Part = (usize, Option<(String, f64)>);
 
 /// Number of parts of the work.
 pub fn comparison_parts(scenes: &[Alternative]) -> u64 {
@@ -77,11 +73,11 @@ pub fn comparison_parts(scenes: &[Alternative]) -> u64 {
 }
 
 fn parts(scenes: &[Alternative]) -> Vec<Part> {
-    let unchanged = (0..scenes.len()).map(|scene| Part { scene, change: None });
+    let unchanged = (0..scenes.len()).map(|scene| (scene, None));
     let changed = scenes.iter().enumerate().flat_map(|(scene, alternative)| {
         let change = |field: &String| [-1.0, 1.0].map(|way| Some((field.clone(), way * SIZE_CHANGE)));
         let changes: Vec<_> = sizes(&alternative.scene).iter().flat_map(change).collect();
-        changes.into_iter().map(move |change| Part { scene, change })
+        changes.into_iter().map(move |change| (scene, change))
     });
     unchanged.chain(changed).collect()
 }
@@ -106,7 +102,7 @@ pub fn alternatives(
     let silent = Task { tick: &|| (), cancel: task.cancel };
     let rating = Rating { until_settled, pool, task: &silent };
     let work = |_: &mut (), index: usize| {
-        let Part { scene, change } = &parts[index];
+        let (scene, change) = &parts[index];
         let done = match change {
             None => rating.rate(&scenes[*scene]).map(|rated| (Some(Box::new(rated)), None)),
             Some((field, by)) => rating.changed(&scenes[*scene], field, *by).map(|found| (None, found)),
@@ -116,7 +112,7 @@ pub fn alternatives(
     };
     let done = pool.map(parts.len(), || (), work).ok()?;
     let mut rated: Vec<Rated> = Vec::new();
-    for (Part { scene, change }, (unchanged, threshold)) in parts.into_iter().zip(done) {
+    for ((scene, change), (unchanged, threshold)) in parts.into_iter().zip(done) {
         rated.extend(unchanged.map(|unchanged| *unchanged));
         let Some((field, _)) = change else { continue };
         let Some(before) = rated[scene].crossing_g() else { continue };
@@ -143,7 +139,7 @@ impl Rated {
 }
 
 impl Rating<'_> {
-    fn rate(&self, scene: &Alternative) -> Result<Rated, Cancelled> {
+    fn rate(&self, scene: &Alternative) -> Result<Rated> {
         let trial = Scene { start: Start::Rest, ..scene.scene.clone() };
         let crossing = self.crossing(&trial, &scene.mechanism, Above::Searched)?;
         // the scene was checked
@@ -158,18 +154,13 @@ impl Rating<'_> {
         })
     }
 
-    fn crossing(
-        &self,
-        trial: &Scene,
-        mechanism: &Arc<Mechanism>,
-        above: Above,
-    ) -> Result<Option<Found>, Cancelled> {
+    fn crossing(&self, trial: &Scene, mechanism: &Arc<Mechanism>, above: Above) -> Result<Option<Found>> {
         let found = crossing(trial, mechanism, Some(self.pool), self.until_settled, above, self.task)?;
         Ok(found.map(|(found, _)| found))
     }
 
     /// The crossing threshold with one size changed by the share `by`.
-    fn changed(&self, scene: &Alternative, field: &str, by: f64) -> Result<Option<f64>, Cancelled> {
+    fn changed(&self, scene: &Alternative, field: &str, by: f64) -> Result<Option<f64>> {
         let mut trial = Scene { start: Start::Rest, ..scene.scene.clone() };
         let path = FieldPath::new(field);
         // the scene has the field, which is one of its sizes
@@ -182,10 +173,10 @@ impl Rating<'_> {
 
     /// The band of frequencies that cross, by a scan and bisection of its ends; a gap or a band narrower than
     /// a step of the scan may be missed.
-    fn band(&self, scene: &Alternative, trial: &Scene) -> Result<Option<(f64, f64)>, Cancelled> {
+    fn band(&self, scene: &Alternative, trial: &Scene) -> Result<Option<(f64, f64)>> {
         let Excitation::Sine { frequency_hz, .. } = trial.excitation else { return Ok(None) };
         let family = Family::new(trial, &scene.files, &scene.mechanism, FREQUENCY);
-        let ask = |values: &[f64]| -> Result<Vec<bool>, Cancelled> {
+        let ask = |values: &[f64]| -> Result<Vec<bool>> {
             let model = |number: usize| {
                 let model = family.model(values[number]).map_err(|_| false)?;
                 Ok(followed(model, self.until_settled))
@@ -210,15 +201,12 @@ impl Rating<'_> {
         let Some((first, last)) = bands.iter().find(holds).or_else(widest).copied() else {
             return Ok(None);
         };
-        let edge = |inside: usize, outside: Option<usize>| -> Result<f64, Cancelled> {
+        let edge = |inside: usize, outside: Option<usize>| -> Result<f64> {
             let (mut inside, Some(outside)) = (values[inside], outside) else { return Ok(values[inside]) };
             let mut outside = values[outside];
             while (outside / inside - 1.0).abs() > BAND_RESOLUTION {
                 let middle = decimal((inside * outside).sqrt());
-                match ask(&[middle])?[0] {
-                    true => inside = middle,
-                    false => outside = middle,
-                }
+                if ask(&[middle])?[0] { inside = middle } else { outside = middle }
             }
             Ok(inside)
         };

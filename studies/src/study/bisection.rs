@@ -2,12 +2,10 @@
 
 use std::collections::VecDeque;
 
-/// State of a value of a bisection.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Trial {
     NotBegun,
     UnderWay,
-    /// The answer: yes or no.
     Known(bool),
 }
 

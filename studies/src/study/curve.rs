@@ -38,7 +38,6 @@ pub fn curve(mechanism: &Mechanism, positions: Vec<f64>) -> Result<Table, Outsid
         .each("stiffness_n_per_m", &positions, |x| curve.stiffness(*x)))
 }
 
-/// Checks that these positions in m are on the curve.
 fn check_positions(mechanism: &Mechanism, positions: &[f64]) -> Result<(), OutsideCurve> {
     let domain = mechanism.curve.domain();
     match positions.iter().find(|x| !(x.is_finite() && **x >= domain.0 && **x <= domain.1)) {

@@ -126,7 +126,6 @@ where
     })
 }
 
-/// The product of the axes' lengths.
 fn count(lengths: impl Iterator<Item = u64> + Clone) -> Result<u64, GridError> {
     let exact = lengths.clone().try_fold(1_u64, u64::checked_mul);
     match exact {

@@ -11,7 +11,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use super::walk::Walk;
 use super::{
-    Cancelled, Carry, Cell, CellFaults, Direction, Draws, Grid, Shard, Slice, SweepEnd, Table, Tally, Task,
+    Cancelled, Carry, Cell, CellFaults, Direction, Draws, Grid, NoThresholds, Shard, Slice, SweepEnd, Table,
+    Tally, Task,
 };
 use crate::dynamics::{Model, Request, Run};
 use crate::mechanics::{BuildError, Mechanism};
@@ -77,14 +78,13 @@ pub trait Question: Default + Sync {
 /// Number of cells with small results that a thread may begin ahead.
 pub(super) const AHEAD: u64 = 4096;
 
-/// The mechanism of a cell, or why it has none.
 pub(super) type Built = Result<Arc<Mechanism>, BuildError>;
 
 /// A scene, the grid over it, and the mechanisms that its cells share.
 #[derive(Debug)]
 pub(super) struct Cells {
-    pub base: Scene,
-    pub grid: Grid,
+    base: Scene,
+    grid: Grid,
     files: Files,
     draws: Draws,
     mechanisms: Vec<Mutex<Option<Built>>>,
@@ -124,7 +124,7 @@ impl Cells {
 
     /// Turns `scene` into that of a cell with a draw, of which 0 is none, and returns its mechanism; `None`
     /// if cancelled before it was built.
-    pub fn mechanism(&self, index: u64, draw: u64, scene: &mut Scene, cancel: &AtomicBool) -> Option<Built> {
+    fn mechanism(&self, index: u64, draw: u64, scene: &mut Scene, cancel: &AtomicBool) -> Option<Built> {
         self.grid.apply(index, scene);
         self.draws.apply(draw, self.grid.values(index), scene);
         if draw > 0
@@ -148,26 +148,41 @@ impl Cells {
         place.clone()
     }
 
-    /// The cells in which `faults` finds any, or whose mechanism is wrong, each with its faults. A mechanism
+    /// Checks all cells; wrong are those in which `faults` finds any, or whose mechanism is wrong. A mechanism
     /// that is not solved is no fault.
-    pub fn wrong(
+    pub fn check(
         &self,
         pool: &Pool,
         task: &Task,
         faults: impl Fn(&Scene, &Arc<Mechanism>) -> Option<Vec<Fault>> + Sync,
-    ) -> Result<Vec<CellFaults>, Cancelled> {
-        let check = |scene: &mut Scene, index: usize| {
-            task.check_cancelled()?;
-            let built = self.mechanism(index as u64, 0, scene, task.cancel).ok_or(Cancelled)?;
-            let faults = match built {
-                Ok(mechanism) => faults(scene, &mechanism),
-                Err(BuildError::Unsolved(_)) => None,
-                Err(BuildError::Wrong(fault)) => Some(vec![fault]),
-            };
-            Ok(faults.map(|faults| CellFaults { cell: self.grid.describe(index as u64), faults }))
+    ) -> Result<(), NoThresholds> {
+        let of_cell = |scene: &Scene, built: Built, _: u64| match built {
+            Ok(mechanism) => Ok(faults(scene, &mechanism)),
+            Err(BuildError::Unsolved(_)) => Ok(None),
+            Err(BuildError::Wrong(fault)) => Ok(Some(vec![fault])),
         };
-        let wrong = pool.map(self.grid.cells() as usize, || self.base.clone(), check)?;
-        Ok(wrong.into_iter().flatten().collect())
+        let all = (0..).zip(self.map(1, pool, task, of_cell)?);
+        let described = |index: u64, faults| CellFaults { cell: self.grid.describe(index), faults };
+        let wrong: Vec<CellFaults> =
+            all.filter_map(|(index, faults)| Some(described(index, faults?))).collect();
+        if wrong.is_empty() { Ok(()) } else { Err(NoThresholds::Wrong(wrong)) }
+    }
+
+    /// The answers for `parts` parts of each cell, from the scene of the cell, its mechanism or why it has
+    /// none, and the number of the part.
+    pub fn map<R: Send>(
+        &self,
+        parts: usize,
+        pool: &Pool,
+        task: &Task,
+        answer: impl Fn(&Scene, Built, u64) -> Result<R, Cancelled> + Sync,
+    ) -> Result<Vec<R>, Cancelled> {
+        let part = |scene: &mut Scene, number: usize| {
+            task.check_cancelled()?;
+            let built = self.mechanism((number / parts) as u64, 0, scene, task.cancel).ok_or(Cancelled)?;
+            answer(scene, built, (number % parts) as u64)
+        };
+        pool.map(self.grid.cells() as usize * parts, || self.base.clone(), part)
     }
 
     /// The model of a cell with a draw, or its faults; `None` if its mechanism was not solved, or if
@@ -230,7 +245,6 @@ impl<Q: Question> GridStudy<Q> {
         self.grid().mechanisms() * self.cells.mechanisms_per_cell()
     }
 
-    /// Number of rows per cell.
     fn rows_per_cell(&self) -> u64 {
         self.question.carry().map_or(1, |carry| carry.directions().len() as u64)
     }
@@ -305,23 +319,17 @@ impl<Q: Question> GridStudy<Q> {
     }
 
     /// Like [`validate`](Self::validate), for the cells of a slice from its row `from` on.
-    pub fn validate_rows(
-        &self,
-        slice: &Slice,
-        from: u64,
-        pool: &Pool,
-        task: &Task,
-    ) -> Result<(), CellFaults> {
+    pub fn validate_rows(&self, part: &Slice, from: u64, pool: &Pool, task: &Task) -> Result<(), CellFaults> {
         let faults = |scene: &mut Scene, place: u64| {
             task.check_cancelled().ok()?;
-            let index = self.cell(slice.row(from + place));
+            let index = self.cell(part.row(from + place));
             let faults = match self.cells.model(index, 0, scene, task)? {
                 Ok(model) => vec![self.question.fault(&self.question.model(model), scene)?],
                 Err(faults) => faults,
             };
             Some(CellFaults { cell: self.grid().describe(index), faults })
         };
-        pool.find_first(slice.rows() - from, || self.cells.base.clone(), faults).map_or(Ok(()), Err)
+        pool.find_first(part.rows() - from, || self.cells.base.clone(), faults).map_or(Ok(()), Err)
     }
 
     /// Replaces a mechanism that would be built.

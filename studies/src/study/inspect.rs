@@ -49,14 +49,12 @@ pub fn inspect(scene: &Scene, mechanism: &Arc<Mechanism>) -> Result<Vec<String>,
     Ok(lines)
 }
 
-/// Lines on the flexures, if any, and the force curve.
 fn force(mechanism: &Mechanism) -> Vec<String> {
     let Some(solved) = &mechanism.flexures else { return vec![force_curve(mechanism)] };
     let [shape, theory] = flexures(solved.geometry());
     vec![shape, theory, accuracy(mechanism, solved.accuracy())]
 }
 
-/// Lines on the flexures and the beam models used for them.
 fn flexures(geometry: &Geometry) -> [String; 2] {
     let mm = |metres: f64| short(metres * 1e3);
     let group = |kind: &str, Group { count, length, width }: &Group| {

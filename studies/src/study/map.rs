@@ -12,7 +12,6 @@ use crate::scene::{Axis, Scene, Start};
 /// The travel limit, over which the release is known in closed form.
 const LIMIT: &str = "stops.travel_limit_mm";
 
-/// Regimes of motions that cross.
 const CROSS: [&str; 3] = [Regime::Interwell.name(), Regime::Irregular.name(), Regime::Crossing.name()];
 
 /// Points of the line of releases.

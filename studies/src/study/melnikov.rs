@@ -8,7 +8,7 @@
 
 use super::grid_study::Cells;
 use super::thresholds::from_rest;
-use super::{Cancelled, Grid, NoThresholds, Table, Task};
+use super::{Grid, NoThresholds, Table, Task};
 use crate::dynamics::Model;
 use crate::mechanics::Homoclinic;
 use crate::scene::{Files, Scene};
@@ -60,16 +60,12 @@ pub fn with_melnikov(
     task: &Task,
 ) -> Result<Table, NoThresholds> {
     let cells = Cells::new(scene, files, grid.clone());
-    let threshold = |scene: &mut Scene, cell: usize| {
-        task.check_cancelled()?;
-        let built = cells.mechanism(cell as u64, 0, scene, task.cancel).ok_or(Cancelled)?;
+    let found = cells.map(1, pool, task, |scene, built, _| {
         let Some(drive) = scene.harmonic() else { return Ok(None) };
         let model = built.ok().and_then(|mechanism| Model::build(&from_rest(scene), mechanism).ok());
         let threshold = model.and_then(|model| melnikov_threshold(&model, drive.frequency_hz));
         Ok(threshold.map(|acceleration| drive.amplitude_of(acceleration)))
-    };
-    let found = pool.map(grid.cells() as usize, || cells.base.clone(), threshold);
-    let found = found.map_err(|Cancelled| NoThresholds::Cancelled)?;
+    })?;
     let unit = scene.harmonic().and_then(|drive| drive.amplitude_path().strip_prefix("excitation.amplitude"));
     Ok(table.each(&format!("melnikov{}", unit.unwrap_or("_g")), &found, |found| *found))
 }

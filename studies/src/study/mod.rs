@@ -4,7 +4,7 @@
 //! returns a [`Table`]. It reads no arguments and writes no files, so that the window and the command line
 //! call the same studies and show the same tables.
 
-/// An enum whose variants each have a word, which is used in arguments and tables.
+/// An enum whose variants each have a word for arguments and tables, or a clause for sentences.
 macro_rules! words {
     ($(#[$about:meta])* $name:ident { $($(#[$of:meta])* $variant:ident = $word:literal,)+ }) => {
         $(#[$about])*
@@ -115,7 +115,7 @@ pub use orbit::{
 pub use section::{IMPACTS, MAX_SECTION, SectionAt, SectionOptions, Sections, section};
 pub use settled::{Standing, followed_until, lasts, settled, standing};
 pub use simulate::{
-    Keep, Sampling, Simulation, TimesError, ended_remedy, events_table, sample_times, samples_table, simulate,
+    Keep, Recorded, Sampling, TimesError, ended_remedy, events_table, sample_times, samples_table, simulate,
 };
 pub use slice::{Shard, Slice};
 pub use spectrum::{NoSpectrum, Signal, Spectrum, SpectrumOptions, spectrum};
@@ -145,10 +145,13 @@ impl Task<'_> {
     }
 
     /// An error if the study was cancelled.
-    fn check_cancelled(&self) -> Result<(), Cancelled> {
+    fn check_cancelled(&self) -> Result<()> {
         if self.is_cancelled() { Err(Cancelled) } else { Ok(()) }
     }
 }
+
+/// The result of a part of a study that can be cancelled.
+type Result<T, E = Cancelled> = std::result::Result<T, E>;
 
 /// Displacement in m and velocity in m/s.
 type State = (f64, f64);

@@ -8,13 +8,11 @@ use std::sync::Arc;
 
 use crate::dynamics::Model;
 
-/// Largest number of past models that are kept.
 const MAX_MODELS: usize = 200;
 
 /// First and last time in s during which a model was in use, and that model.
 pub type Held<'a> = (f64, f64, &'a Arc<Model>);
 
-/// The models of a motion, in order of time.
 #[derive(Debug, Clone)]
 pub(super) struct Models {
     /// The present model, and the time in s from which it is in use.

@@ -7,7 +7,7 @@ use std::sync::atomic::AtomicBool;
 use super::grid_study::{AHEAD, fields};
 use super::walk::without_a_period;
 use super::{Carry, Cell, Grid, GridStudy, Question, Row, Table, Tally};
-use crate::dynamics::{EventKind, Model, Request, Run, SectionPoint, Side, Summary};
+use crate::dynamics::{Event, EventKind, Model, Request, Run, SectionPoint, Summary};
 use crate::scene::{Fault, Scene};
 
 /// Largest number of states of one section.
@@ -47,21 +47,11 @@ pub struct Sectioned {
     cell: Cell,
     /// Its states, if it is taken at a phase.
     states: Vec<SectionPoint>,
-    /// Its impacts, if it is taken at impacts.
-    impacts: Vec<Struck>,
-}
-
-/// An impact: time in s, stop, phase in degrees of a drive that repeats, velocity in m/s before it.
-#[derive(Debug, Clone, Copy)]
-struct Struck {
-    t: f64,
-    side: Side,
-    phase: Option<f64>,
-    v_in: f64,
+    /// Its impacts, if it is taken at impacts, each with the phase in degrees of a drive that repeats.
+    impacts: Vec<(Event, Option<f64>)>,
 }
 
 impl Sectioned {
-    /// The number of its rows.
     fn len(&self) -> usize {
         self.states.len() + self.impacts.len()
     }
@@ -127,13 +117,9 @@ impl Question for SectionOptions {
                 && event.t >= from
                 && event.t < to
         });
-        let struck = strikes.map(|event| Struck {
-            t: event.t,
-            side: event.side,
-            phase: model.drive_phase(event.t).map(|turns| 360.0 * turns),
-            v_in: event.v_in,
-        });
-        Sectioned { cell: Cell::Run(run.summary), impacts: struck.collect(), states: run.section }
+        let phase = |event: &Event| model.drive_phase(event.t).map(|turns| 360.0 * turns);
+        let impacts = strikes.map(|event| (*event, phase(event))).collect();
+        Sectioned { cell: Cell::Run(run.summary), impacts, states: run.section }
     }
 
     fn without_model(cell: Cell) -> Sectioned {
@@ -162,13 +148,13 @@ impl Question for SectionOptions {
                     .each(IMPACTS, &states, |(_, impacts)| Some(*impacts))
             }
             SectionAt::Impacts => {
-                let impacts: Vec<Struck> =
-                    rows.iter().flat_map(|row| row.answer.impacts.iter().copied()).collect();
+                let impacts: Vec<&(Event, Option<f64>)> =
+                    rows.iter().flat_map(|row| &row.answer.impacts).collect();
                 table
-                    .each("t_s", &impacts, |impact| impact.t)
-                    .each("side", &impacts, |impact| impact.side.name())
-                    .each("phase_deg", &impacts, |impact| impact.phase)
-                    .each("v_in_m_per_s", &impacts, |impact| impact.v_in)
+                    .each("t_s", &impacts, |(event, _)| event.t)
+                    .each("side", &impacts, |(event, _)| event.side.name())
+                    .each("phase_deg", &impacts, |(_, phase)| *phase)
+                    .each("v_in_m_per_s", &impacts, |(event, _)| event.v_in)
             }
         }
     }

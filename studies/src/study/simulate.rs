@@ -29,14 +29,14 @@ pub struct Keep {
     pub until_settled: Option<f64>,
 }
 
-/// One run, recorded.
+/// One run with its samples and events, in SI units.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Simulation {
+pub struct Recorded {
     /// `t_s,x_m,v_m_per_s,base_accel_m_per_s2,phase`, with a transducer also `voltage_v,current_a,power_w`.
     pub samples: Table,
     /// `t_s,kind,side,v_in_m_per_s,v_out_m_per_s` in order of time.
     pub events: Table,
-    /// Statistics, outcome and ledger.
+    /// Statistics, outcome and energy ledger.
     pub summary: Summary,
 }
 
@@ -64,7 +64,7 @@ pub fn sample_times(
 }
 
 /// Runs `model` once. If another thread sets `cancel`, the run ends early with the outcome `Cancelled`.
-pub fn simulate(model: &Model, keep: &Keep, cancel: Option<&AtomicBool>) -> Simulation {
+pub fn simulate(model: &Model, keep: &Keep, cancel: Option<&AtomicBool>) -> Recorded {
     let ascending = keep.times.is_sorted();
     let mut sorted = Vec::new();
     if !ascending {
@@ -75,7 +75,7 @@ pub fn simulate(model: &Model, keep: &Keep, cancel: Option<&AtomicBool>) -> Simu
     let request = Request { sample_times, events: keep.events, cancel, ..Request::default() };
     let run = model.run(&Request { ledger: true, until_settled: keep.until_settled, ..request });
     let samples = if ascending { run.samples } else { in_order(&keep.times, &run.samples) };
-    Simulation {
+    Recorded {
         samples: samples_table(&samples, |sample| model.output(sample)),
         events: events_table(&run.events),
         summary: run.summary,
@@ -91,7 +91,7 @@ pub(super) fn in_order(times: &[f64], samples: &[Sample]) -> Vec<Sample> {
     times.iter().filter_map(find).collect()
 }
 
-/// Samples as the table of [`Simulation::samples`]; an `output` of a transducer may be missing.
+/// Samples as the table of [`Recorded::samples`]; an `output` of a transducer may be missing.
 pub fn samples_table(samples: &[Sample], output: impl Fn(&Sample) -> Option<Output>) -> Table {
     let table = Table::new()
         .each("t_s", samples, |sample| sample.t)
@@ -229,12 +229,10 @@ impl Fraction {
         })
     }
 
-    /// This divided by `n`.
     fn over(self, n: u128) -> Option<Self> {
         Some(Self { numerator: self.numerator, denominator: self.denominator.checked_mul(n)? })
     }
 
-    /// 1 over this.
     fn inverse(self) -> Self {
         Self { numerator: self.denominator, denominator: self.numerator }
     }
@@ -261,7 +259,6 @@ impl Fraction {
         numerator as f64 / denominator as f64
     }
 
-    /// How many times this fits into `whole`.
     fn fits_into(self, whole: Self) -> Option<u64> {
         let above = whole.numerator.checked_mul(self.denominator)?;
         let below = whole.denominator.checked_mul(self.numerator)?;

@@ -20,7 +20,6 @@ const ROUNDS: u64 = 64;
 /// Largest number of rows of a block, unless a unit is longer.
 const MAX_BLOCK: u64 = 4096;
 
-/// Largest number of shards.
 const MAX_SHARDS: u64 = 1_000_000;
 
 impl Shard {
@@ -106,7 +105,6 @@ impl Slice {
         slice
     }
 
-    /// The number of blocks of the whole sweep.
     fn blocks(&self) -> u64 {
         self.units.div_ceil(self.block)
     }

@@ -112,7 +112,6 @@ const PER_CYCLE: f64 = 128.0;
 
 /// Smallest number of samples of a spectrum.
 const MIN_SAMPLES: f64 = 4.0;
-/// Smallest number of samples by default.
 const DEFAULT_SAMPLES: f64 = 4096.0;
 
 /// The spectrum of the settled motion of `model`, which is run twice: for its verdict and for its samples.
@@ -228,12 +227,10 @@ impl Plan {
         self.samples as f64 / (self.cycles.1 / self.cycles.0)
     }
 
-    /// The time of sample `k` in s.
     fn time(&self, k: usize) -> f64 {
         (self.from + k as f64 * self.cycles.1 / (self.cycles.0 * self.samples as f64)).min(self.to)
     }
 
-    /// The frequency of line `k` in Hz.
     fn frequency(&self, k: usize) -> f64 {
         k as f64 * self.cycles.0 / self.cycles.1
     }

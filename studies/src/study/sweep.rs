@@ -101,7 +101,6 @@ fn add(counts: &mut BTreeMap<Box<str>, u64>, word: &str, n: u64) {
 }
 
 impl Tally {
-    /// Counts one more cell by how it ended and what it was.
     pub(super) fn count(&mut self, cell: &Cell) {
         self.cells += 1;
         self.ended_early += u64::from(cell.summary().is_some_and(|row| row.outcome.ended_at().is_some()));
@@ -130,7 +129,6 @@ impl Tally {
 pub const STANDARD: [&str; 7] =
     ["rms_velocity_m_per_s", "regime", "crossings", "impacts", "max_abs_x_m", "period", OUTCOME];
 
-/// The column of the outcome of a run.
 pub(super) const OUTCOME: &str = "outcome";
 
 /// The column of the direction of a walk.

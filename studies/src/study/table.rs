@@ -180,10 +180,7 @@ impl Table {
 
     /// The values of the column of real numbers called `name`.
     pub fn numbers(&self, name: &str) -> Option<&[f64]> {
-        match &self.column(name)?.values {
-            Values::Numbers(values) => Some(values),
-            _ => None,
-        }
+        if let Values::Numbers(values) = &self.column(name)?.values { Some(values) } else { None }
     }
 
     /// The words of the column called `name`; empty if it has other values or is not there.

@@ -13,11 +13,11 @@ use serde::{Deserialize, Serialize};
 
 use super::amplitudes::frees_at;
 use super::bisection::{Trial, between, next_between};
-use super::grid_study::Cells;
+use super::grid_study::{Built, Cells};
 use super::settled::{followed, runs_from};
 use super::walk::excitation_fault;
 use super::{Cancelled, CellFaults, Family, Grid, NoModel, Table, Task};
-use crate::dynamics::{Outcome, Regime, Run, Summary};
+use crate::dynamics::{Model, Outcome, Regime, Run, Summary};
 use crate::mechanics::Mechanism;
 use crate::scene::{Fault, Files, Scene, Start};
 use crate::system::threads::{Pool, Queue, UnderWay};
@@ -82,6 +82,12 @@ pub enum NoThresholds {
     Wrong(Vec<CellFaults>),
 }
 
+impl From<Cancelled> for NoThresholds {
+    fn from(_: Cancelled) -> Self {
+        Self::Cancelled
+    }
+}
+
 /// The thresholds of every cell of `grid`: the swept fields, then `of,value,low,high,undecided,windows`. A
 /// value is missing if it was not found or the mechanism is not solved. Ticks for each value of the scan in
 /// each cell. All cells are checked before the first run.
@@ -95,19 +101,16 @@ pub fn threshold_table(
     task: &Task,
 ) -> Result<Table, NoThresholds> {
     let cells = Cells::new(scene, files, grid.clone());
-    let count = grid.cells() as usize;
-    let begin = || cells.base.clone();
-    let cancelled = |Cancelled| NoThresholds::Cancelled;
-    let check =
-        |scene: &Scene, mechanism: &Arc<Mechanism>| faults(&from_rest(scene), mechanism, files, scan, onset);
-    let wrong = cells.wrong(pool, task, check).map_err(cancelled)?;
-    if !wrong.is_empty() {
-        return Err(NoThresholds::Wrong(wrong));
-    }
+    cells.check(pool, task, |scene, mechanism| {
+        let trial = from_rest(scene);
+        faults(&trial, mechanism, files, scan, |model| {
+            let suits = onset != Onset::Interwell || model.repeats();
+            (!suits).then(|| excitation_fault(&trial, NO_PERIOD.to_owned()))
+        })
+    })?;
     // with several cells, each runs on one thread
-    let ahead = if count == 1 { pool.count() } else { 1 };
-    let cell = |scene: &mut Scene, index: usize| {
-        let built = cells.mechanism(index as u64, 0, scene, task.cancel).ok_or(Cancelled)?;
+    let ahead = if grid.cells() == 1 { pool.count() } else { 1 };
+    let of_cell = |scene: &Scene, built: Built, _: u64| {
         let Ok(mechanism) = built else {
             scan.values.iter().for_each(|_| (task.tick)());
             return Ok(Found { undecided: true, ..Found::default() });
@@ -118,7 +121,7 @@ pub fn threshold_table(
         let search = Search { family, onset, until_settled, task, pool: Some(pool), ahead };
         search.found(scene, &mechanism, scan)
     };
-    let found = pool.map(count, begin, cell).map_err(cancelled)?;
+    let found = cells.map(1, pool, task, of_cell)?;
     Ok(grid
         .table(|| 0..grid.cells())
         .each("of", &found, |_| onset.name())
@@ -133,20 +136,19 @@ pub(super) fn from_rest(scene: &Scene) -> Scene {
     Scene { start: Start::Rest, ..scene.clone() }
 }
 
-/// The faults at the first value of the scan, if no value gives a model that may have the motion.
-fn faults(
-    trial: &Scene,
+/// The faults at the first value of the scan, if no value gives a model in which `fault` finds none.
+pub(super) fn faults(
+    scene: &Scene,
     mechanism: &Arc<Mechanism>,
     files: &Files,
     scan: &Scan,
-    onset: Onset,
+    fault: impl Fn(&Model) -> Option<Fault>,
 ) -> Option<Vec<Fault>> {
-    let family = Family::new(trial, files, mechanism, &scan.field);
+    let family = Family::new(scene, files, mechanism, &scan.field);
     let mut first = None;
     for value in &scan.values {
         let faults = match family.model(*value) {
-            Ok(model) if onset != Onset::Interwell || model.repeats() => return None,
-            Ok(_) => vec![excitation_fault(trial, NO_PERIOD.to_owned())],
+            Ok(model) => vec![fault(&model)?],
             Err(NoModel::NoField | NoModel::Unsolved) => return None,
             Err(NoModel::Faults(faults)) => faults,
         };
@@ -229,10 +231,7 @@ impl Answers {
             && let Some((_, Some(verdict))) = self.between.iter().find(|answer| answer.0 == middle)
         {
             tried.insert(place, (middle, *verdict));
-            match verdict.does {
-                true => high = middle,
-                false => (low, place) = (middle, place + 1),
-            }
+            if verdict.does { high = middle } else { (low, place) = (middle, place + 1) }
         }
         let (below, above) = tried.split_at(place);
         let known = |does: bool| move |tried: &&(f64, Verdict)| tried.1 == Verdict { does, known: true };
@@ -253,7 +252,6 @@ const SHARING: usize = 5;
 /// Number of values of a bisection that are then run at a time.
 const SHARED_AHEAD: usize = 3;
 
-/// A search over the values of a field.
 pub(super) struct Search<'a> {
     pub family: Family<'a>,
     pub onset: Onset,
@@ -352,7 +350,6 @@ pub struct Verdict {
 }
 
 impl Verdict {
-    /// The verdict on a value without a valid model.
     pub(super) const NO_MODEL: Self = Self { does: false, known: false };
 }
 

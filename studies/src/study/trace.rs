@@ -3,7 +3,7 @@
 //! A picture must be right even if few samples are requested, so it has samples of its own.
 
 use super::simulate::in_order;
-use super::{Keep, Simulation, Table, events_table, samples_table};
+use super::{Keep, Recorded, Table, events_table, samples_table};
 use crate::dynamics::{Event, EventKind, Model, Outcome, Phase, Request, Sample, Side};
 
 /// The data of a run that a picture shows.
@@ -52,7 +52,6 @@ const BAND_PERIODS: f64 = 60.0;
 /// Number of last forcing periods that are then shown.
 const SHOWN_PERIODS: f64 = 24.0;
 
-/// Largest number of stroboscopic states.
 const MAX_STROBES: u32 = 300;
 
 /// Samples of a phase portrait.
@@ -69,7 +68,7 @@ pub fn simulate_with_trace(
     keep: &Keep,
     window: Option<(f64, f64)>,
     cancel: Option<&std::sync::atomic::AtomicBool>,
-) -> (Simulation, Trace) {
+) -> (Recorded, Trace) {
     let request = Request { cancel, until_settled: keep.until_settled, ..Request::default() };
     // the sample times depend on the end of the run and on its settled window
     let span = match keep.until_settled {
@@ -77,9 +76,11 @@ pub fn simulate_with_trace(
         None => (model.settle(), model.duration()),
     };
     let mut close = window.unwrap_or((portrait_from(model, span), span.1));
-    let mut strobes = strobe_times(model, close);
-    let mut picture_samples =
-        ascending(picture_times(model, close, span.1).into_iter().chain(strobes.clone()).collect());
+    let sampled = |close: (f64, f64), end: f64| {
+        let strobes = strobe_times(model, close);
+        (ascending(picture_times(model, close, end).into_iter().chain(strobes.clone()).collect()), strobes)
+    };
+    let (mut picture_samples, mut strobes) = sampled(close, span.1);
     let times = ascending(picture_samples.iter().chain(&keep.times).copied().collect());
     let run = model.run(&Request { sample_times: &times, events: true, ledger: true, ..request });
     let (left, right) = model.stop_positions();
@@ -89,9 +90,7 @@ pub fn simulate_with_trace(
     if end < span.1 && !matches!(run.summary.outcome, Outcome::Cancelled { .. }) {
         // the run ended where it has few samples, so it is repeated with samples up to its end
         close = window.filter(|(from, _)| *from < end).map_or((0.0, end), |(from, to)| (from, to.min(end)));
-        strobes = strobe_times(model, close);
-        picture_samples =
-            ascending(picture_times(model, close, end).into_iter().chain(strobes.clone()).collect());
+        (picture_samples, strobes) = sampled(close, end);
         shown = model.run(&Request { sample_times: &picture_samples, ..request }).samples;
     }
     let path = path(model, &shown, &run.events, stops);
@@ -127,15 +126,12 @@ pub fn simulate_with_trace(
     };
     let samples = samples_table(&in_order(&keep.times, &run.samples), |sample| model.output(sample));
     let events = events_table(if keep.events { &run.events } else { &[] });
-    (Simulation { samples, events, summary: run.summary }, trace)
+    (Recorded { samples, events, summary: run.summary }, trace)
 }
 
 /// First time in s of the phase portrait of a run with this settled window.
 fn portrait_from(model: &Model, (settle, end): (f64, f64)) -> f64 {
-    match model.forcing_period() {
-        Some(period) => settle.max(end - PORTRAIT_PERIODS * period).min(end),
-        None => 0.0,
-    }
+    model.forcing_period().map_or(0.0, |period| settle.max(end - PORTRAIT_PERIODS * period).min(end))
 }
 
 fn shown_from(model: &Model, end: f64) -> f64 {

@@ -18,7 +18,6 @@ const SEED: u64 = 1;
 /// The quantiles at the ends of a band in fortieths: 2.5 % and 97.5 %.
 const ENDS: [usize; 2] = [1, 39];
 
-/// The column of the number of draws that came to their end.
 const COUNT: &str = "draws";
 
 /// The draws of uncertain fields, from independent normal distributions about the value of each field.
@@ -39,13 +38,10 @@ struct DrawnField {
     range: Range,
     /// The axis of the grid that has the field.
     axis: Option<usize>,
-    /// The value in the scene.
     value: f64,
-    /// The probability of each draw.
     probabilities: Vec<f64>,
 }
 
-/// Standard deviation of a field about a value.
 fn sigma(law: &Variation, value: f64) -> f64 {
     if law.relative { law.by * value.abs() } else { law.by }
 }
@@ -84,22 +80,16 @@ impl DrawnField {
 }
 
 impl Draws {
-    /// `count` draws of these fields of a scene, of which `grid` may sweep some; 100 if it is not given.
+    /// Draws of these fields of a scene, of which `grid` may sweep some: as many as `asked`, or 100.
     ///
-    /// Method: the inverse of the distribution function at uniform numbers by ChaCha8 seeded with `seed` (1
-    /// if it is not given): for each draw one for each field in this order, the middle of one of 2^52
-    /// intervals by the upper 52 bits of 64. So the first draws are the same for any number of them.
+    /// Method: the inverse of the distribution function at uniform numbers by ChaCha8 with the seed `asked`
+    /// or 1: for each draw one for each field in this order, the middle of one of 2^52 intervals by the upper
+    /// 52 bits of 64. So the first draws are the same for any number of them.
     ///
     /// Precondition: the scene has these numbers, and at least half of each distribution lies in the
     /// [range](share_in_range) of its field.
-    pub fn new(
-        fields: Vec<Variation>,
-        count: Option<u64>,
-        seed: Option<u64>,
-        scene: &Scene,
-        grid: &Grid,
-    ) -> Self {
-        let (count, seed) = (count.unwrap_or(DRAWS), seed.unwrap_or(SEED));
+    pub fn new(fields: Vec<Variation>, asked: &Uncertain, scene: &Scene, grid: &Grid) -> Self {
+        let (count, seed) = (asked.draws.unwrap_or(DRAWS), asked.seed.unwrap_or(SEED));
         let mut random = ChaCha8Rng::seed_from_u64(seed);
         let mut probability = || ((random.next_u64() >> 12) as f64 + 0.5) / (1_u64 << 52) as f64;
         let any = Range { low: f64::NEG_INFINITY, high: f64::INFINITY, whole: false };
@@ -131,7 +121,6 @@ impl Draws {
         1 + self.count
     }
 
-    /// Whether draws have different mechanisms.
     pub(super) fn change_mechanism(&self) -> bool {
         self.fields.iter().any(|field| is_of_mechanism(&field.law.field))
     }
@@ -163,8 +152,8 @@ impl Draws {
         }
         let text = |field: &DrawnField| {
             // a swept field has a value of its own in each cell
-            let value =
-                field.axis.map_or_else(|| format!("={}", number_text(field.value)), |_| String::new());
+            let value = field.axis.is_none().then(|| format!("={}", number_text(field.value)));
+            let value = value.unwrap_or_default();
             format!("{}{value}\u{b1}{}", field.law.field, field.deviation())
         };
         let fields: Vec<String> = self.fields.iter().map(text).collect();

@@ -120,10 +120,7 @@ pub(super) struct Carried(Option<(Model, MapState)>);
 impl Carried {
     /// The next model, which continues from the run before.
     pub fn continued(&self, model: Model) -> Model {
-        match &self.0 {
-            Some((before, state)) => model.carried_on(before, *state),
-            None => model,
-        }
+        if let Some((before, state)) = &self.0 { model.carried_on(before, *state) } else { model }
     }
 
     /// Stores the state from which the next run continues.
@@ -156,7 +153,6 @@ pub(super) fn without_a_period(model: &Model, scene: &Scene, what: &str) -> Opti
     (!model.repeats()).then(|| excitation_fault(scene, problem))
 }
 
-/// A fault of a scene's excitation, named by its kind.
 pub(super) fn excitation_fault(scene: &Scene, problem: String) -> Fault {
     choice_fault(scene, "excitation", problem)
 }

@@ -19,10 +19,8 @@ const PER_PERIOD: f64 = 80.0;
 
 /// Largest number of samples that are kept: some minutes of the prototype.
 const MAX_KEPT_SAMPLES: usize = 200_000;
-/// Largest number of events that are kept.
 const MAX_KEPT_EVENTS: usize = 50_000;
 
-/// Largest number of ledgers that are kept.
 const MAX_KEPT_LEDGERS: usize = 10_000;
 /// Largest number of ledgers that one call of `advance` stores; over a longer time, only the last ones.
 const MAX_LEDGERS_PER_CALL: f64 = 64.0;
@@ -37,12 +35,10 @@ pub struct Watch {
     models: Models,
     samples: VecDeque<Sample>,
     events: VecDeque<Event>,
-    /// Number of events that have been dropped.
     dropped_events: usize,
     /// Ledgers at the start and at multiples of the forcing period.
     ledgers: VecDeque<(f64, LiveLedger)>,
     keeps_ledgers: bool,
-    /// The state at the present time.
     now: Sample,
     /// Time between samples in s.
     step: f64,

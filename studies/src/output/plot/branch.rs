@@ -65,7 +65,7 @@ pub fn branch_chart(branches: &[Branch], phase_deg: f64, ranges: Ranges) -> Char
     periods.dedup();
     let periods: Vec<String> = periods.iter().map(u32::to_string).collect();
     let end = match branches {
-        [branch] => format!("; the branch ends {}", branch.end),
+        [branch] => format!("; the branch ends {}", branch.end.name()),
         _ => format!("; {} branches", branches.len()),
     };
     let (count, periods, phase) = (points.len(), periods.join(", "), short(phase_deg));

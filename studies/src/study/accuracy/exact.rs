@@ -10,7 +10,6 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use crate::mechanics::{ForceCurve, Piece};
 use crate::numeric::{DoubleDouble, Number, Scalar, elementary};
 
-/// A double as a double-double.
 pub(crate) fn dd(value: f64) -> DoubleDouble {
     Number::of(value)
 }

@@ -116,7 +116,6 @@ pub(super) struct Trial {
     pub run: Run,
 }
 
-/// The runs of a case with their checks.
 pub(super) type Trials = Result<Vec<Trial>, Stopped>;
 
 impl Trial {
@@ -334,7 +333,6 @@ pub(super) fn hard_impacts(run: &Run) -> Vec<f64> {
     impacts_above(1e-2, run)
 }
 
-/// |value - exact| relative to `scale`.
 pub(super) fn off(value: f64, exact: f64, scale: f64) -> f64 {
     (value - exact).abs() / scale
 }

@@ -95,7 +95,6 @@ impl Report {
         short
     }
 
-    /// The variants of all cases, each with the name of its case.
     fn variants(&self) -> impl Iterator<Item = (&'static str, &Variant)> {
         self.cases.iter().flat_map(|(case, variants)| variants.iter().map(|variant| (*case, variant)))
     }

@@ -150,7 +150,6 @@ fn nearest(impacts: &[Event], impact: &Event) -> f64 {
     before.into_iter().chain(after).map(|event| (event.t - impact.t).abs()).fold(f64::INFINITY, f64::min)
 }
 
-/// The median of measured times.
 pub(super) fn median(mut measure: impl FnMut() -> f64) -> f64 {
     let mut times = vec![measure()];
     while times.len() < MOST_REPEATS && times.iter().sum::<f64>() < MEASURED_FOR {

@@ -160,7 +160,6 @@ impl Answer {
     }
 }
 
-/// Identity of an attractor.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Key {
     Kind(u32),

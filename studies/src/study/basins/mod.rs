@@ -99,10 +99,7 @@ impl Basins {
         if !loses_energy(scene) {
             return Err(NoBasins::NoLoss);
         }
-        let electrical = match scene.start {
-            Start::At { electrical, .. } => electrical,
-            _ => 0.0,
-        };
+        let electrical = if let Start::At { electrical, .. } = scene.start { electrical } else { 0.0 };
         let ((low, high), v) = starts.extent();
         let at = |x_mm: f64, v_m_per_s: f64, excitation: &Excitation| {
             let start = Start::At { x_mm, v_m_per_s, electrical };
@@ -143,7 +140,6 @@ impl Basins {
         Ok(basins)
     }
 
-    /// The error for starts that all lie outside the limits of displacement.
     fn beyond(&self) -> NoBasins {
         let (from, to) = self.room;
         let is_left = self.starts.at(0).0 / 1e3 < from;

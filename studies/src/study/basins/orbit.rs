@@ -14,10 +14,9 @@ use nalgebra::{Matrix3, Vector3};
 use super::stroboscopic::{Point, Stroboscope};
 use crate::dynamics::{Capture, Jacobian, MapState, Outcome};
 use crate::numeric::elementary;
-use crate::study::Cancelled;
+use crate::study::Result;
 use crate::study::orbit::newton_step;
 
-/// Largest number of steps of Newton's method.
 const MAX_STEPS: usize = 12;
 /// Longest step of Newton's method, in units of the scales.
 const LONGEST_STEP: f64 = 0.1;
@@ -29,7 +28,6 @@ const SAME: f64 = 1e-6;
 
 /// Smallest radius of a circle in the norm, in which lengths are never below those in units of the scales.
 const MIN_RADIUS: f64 = 2e-5;
-/// Number of circles.
 const RADII: usize = 34;
 /// Ratio of consecutive radii.
 const GROWTH: f64 = std::f64::consts::SQRT_2;
@@ -48,7 +46,6 @@ const TIMES: [u32; 6] = [1, 2, 4, 8, 16, 32];
 /// Number of doublings of the series of the norm; a contraction by only 1e-9 per period needs half of them.
 const DOUBLINGS: usize = 60;
 
-/// Result of the search for an orbit near a proposal.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Found {
     /// A stable orbit: its states, each with its ellipse.
@@ -60,7 +57,7 @@ pub(super) enum Found {
 }
 
 /// The orbit of the proposed or twice the proposed period near a state.
-pub(super) fn find(scope: &Stroboscope, period: u32, state: MapState) -> Result<Found, Cancelled> {
+pub(super) fn find(scope: &Stroboscope, period: u32, state: MapState) -> Result<Found> {
     let first = of_period(scope, period, state)?;
     // shortly after a period doubling the two halves of the doubled orbit are nearly equal
     if let Found::Unstable(_) = first
@@ -71,13 +68,13 @@ pub(super) fn find(scope: &Stroboscope, period: u32, state: MapState) -> Result<
     Ok(first)
 }
 
-fn of_period(scope: &Stroboscope, period: u32, state: MapState) -> Result<Found, Cancelled> {
+fn of_period(scope: &Stroboscope, period: u32, state: MapState) -> Result<Found> {
     let Some(root) = newton(scope, period, scope.point(state)) else { return Ok(Found::Nothing) };
     let after: Vec<(Point, u32)> = (1..=period).map(|periods| (root, periods)).collect();
     let Some(states) = scope.map(&after)?.into_iter().collect::<Option<Vec<Point>>>() else {
         return Ok(Found::Nothing);
     };
-    let same = |other: &Point| distance(other, &root) < SAME;
+    let same = |other: &Point| (Vector3::from(*other) - Vector3::from(root)).norm() < SAME;
     let period = states.iter().position(same).map_or(period, |place| place as u32 + 1);
     let mut captures = Vec::new();
     let mut orbit = vec![root];
@@ -104,7 +101,7 @@ fn ellipse(
     period: u32,
     at: Point,
     mut jacobian: Matrix3<f64>,
-) -> Result<Option<Capture>, Cancelled> {
+) -> Result<Option<Capture>> {
     for times in TIMES {
         let Some(norm) = lyapunov(&jacobian) else { break };
         if let Some(radius) = radius(scope, times * period, at, &norm)? {
@@ -113,10 +110,6 @@ fn ellipse(
         jacobian *= jacobian;
     }
     Ok(None)
-}
-
-fn distance(a: &Point, b: &Point) -> f64 {
-    (Vector3::from(*a) - Vector3::from(*b)).norm()
 }
 
 /// A fixed point of the map of `period` forcing periods near `from`.
@@ -163,7 +156,6 @@ fn lyapunov(jacobian: &Matrix3<f64>) -> Option<Matrix3<f64>> {
     None
 }
 
-/// The squared length of a vector in a norm.
 fn square(norm: &Matrix3<f64>, vector: &Vector3<f64>) -> f64 {
     vector.dot(&(norm * vector))
 }
@@ -186,12 +178,7 @@ fn directions(size: usize) -> Vec<Vector3<f64>> {
 
 /// The largest radius around a fixed point up to which the map contracts every circle in the norm, at least
 /// half as strongly as its derivative does; `None` if it does not contract even the smallest one.
-fn radius(
-    scope: &Stroboscope,
-    period: u32,
-    at: Point,
-    norm: &Matrix3<f64>,
-) -> Result<Option<f64>, Cancelled> {
+fn radius(scope: &Stroboscope, period: u32, at: Point, norm: &Matrix3<f64>) -> Result<Option<f64>> {
     // with M = L L^T, the points of length 1 in the norm are those that L^T takes to length 1
     let Some(factor) = norm.cholesky().map(|factor| factor.l().transpose()) else { return Ok(None) };
     let around: Option<Vec<Vector3<f64>>> =

@@ -11,7 +11,7 @@ use std::collections::BTreeSet;
 use super::stroboscopic::Stroboscope;
 use crate::dynamics::{Capture, MapState, Region};
 use crate::numeric::extent;
-use crate::study::Cancelled;
+use crate::study::Result;
 
 /// Number of motions that are followed to find an attractor.
 const MOTIONS: usize = 16;
@@ -25,7 +25,6 @@ const APART: f64 = 1e-6;
 
 /// Numbers of cells along each side of the extent of an attractor that are tried.
 const ALONG: [f64; 3] = [48.0, 96.0, 192.0];
-/// Largest number of cells of a region.
 const MAX_CELLS: usize = 20_000;
 
 /// Largest number of rounds in which cells are added.
@@ -33,11 +32,7 @@ const ROUNDS: usize = 40;
 
 /// A region around the irregular motion through `state`; `None` if there is none, or if a motion reaches a
 /// known orbit.
-pub(super) fn absorbing(
-    scope: &Stroboscope,
-    state: MapState,
-    known: &[Capture],
-) -> Result<Option<Region>, Cancelled> {
+pub(super) fn absorbing(scope: &Stroboscope, state: MapState, known: &[Capture]) -> Result<Option<Region>> {
     // the cells are those of a plane
     if scope.size() == 3 {
         return Ok(None);
@@ -73,7 +68,7 @@ fn closed(
     region: Region,
     states: &[MapState],
     known: &[Capture],
-) -> Result<Option<Region>, Cancelled> {
+) -> Result<Option<Region>> {
     let mut cells: BTreeSet<(i32, i32)> = BTreeSet::new();
     for (i, j) in states.iter().map(|state| region.cell((state.x, state.v))) {
         cells.extend((-1..=1).flat_map(|right| (-1..=1).map(move |up| (i + right, j + up))));

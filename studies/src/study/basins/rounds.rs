@@ -8,7 +8,7 @@ use crate::dynamics::{
     Arrival, Capture, MapState, Outcome, Place, Pursued, Pursuit, Regime, Region, ReleaseIdentity, Side,
     Summary,
 };
-use crate::study::{Cancelled, Task, settled};
+use crate::study::{Result, Task, settled};
 use crate::system::threads::Pool;
 
 /// Number of forcing periods after which a motion that has reached no known attractor is classified.
@@ -30,7 +30,6 @@ impl Way {
         }
     }
 
-    /// The sum of both counts.
     pub fn and(self, next: Self) -> Self {
         Self {
             periods: self.periods.saturating_add(next.periods),
@@ -86,7 +85,6 @@ impl Item {
 
 /// Number of starts in the first round of a map: rounds are short while few attractors are known.
 const FIRST_ROUND: usize = 64;
-/// Largest number of starts in a round.
 pub(super) const MAX_ROUND: usize = 8192;
 
 /// Largest number of searches for regions around motions of one kind.
@@ -101,7 +99,6 @@ const SAME_PROPOSAL: f64 = 1e-3;
 /// Distance below which a state lies on an unstable orbit, as a share of the scales.
 const ON_ORBIT: f64 = 1e-6;
 
-/// Classification of a motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Verdict {
     /// A settled motion: all with the same regime, side and period (if any) are one attractor.
@@ -171,14 +168,12 @@ impl Kind {
     }
 }
 
-/// A release, and what follows it.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Release {
     identity: ReleaseIdentity,
     pub next: Fate,
 }
 
-/// The known results of a map.
 #[derive(Debug, Default)]
 pub(super) struct Rounds {
     pub fates: Vec<Fate>,
@@ -190,7 +185,6 @@ pub(super) struct Rounds {
     pub orbit_of: Vec<u32>,
     /// States from which no stable orbit was found.
     rejected: Vec<MapState>,
-    /// States of unstable orbits.
     unstable: Vec<MapState>,
     /// Regions around irregular motions.
     pub regions: Vec<Region>,
@@ -308,8 +302,7 @@ impl Rounds {
         }
     }
 
-    /// Searches for an orbit near a proposed state.
-    fn propose(&mut self, scope: &Stroboscope, period: u32, state: MapState) -> Result<(), Cancelled> {
+    fn propose(&mut self, scope: &Stroboscope, period: u32, state: MapState) -> Result<()> {
         let known = self.captures.iter().any(|capture| capture.holds(state));
         let tried = self.rejected.iter().any(|rejected| is_near(scope, *rejected, state, SAME_PROPOSAL));
         if known || tried {
@@ -337,7 +330,7 @@ impl Rounds {
 
     /// Searches for a region around the irregular motion that an item reaches and that passes through
     /// `state`.
-    fn surround(&mut self, scope: &Stroboscope, item: Item, state: MapState) -> Result<(), Cancelled> {
+    fn surround(&mut self, scope: &Stroboscope, item: Item, state: MapState) -> Result<()> {
         let fate = item.after.map_or(self.fates[item.row], |after| self.releases[after.0 as usize].next);
         let Fate::Kind(kind, _) = fate else { return Ok(()) };
         let irregular = match &self.kinds[kind as usize] {
@@ -356,7 +349,6 @@ impl Rounds {
         Ok(())
     }
 
-    /// Whether a state lies in a region.
     fn is_surrounded(&self, state: MapState) -> bool {
         self.regions.iter().any(|region| region.holds((state.x, state.v)))
     }
@@ -375,7 +367,7 @@ fn round(
     starts: &Starts,
     items: Vec<Item>,
     task: &Task,
-) -> Result<Vec<Item>, Cancelled> {
+) -> Result<Vec<Item>> {
     let (known, regions) = (rounds.captures.clone(), rounds.regions.clone());
     let max_work = scope.effort.of_one(rounds.remaining);
     let pursuit =

@@ -72,7 +72,6 @@ impl EvenRange {
     }
 }
 
-/// Checks that two ends make a range.
 fn check_ends((from, to): (f64, f64)) -> Result<(), StartsError> {
     let wrong = |what| Err(StartsError::Range(what));
     match (from, to) {

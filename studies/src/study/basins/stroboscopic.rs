@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use crate::dynamics::{Arrival, MapState, Model, Outcome, Pursued, Pursuit, Request, Sample, Summary};
 use crate::study::orbit::Units;
-use crate::study::{Cancelled, ExponentOptions, average_exponents};
+use crate::study::{Cancelled, ExponentOptions, Result, average_exponents};
 use crate::system::threads::{Pool, UnderWay, share};
 
 /// A displacement, a velocity and the state of a circuit (0 without one) in units of the scene's scales.
@@ -30,7 +30,6 @@ impl Stroboscope<'_> {
         Units::of(self.model, 1.0)
     }
 
-    /// A state as a point.
     pub fn point(&self, MapState { x, v, electrical }: MapState) -> Point {
         let [length, speed, charge] = self.units().of_state();
         [x / length, v / speed, electrical / charge]
@@ -54,7 +53,7 @@ impl Stroboscope<'_> {
 
     /// The images of points, each after its number of forcing periods. `None` for motions that begin outside
     /// the limits, end early or come to rest, and for all if they need more work than is left.
-    pub fn map(&self, starts: &[(Point, u32)]) -> Result<Vec<Option<Point>>, Cancelled> {
+    pub fn map(&self, starts: &[(Point, u32)]) -> Result<Vec<Option<Point>>> {
         let mut images = vec![None; starts.len()];
         if !self.effort.has_room_for(starts.iter().map(|(_, periods)| u64::from(*periods)).sum()) {
             return Ok(images);
@@ -85,12 +84,7 @@ impl Stroboscope<'_> {
 
     /// Stroboscopic states of motions over `periods` forcing periods, without the first `skipped` ones;
     /// `None` if a motion ends early or they need more work than is left.
-    pub fn paths(
-        &self,
-        starts: &[MapState],
-        periods: u32,
-        skipped: usize,
-    ) -> Result<Option<Vec<MapState>>, Cancelled> {
+    pub fn paths(&self, starts: &[MapState], periods: u32, skipped: usize) -> Result<Option<Vec<MapState>>> {
         if !self.effort.has_room_for(starts.len() as u64 * u64::from(periods)) {
             return Ok(None);
         }
@@ -125,11 +119,7 @@ impl Stroboscope<'_> {
     }
 
     /// The results of pursuits in order, with a `tick` for each.
-    pub fn pursue(
-        &self,
-        pursuits: &[Pursuit],
-        tick: &(dyn Fn(&Pursuit) + Sync),
-    ) -> Result<Vec<Pursued>, Cancelled> {
+    pub fn pursue(&self, pursuits: &[Pursuit], tick: &(dyn Fn(&Pursuit) + Sync)) -> Result<Vec<Pursued>> {
         let period = self.period();
         let work = |next: &dyn Fn(UnderWay) -> Option<usize>| {
             let mut all = Vec::new();
@@ -155,7 +145,6 @@ impl Stroboscope<'_> {
     }
 }
 
-/// The state at the end of a run.
 pub(super) fn final_state(summary: &Summary) -> MapState {
     MapState { x: summary.final_x, v: summary.final_v, electrical: summary.final_electrical }
 }

@@ -11,7 +11,7 @@ use super::stroboscopic::Stroboscope;
 use super::{Answer, Basins};
 use crate::dynamics::{Place, Pursuit};
 use crate::scene::TOLERANCES;
-use crate::study::{Cancelled, Task};
+use crate::study::{Result, Task};
 use crate::system::threads::Pool;
 
 /// Factor on the tolerance for the second run of a start; its inverse if the product exceeds the largest
@@ -74,12 +74,7 @@ impl Basins {
     }
 
     /// For each release, whether the motion after it is sure, as the continuation of a sure start.
-    fn sure_releases(
-        &self,
-        scope: &Stroboscope,
-        answer: &Answer,
-        sure: &[bool],
-    ) -> Result<Vec<bool>, Cancelled> {
+    fn sure_releases(&self, scope: &Stroboscope, answer: &Answer, sure: &[bool]) -> Result<Vec<bool>> {
         let mut known = vec![false; self.rounds.releases.len()];
         // for each release, the continuation of a start that reaches it
         let mut next: BTreeMap<u32, Item> = BTreeMap::new();
@@ -119,7 +114,7 @@ impl Basins {
         scope: &Stroboscope,
         items: &[Item],
         tick: &(dyn Fn() + Sync),
-    ) -> Result<Vec<Option<Fate>>, Cancelled> {
+    ) -> Result<Vec<Option<Fate>>> {
         let (known, regions) = (&self.rounds.captures, &self.rounds.regions);
         let max_work = scope.effort.of_one(items.len());
         let endless = |item: &Item| Item { repeats_from: Pursuit::NEVER, ..*item };

@@ -10,7 +10,6 @@ use crate::study::Task;
 use crate::study::settled::{followed, shared_runs};
 use crate::system::threads::Pool;
 
-/// Result of one design.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Judged {
     /// It is not a valid scene.
@@ -84,7 +83,6 @@ impl<'a> Evaluator<'a> {
         })
     }
 
-    /// The values of the varied fields in a design.
     pub fn values_of_varied(&self, at: &[f64]) -> Vec<f64> {
         let mut scene = self.question.environments[0].scene.clone();
         apply(&self.paths, at, &mut scene);
@@ -111,7 +109,6 @@ impl<'a> Evaluator<'a> {
         self.tried.into_inner().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The results of varied designs.
     pub fn judge_varied(&self, designs: &[Design]) -> Result<Vec<Judged>, NoBest> {
         let each = self.question.environments.len();
         let constraints = self.question.subject_to.iter().map(|constraint| constraint.of);

@@ -13,7 +13,7 @@ mod words;
 use serde::{Deserialize, Serialize};
 
 use super::{SummaryField, Table, Task};
-use crate::scene::{Fault, Files, Scene, column_names};
+use crate::scene::{Fault, Files, Scene};
 use crate::system::threads::Pool;
 use evaluate::Evaluator;
 pub use varied::SAMPLES;
@@ -185,8 +185,7 @@ impl BestDesign {
     /// One row: the fields, `maximised,value,margin_low,margin_high,worst,quantile_5`, the margins of further
     /// fields, the design stepped back in the first field, and the value in each of several environments.
     pub fn table(&self, question: &BestQuestion) -> Table {
-        let fields: Vec<&str> = question.over.iter().map(|range| range.field.as_str()).collect();
-        let names = column_names(&fields);
+        let names = names(question);
         let (row, back) = ([self], [self.stepped_back.as_ref()]);
         let mut table = Table::new();
         for (name, value) in names.iter().zip(&self.optimum.at) {

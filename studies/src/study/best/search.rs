@@ -20,7 +20,6 @@ const SIDES: [usize; 4] = [4, 2, 1, 1];
 /// Inverse of the resolution of a field relative to its range.
 const PARTS: f64 = 5e3;
 
-/// Result of the search.
 #[derive(Debug)]
 pub(super) struct Found {
     pub optimum: Optimum,
@@ -188,10 +187,8 @@ const TOGETHER: usize = 16;
 
 /// The margins of each field, below and above.
 pub(super) fn margins(evaluator: &Evaluator, found: &Found) -> Result<Vec<[Option<f64>; 2]>, NoBest> {
-    let fields = 0..evaluator.over.len();
-    fields
-        .map(|field| Ok([side(evaluator, found, field, -1.0)?, side(evaluator, found, field, 1.0)?]))
-        .collect()
+    let side = |field: usize, way: f64| side(evaluator, found, field, way);
+    (0..evaluator.over.len()).map(|field| Ok([side(field, -1.0)?, side(field, 1.0)?])).collect()
 }
 
 /// The smallest distance in the direction `way` (-1 or 1) at which the value has fallen; every step is tried.
@@ -227,10 +224,7 @@ fn side(evaluator: &Evaluator, found: &Found, field: usize, way: f64) -> Result<
             let mut outside = *value;
             while (outside - inside).abs() > 1.5 * resolution(range) {
                 let middle = rounded(range, 0.5 * (inside + outside));
-                match holds(&evaluator.judge(&[at(middle)])?[0]) {
-                    true => inside = middle,
-                    false => outside = middle,
-                }
+                if holds(&evaluator.judge(&[at(middle)])?[0]) { inside = middle } else { outside = middle }
             }
             // a multiple of the resolution, except at an end of the range
             return Ok(Some(multiple((outside - middle).abs(), resolution(range))));

@@ -15,7 +15,7 @@ mod probability;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use super::grid_study::Cells;
+use super::grid_study::{Built, Cells};
 use super::thresholds::NoThresholds;
 use super::walk::{choice_fault, excitation_fault};
 use super::{Cancelled, Grid, Table, Task};
@@ -84,42 +84,32 @@ pub fn escape_table(
             Err(faults) => Some(faults),
         }
     };
-    let wrong = cells.wrong(pool, task, fault).map_err(|Cancelled| NoThresholds::Cancelled)?;
-    if !wrong.is_empty() {
-        return Err(NoThresholds::Wrong(wrong));
-    }
-    let (count, runs) = (grid.cells() as usize, options.runs as usize);
-    let begin = || cells.base.clone();
-    let model = |scene: &mut Scene, cell: usize, run: u64| {
-        task.check_cancelled()?;
-        let built = cells.mechanism(cell as u64, 0, scene, task.cancel).ok_or(Cancelled)?;
+    cells.check(pool, task, fault)?;
+    let model = |scene: &Scene, built: Built, run: u64| {
         let prepared = prepared(scene, run, options.within);
-        Ok(built.ok().and_then(|mechanism| Model::build(&prepared, mechanism).ok()))
+        built.ok().and_then(|mechanism| Model::build(&prepared, mechanism).ok())
     };
-    let wait = |scene: &mut Scene, part: usize| {
-        let waited = match model(scene, part / runs, (part % runs) as u64)? {
-            Some(model) => Some(waited(&model, options.until, task.cancel)?),
-            None => None,
-        };
+    let wait = |scene: &Scene, built: Built, run: u64| {
+        let model = model(scene, built, run);
+        let waited = model.map(|model| waited(&model, options.until, task.cancel)).transpose()?;
         (task.tick)();
         Ok(waited)
     };
-    let kramers = |scene: &mut Scene, cell: usize| {
-        Ok(model(scene, cell, 0)?.map(|model| match options.until {
+    let kramers = |scene: &Scene, built: Built, run: u64| {
+        Ok(model(scene, built, run).map(|model| match options.until {
             Until::Well => kramers_rate(&model),
             Until::Crossing => Err(NoKramers::Until),
         }))
     };
-    let cancelled = |Cancelled| NoThresholds::Cancelled;
-    let waited = pool.map(count * runs, begin, wait).map_err(cancelled)?;
-    let rates = pool.map(count, begin, kramers).map_err(cancelled)?;
+    let runs = options.runs as usize;
+    let waited = cells.map(runs, pool, task, wait)?;
+    let rates = cells.map(1, pool, task, kramers)?;
     let of_cell = |cell: &[Option<Waited>]| cell.iter().copied().collect::<Option<Vec<Waited>>>();
     let found: Vec<Escapes> =
         waited.chunks(runs).map(of_cell).zip(rates).map(|(waited, rate)| waited.zip(rate)).collect();
     Ok(with_columns(grid.table(|| 0..grid.cells()), options, &found))
 }
 
-/// The columns of the escapes.
 fn with_columns(table: Table, options: &EscapeOptions, found: &[Escapes]) -> Table {
     let count = |of: fn(&Waited) -> bool| {
         move |cell: &Escapes| cell.as_ref().map(|(all, _)| all.iter().filter(|one| of(one)).count() as u64)
@@ -172,7 +162,6 @@ fn prepared(scene: &Scene, run: u64, within: f64) -> Scene {
     scene
 }
 
-/// Gives each noise the seed of run number `run`.
 fn reseed(excitation: &mut Excitation, run: u64) {
     match excitation {
         Excitation::Noise { seed, .. } => *seed = (*seed + run) % (MAX_SEED + 1),
@@ -188,22 +177,20 @@ fn escape_fault(model: &Model, scene: &Scene) -> Option<Fault> {
                        excitation=Noise(rms_g:0.3,low_hz:1,high_hz:20,seed:1), or a Sum with one";
         return Some(excitation_fault(scene, problem.into()));
     }
-    let Some(barrier) = model.crossing_level().filter(|_| model.mechanism().landscape.barrier.is_some())
-    else {
-        if model.mechanism().landscape.barrier.is_some() {
-            let problem = "lets the mass cross no barrier: take stops on both sides of it";
-            return Some(choice_fault(scene, "stops", problem.into()));
-        }
+    if model.mechanism().landscape.barrier.is_none() {
         let problem = "has one well or none, so that there is no barrier to cross: take one with two wells";
         return Some(choice_fault(scene, "mechanism", problem.into()));
+    }
+    let Some(barrier) = model.crossing_level() else {
+        let problem = "lets the mass cross no barrier: take stops on both sides of it";
+        return Some(choice_fault(scene, "stops", problem.into()));
     };
     let on_top = model.start().0 == barrier;
     on_top.then(|| match scene.start {
-        Start::At { x_mm, .. } => Fault::new(
-            "start.x_mm",
-            x_mm.to_string(),
-            "lies on the barrier, so that there is no well to leave",
-        ),
+        Start::At { x_mm, .. } => {
+            let problem = "lies on the barrier, so that there is no well to leave";
+            Fault::new("start.x_mm", x_mm.to_string(), problem)
+        }
         Start::Rest => Fault::new("start", "Rest", "lies on the barrier: give a start in a well by At(..)"),
     })
 }
@@ -227,19 +214,16 @@ fn waited(model: &Model, until: Until, cancel: &AtomicBool) -> Result<Waited, Ca
         Until::Well => model.crossing_level().and_then(|barrier| well_behind(model, barrier)),
     };
     let request = Request { until_crossing: true, cancel: Some(cancel), ..Request::default() };
-    let within = model.duration();
-    let Some(level) = level else {
-        return Ok(Waited { waiting: Waiting { time: within, happened: false }, ended_early: false });
+    let waited = |time: f64, happened: bool, ended_early: bool| {
+        Ok(Waited { waiting: Waiting { time, happened }, ended_early })
     };
+    let within = model.duration();
+    let Some(level) = level else { return waited(within, false, false) };
     let summary = model.with_crossing_level(level).run(&request).summary;
     let first = summary.firsts.and_then(|firsts| firsts.crossing).map(|first| first.t);
     match (first, summary.outcome) {
-        (Some(time), _) => Ok(Waited { waiting: Waiting { time, happened: true }, ended_early: false }),
+        (Some(time), _) => waited(time, true, false),
         (None, Outcome::Cancelled { .. }) => Err(Cancelled),
-        (None, outcome) => {
-            let ended = outcome.ended_at();
-            let waiting = Waiting { time: ended.unwrap_or(within), happened: false };
-            Ok(Waited { waiting, ended_early: outcome != Outcome::Done })
-        }
+        (None, outcome) => waited(outcome.ended_at().unwrap_or(within), false, outcome != Outcome::Done),
     }
 }

@@ -4,16 +4,13 @@
 //! own threshold. The threshold in probability is a quantile of those of all runs, and two of them bound it,
 //! whatever their distribution ([`QuantileRanks`]).
 
-use std::sync::Arc;
-
 use super::{Until, escape_fault, prepared, waited};
-use crate::mechanics::Mechanism;
 use crate::numeric::QuantileRanks;
-use crate::scene::{Fault, Files, Scene};
+use crate::scene::{Files, Scene};
 use crate::study::bisection::between;
-use crate::study::grid_study::Cells;
-use crate::study::thresholds::from_rest;
-use crate::study::{Cancelled, Family, Grid, NoModel, NoThresholds, Onset, Scan, Table, Task};
+use crate::study::grid_study::{Built, Cells};
+use crate::study::thresholds::{faults, from_rest};
+use crate::study::{Cancelled, Family, Grid, NoThresholds, Onset, Scan, Table, Task};
 use crate::system::threads::Pool;
 
 /// What is asked of the runs.
@@ -47,22 +44,14 @@ pub fn probable_threshold_table(
     task: &Task,
 ) -> Result<Table, NoThresholds> {
     let cells = Cells::new(scene, files, grid.clone());
-    let cancelled = |Cancelled| NoThresholds::Cancelled;
-    let fault = |scene: &Scene, mechanism: &Arc<Mechanism>| {
-        faults(&prepared(&from_rest(scene), 0, chance.within), mechanism, files, scan)
-    };
-    let wrong = cells.wrong(pool, task, fault).map_err(cancelled)?;
-    if !wrong.is_empty() {
-        return Err(NoThresholds::Wrong(wrong));
-    }
-    let (count, runs) = (grid.cells() as usize, chance.runs as usize);
-    let begin = || cells.base.clone();
-    let first = |scene: &mut Scene, part: usize| {
-        task.check_cancelled()?;
-        let built = cells.mechanism((part / runs) as u64, 0, scene, task.cancel).ok_or(Cancelled)?;
+    cells.check(pool, task, |scene, mechanism| {
+        let prepared = prepared(&from_rest(scene), 0, chance.within);
+        faults(&prepared, mechanism, files, scan, |model| escape_fault(model, &prepared))
+    })?;
+    let first = |scene: &Scene, built: Built, run: u64| {
         let found = match built {
             Ok(mechanism) => {
-                let prepared = prepared(&from_rest(scene), (part % runs) as u64, chance.within);
+                let prepared = prepared(&from_rest(scene), run, chance.within);
                 let family = Family::new(&prepared, files, &mechanism, &scan.field);
                 Some(least(&family, scan, task)?)
             }
@@ -71,7 +60,8 @@ pub fn probable_threshold_table(
         (task.tick)();
         Ok(found)
     };
-    let found = pool.map(count * runs, begin, first).map_err(cancelled)?;
+    let runs = chance.runs as usize;
+    let found = cells.map(runs, pool, task, first)?;
     let of_cell = |cell: &[Option<f64>]| {
         let mut ascending = cell.iter().copied().collect::<Option<Vec<f64>>>()?;
         ascending.sort_by(f64::total_cmp);
@@ -96,21 +86,6 @@ pub fn probable_threshold_table(
         .each("crossed", &found, |cell| {
             Some(cell.as_ref()?.iter().filter(|value| value.is_finite()).count() as u64)
         }))
-}
-
-/// The faults at the first value of the scan, if no value gives a model whose runs may cross.
-fn faults(scene: &Scene, mechanism: &Arc<Mechanism>, files: &Files, scan: &Scan) -> Option<Vec<Fault>> {
-    let family = Family::new(scene, files, mechanism, &scan.field);
-    let mut first = None;
-    for value in &scan.values {
-        let faults = match family.model(*value) {
-            Ok(model) => vec![escape_fault(&model, scene)?],
-            Err(NoModel::NoField | NoModel::Unsolved) => return None,
-            Err(NoModel::Faults(faults)) => faults,
-        };
-        first = first.or(Some(faults));
-    }
-    first
 }
 
 /// The least value at which the run crosses in time; infinite if it does not at the last value.

@@ -29,7 +29,6 @@ pub fn average_exponents(
     average(&Tangent::of(model, phase)?, state.into(), periods, cancel)
 }
 
-/// Like [`average_exponents`], for a map.
 pub(super) fn average(
     tangent: &Tangent,
     mut state: MapState,
@@ -37,13 +36,13 @@ pub(super) fn average(
     cancel: &AtomicBool,
 ) -> Result<Exponents, NoExponents> {
     let periods = periods.max(1);
-    let time = tangent.period() * f64::from(periods);
-    let has_circuit = tangent.model().has_electrical_state();
+    let time = tangent.map.period() * f64::from(periods);
+    let has_circuit = tangent.map.model().has_electrical_state();
     let part = std::f64::consts::FRAC_1_SQRT_2;
     let mut changes = [[part, part, 0.0], [0.0, 0.0, 1.0]];
     let mut all = vec![Batches::new(periods); if has_circuit { 3 } else { 2 }];
-    let mut measured = LogSum::new();
-    let mut exact = Some(LogSum::new());
+    let mut measured = LogSum::default();
+    let mut exact = Some(LogSum::default());
     for number in 0..ALIGNMENT + periods {
         if cancel.load(atomic::Ordering::Relaxed) {
             return Err(NoExponents::Cancelled);
@@ -75,7 +74,8 @@ pub(super) fn average(
         }
     }
     let exact_sum = exact.map(|sum| sum.value() / time + 0.0);
-    let mut estimates: Vec<Estimate> = all.iter().map(|batches| batches.estimate(tangent.period())).collect();
+    let period = tangent.map.period();
+    let mut estimates: Vec<Estimate> = all.iter().map(|batches| batches.estimate(period)).collect();
     // the difference of the exact sum and the other exponents has no further rounding error
     if let Some(sum) = exact_sum
         && let [others @ .., last] = estimates.as_mut_slice()
@@ -96,22 +96,15 @@ pub(super) fn average(
 }
 
 /// A sum of logarithms of factors, of which 0 makes the product 0.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 struct LogSum {
     sum: CompensatedSum<f64>,
     has_zero: bool,
 }
 
 impl LogSum {
-    fn new() -> Self {
-        Self { sum: CompensatedSum::new(), has_zero: false }
-    }
-
     fn add(&mut self, logarithm: f64) {
-        match logarithm == f64::NEG_INFINITY {
-            true => self.has_zero = true,
-            false => self.sum.add(logarithm),
-        }
+        if logarithm == f64::NEG_INFINITY { self.has_zero = true } else { self.sum.add(logarithm) }
     }
 
     fn value(&self) -> f64 {
@@ -169,10 +162,7 @@ impl Batches {
         };
         let means = self.sums.iter().zip(0..).map(|(sum, batch)| sum / length(batch));
         let squares: f64 = means.map(|value| (value - mean) * (value - mean)).sum();
-        let error = match count {
-            1 => f64::NAN,
-            n => (squares / (n - 1) as f64 / n as f64).sqrt(),
-        };
+        let error = if count == 1 { f64::NAN } else { (squares / (count - 1) as f64 / count as f64).sqrt() };
         Estimate { per_s: mean / period + 0.0, error: error / period }
     }
 }

@@ -77,7 +77,6 @@ pub fn exponents(
 /// The exponents of every cell of a grid.
 pub type ExponentCells = GridStudy<ExponentOptions>;
 
-/// The exponents of a cell, if it has any.
 type Found = Option<Exponents>;
 
 impl Question for ExponentOptions {
@@ -126,22 +125,18 @@ pub fn exponents_row(found: &Exponents) -> Table {
     with_columns(Table::new(), &[Some(*found)], found.third.is_some())
 }
 
-fn with_columns(table: Table, found: &[Found], has_circuit: bool) -> Table {
+fn with_columns(mut table: Table, found: &[Found], has_circuit: bool) -> Table {
     let number = |of: fn(&Exponents) -> f64| move |cell: &Found| cell.as_ref().map(of);
-    let third = |of: fn(&Estimate) -> f64| move |cell: &Found| Some(of(cell.as_ref()?.third.as_ref()?));
-    let table = table
-        .each("exponent_1_per_s", found, number(|exponents| exponents.first.per_s))
-        .each("exponent_1_se", found, number(|exponents| exponents.first.error))
-        .each("exponent_2_per_s", found, number(|exponents| exponents.second.per_s))
-        .each("exponent_2_se", found, number(|exponents| exponents.second.error));
-    let table = match has_circuit {
-        true => table.each("exponent_3_per_s", found, third(|estimate| estimate.per_s)).each(
-            "exponent_3_se",
+    let estimate =
+        |place: usize, of: fn(Estimate) -> f64| move |cell: &Found| cell.as_ref()?.estimates()[place].map(of);
+    for place in 0..if has_circuit { 3 } else { 2 } {
+        let name = |ending: &str| format!("exponent_{}_{ending}", place + 1);
+        table = table.each(&name("per_s"), found, estimate(place, |estimate| estimate.per_s)).each(
+            &name("se"),
             found,
-            third(|estimate| estimate.error),
-        ),
-        false => table,
-    };
+            estimate(place, |estimate| estimate.error),
+        );
+    }
     table
         .each("sum_per_s", found, number(|exponents| exponents.sum))
         .each("exact_sum_per_s", found, |cell| cell.as_ref()?.exact_sum)
@@ -223,10 +218,14 @@ impl Exponents {
     fn of_rest(period: Option<u32>, span: (u32, f64), tangent: &Tangent) -> Self {
         let nothing = f64::NEG_INFINITY;
         let (first, second) = (Estimate::exact(nothing), Estimate::exact(nothing));
-        let third = tangent.model().has_electrical_state().then(|| Estimate::exact(nothing));
-        let exact = tangent.model().compliant().is_none();
-        let exact_sum = exact.then_some(nothing);
+        let model = tangent.map.model();
+        let third = model.has_electrical_state().then(|| Estimate::exact(nothing));
+        let exact_sum = model.compliant().is_none().then_some(nothing);
         Self { first, second, third, sum: nothing, exact_sum, period, span }
+    }
+
+    fn estimates(&self) -> [Option<Estimate>; 3] {
+        [Some(self.first), Some(self.second), self.third]
     }
 
     /// Whether the motion has rested on a stop, which removes every perturbation.
@@ -252,8 +251,7 @@ impl Exponents {
     /// the trajectory in continuous time is larger by 1. NaN if it depends on an exponent that is not known.
     pub fn dimension(&self) -> f64 {
         let (mut sum, mut whole) = (0.0, 0.0);
-        for Estimate { per_s, .. } in [Some(self.first), Some(self.second), self.third].into_iter().flatten()
-        {
+        for Estimate { per_s, .. } in self.estimates().into_iter().flatten() {
             if sum + per_s < 0.0 || per_s.is_nan() {
                 return if whole == 0.0 && !per_s.is_nan() { 0.0 } else { whole + sum / per_s.abs() };
             }

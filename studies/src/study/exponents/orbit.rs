@@ -1,7 +1,7 @@
 //! Exponents of a periodic orbit, from its multipliers.
 
 use super::tangent::{Passed, Tangent};
-use super::{Estimate, Exponents, NoExponents};
+use super::{Estimate, Exponents, Found, NoExponents};
 use crate::dynamics::MapState;
 use crate::numeric::elementary;
 use crate::study::orbit::newton_step;
@@ -22,13 +22,9 @@ const NEUTRAL: f64 = 1e-6;
 
 /// The exponents of the periodic orbit of `periods` forcing periods to which the motion through `start` has
 /// settled. `None` if there is no orbit near it, or if it is unstable and the motion is not exactly on it.
-pub(super) fn of_orbit(
-    tangent: &Tangent,
-    start: MapState,
-    periods: u32,
-) -> Result<Option<Exponents>, NoExponents> {
+pub(super) fn of_orbit(tangent: &Tangent, start: MapState, periods: u32) -> Result<Found, NoExponents> {
     let Some((orbit, distance, moved)) = find(tangent, start, periods)? else { return Ok(None) };
-    let time = tangent.period() * f64::from(periods);
+    let time = tangent.map.period() * f64::from(periods);
     if orbit.jacobian.is_zero() {
         return Ok(Some(Exponents::of_rest(Some(periods), (periods, time), tangent)));
     }
@@ -67,41 +63,39 @@ fn growths(orbit: &Passed) -> Vec<f64> {
     growths
 }
 
-/// The periodic orbit near a state, the distance of its state from that one period later, and whether the
-/// state had to be changed; `None` if Newton's method finds none.
-fn find(
-    tangent: &Tangent,
-    start: MapState,
-    periods: u32,
-) -> Result<Option<(Passed, f64, bool)>, NoExponents> {
-    let mut state = start;
-    let mut best: Option<(Passed, f64, bool)> = None;
+/// A periodic orbit, the distance of its state from that one period later, and whether the state at which it
+/// was looked for had to be changed.
+type Near = (Passed, f64, bool);
+
+/// The periodic orbit near a state; `None` if Newton's method finds none.
+fn find(tangent: &Tangent, mut state: MapState, periods: u32) -> Result<Option<Near>, NoExponents> {
+    let mut best: Option<Near> = None;
     for step in 0..STEPS {
         let orbit = match tangent.pass_many(state, periods) {
             Ok(orbit) => orbit,
             Err(_) if step > 0 => break, // a step led to a state whose motion ends early
             Err(error) => return Err(error),
         };
-        let off = tangent.units().apart(state, orbit.state);
+        let off = tangent.units.apart(state, orbit.state);
         let distance = elementary::hypot(elementary::hypot(off[0], off[1]), off[2]);
         if step == 0 && !(distance <= NEAR) || best.is_some_and(|best| !(distance < best.1)) {
             break;
         }
         best = Some((orbit, distance, step > 0));
         let Some(by) = newton_step(&orbit.jacobian, off) else { break };
-        let next = tangent.units().moved(state, by);
+        let next = tangent.units.moved(state, by);
         if distance <= ROUNDING || !has_room(tangent, next) {
             break;
         }
         state = next;
     }
-    let close = (10.0 * tangent.model().tolerance()).clamp(CLOSE.0, CLOSE.1);
+    let close = (10.0 * tangent.map.model().tolerance()).clamp(CLOSE.0, CLOSE.1);
     Ok(best.filter(|best| best.1 <= close))
 }
 
 /// Whether the mass can have this state.
 fn has_room(tangent: &Tangent, MapState { x, v, electrical }: MapState) -> bool {
-    let model = tangent.model();
+    let model = tangent.map.model();
     let (low, high) = model.mechanism().curve.domain();
     let (left, right) = model.stop_positions();
     let rigid = model.compliant().is_none();

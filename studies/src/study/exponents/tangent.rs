@@ -12,13 +12,12 @@ const LOST: f64 = 1e-12;
 /// Share below which the determinant of a period is computed as the product of those of its parts. Near the
 /// top of a barrier all perturbations turn into the unstable direction and grow up to 1e6-fold in a period.
 const FEW_LEFT: f64 = 1e-4;
-/// Number of these parts.
 const PARTS: u32 = 8;
 
 /// The stroboscopic map of a model, with perturbations in units of its scales.
 pub(super) struct Tangent {
-    map: StroboscopicMap,
-    units: Units,
+    pub map: StroboscopicMap,
+    pub units: Units,
     /// Logarithm of the factor by which damping and a circuit contract volumes in a period.
     damped: f64,
     /// The same for an impact on the left and on the right stop; `None` if they are compliant.
@@ -64,15 +63,6 @@ impl Tangent {
         let struck = model.compliant().is_none().then(|| [Side::Left, Side::Right].map(kept));
         let damped = model.contraction(map.period());
         Ok(Self { units: Units::of(model, 1.0), map, damped, struck })
-    }
-
-    pub fn model(&self) -> &Model {
-        self.map.model()
-    }
-
-    /// Time in s that a period takes.
-    pub fn period(&self) -> f64 {
-        self.map.period()
     }
 
     /// The next period of the motion from a state.
@@ -125,7 +115,7 @@ impl Tangent {
     }
 
     pub fn pass_many(&self, state: MapState, periods: u32) -> Result<Passed, NoExponents> {
-        let jacobian = Jacobian::identity(self.model().has_electrical_state());
+        let jacobian = Jacobian::identity(self.map.model().has_electrical_state());
         let exact = self.struck.map(|_| 0.0);
         let mut all = Passed { state, jacobian, measured: 0.0, exact, rested: false };
         for _ in 0..periods {
@@ -139,11 +129,6 @@ impl Tangent {
             };
         }
         Ok(all)
-    }
-
-    /// Units of the perturbations.
-    pub fn units(&self) -> &Units {
-        &self.units
     }
 }
 

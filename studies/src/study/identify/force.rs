@@ -55,7 +55,6 @@ pub type Pull = Vec<(f64, f64)>;
 struct Curve {
     positions: Vec<f64>,
     step: f64,
-    /// Of each direction.
     directions: Vec<Vec<(Known, f64)>>,
     mean: Vec<(Known, f64)>,
 }
@@ -139,7 +138,6 @@ impl Curve {
         Some(Self { positions, step, directions, mean })
     }
 
-    /// The equilibria, where the force changes sign.
     fn equilibria(&self, pulls: &[&Pull], range: f64) -> Vec<Rest> {
         let clear = |i: &usize| self.mean[*i].0.value.abs() > CLEAR * self.mean[*i].0.error;
         let signs: Vec<usize> = (0..self.positions.len()).filter(clear).collect();

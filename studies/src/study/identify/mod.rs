@@ -47,11 +47,8 @@ impl Identity {
 
 /// The table with three more columns: a number for each row and the ends of its interval.
 fn with_interval<R>(table: Table, names: [&str; 3], rows: &[R], of: impl Fn(&R) -> Identity) -> Table {
-    table.each(names[0], rows, |row| of(row).value).each(names[1], rows, |row| of(row).interval.0).each(
-        names[2],
-        rows,
-        |row| of(row).interval.1,
-    )
+    let table = table.each(names[0], rows, |row| of(row).value);
+    table.each(names[1], rows, |row| of(row).interval.0).each(names[2], rows, |row| of(row).interval.1)
 }
 
 /// What was identified from a record.
@@ -103,18 +100,11 @@ pub enum Unidentified {
     Moved(String),
     /// Too few swings are left beside those with flat tops.
     #[error(
-        "{tops} swings have flat tops, at the limit {limit} of the sensor or its converter, and after them \
-         {found} turning points stand out from the noise; the damping ratio needs {MIN_TURNS}: pluck \
+        "{0} swings have flat tops, at the limit {1} of the sensor or its converter, and after them \
+         {2} turning points stand out from the noise; the damping ratio needs {MIN_TURNS}: pluck \
          less, widen the range, or record longer"
     )]
-    Clipped {
-        /// How many are cut off.
-        tops: usize,
-        /// Where, in SI.
-        limit: String,
-        /// How many turning points are left.
-        found: usize,
-    },
+    Clipped(usize, String, usize),
     /// So many swings that are cut off at displacements in mm hide the impacts.
     #[error(
         "no impact is left: {0} swings have flat tops at {1} mm, at the limit of the sensor or its \

@@ -54,7 +54,6 @@ pub struct Peak {
     pub point: TurningPoint,
     /// Its time from its own fit, and the weight of this time: one over the variance, in any unit.
     pub found: (f64, f64),
-    /// Length of the period about it.
     period: f64,
     /// Share of the usual reach over which it is fitted.
     narrow: f64,
@@ -151,7 +150,6 @@ fn around(values: &[f64], k: usize) -> f64 {
     median(values[near].to_vec()).unwrap_or(f64::NAN)
 }
 
-/// The samples from one time to another.
 fn within(times: &[f64], from: f64, to: f64) -> Range<usize> {
     times.partition_point(|t| *t < from)..times.partition_point(|t| *t <= to)
 }
@@ -224,17 +222,12 @@ fn local(times: &[f64], values: &[f64], peak: &Peak, rate: f64) -> Result<Option
     Err(samples)
 }
 
-/// The oscillation of a circular frequency and a rate of decay, and with five terms its second harmonic as
-/// well, that fits values over times, as seen at time 0.
+/// The oscillation of a circular frequency w and a rate of decay r, and with five terms its second harmonic
+/// as well, that fits values over times, as seen at time 0.
 ///
 /// With z = e^((-r + iw)t) the terms are 1, s = Im z, c = Re (1 - z), and of (1 - z)^2 what is of a higher
 /// order in t: c s and s^2 - c^2 - 2 c + (2 r/w) s. So they are about as independent as powers of t.
-fn swing<const N: usize>(
-    samples: impl Iterator<Item = (f64, f64)>,
-    frequency: f64,
-    rate: f64,
-) -> Option<Local> {
-    let (w, r) = (frequency, rate);
+fn swing<const N: usize>(samples: impl Iterator<Item = (f64, f64)>, w: f64, r: f64) -> Option<Local> {
     let terms = |t: f64| {
         let (left, (sine, cosine)) = (elementary::exp(-r * t), elementary::sin_cos(w * t));
         let (s, c) = (left * sine, 1.0 - left * cosine);

@@ -15,7 +15,6 @@ const WIDE: [f64; 2] = [0.08, 0.16];
 /// A smaller reach, or a kink, is used if it reduces the interval of the force to less than this share.
 const BETTER: f64 = 0.5;
 
-/// Smallest number of degrees of freedom of a fit.
 const MIN_FREEDOM: usize = 4;
 
 /// Smallest relative jump of the slope at a kink.
@@ -32,7 +31,6 @@ const BESIDE: usize = 4;
 const PLACES: u32 = 64;
 const HALVINGS: u32 = 60;
 
-/// An equilibrium of a measured curve.
 pub struct Rest {
     /// Where it is, in m, with its interval.
     pub x: (f64, [f64; 2]),

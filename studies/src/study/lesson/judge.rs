@@ -15,19 +15,14 @@ pub enum Unjudged {
     /// It was cancelled.
     #[error("cancelled")]
     Cancelled,
-    /// The scene cannot be run.
-    #[error("{field}: {problem}")]
-    Scene {
-        /// The field at fault.
-        field: String,
-        /// What is wrong with it.
-        problem: String,
-    },
+    /// The scene cannot be run: the field at fault, and what is wrong with it.
+    #[error("{0}: {1}")]
+    Scene(String, String),
 }
 
 impl Unjudged {
     pub(super) fn of(field: &str, problem: &str) -> Self {
-        Self::Scene { field: field.to_owned(), problem: problem.to_owned() }
+        Self::Scene(field.to_owned(), problem.to_owned())
     }
 }
 
@@ -43,20 +38,14 @@ pub struct Lack {
 /// The first condition of the goal of a step that `subject` does not meet; `before` is the scene at the start
 /// of the step.
 pub fn goal_lack(step: &Step, subject: &Subject, before: &Subject) -> Result<Option<Lack>, Unjudged> {
-    match step {
-        Step::Do { goal, .. } => Judge { subject, before, from: None }.lack(goal),
-        _ => Ok(None),
-    }
+    let Step::Do { goal, .. } = step else { return Ok(None) };
+    Judge { subject, before, from: None }.lack(goal)
 }
 
 /// Which options of a prediction hold of `subject`; `before` is the scene with which the step began.
 pub fn options_that_hold(step: &Step, subject: &Subject, before: &Subject) -> Result<Vec<bool>, Unjudged> {
-    match step {
-        Step::Predict { options, .. } => {
-            options.iter().map(|option| holds(&option.holds, subject, before)).collect()
-        }
-        _ => Ok(Vec::new()),
-    }
+    let Step::Predict { options, .. } = step else { return Ok(Vec::new()) };
+    options.iter().map(|option| holds(&option.holds, subject, before)).collect()
 }
 
 pub(super) fn holds(condition: &Condition, subject: &Subject, before: &Subject) -> Result<bool, Unjudged> {
@@ -104,7 +93,6 @@ impl Judge<'_> {
         }
     }
 
-    /// The first part of a condition that does not hold.
     fn lack(&self, condition: &Condition) -> Result<Option<Lack>, Unjudged> {
         if self.holds(condition)? {
             return Ok(None);
@@ -136,16 +124,12 @@ impl Judge<'_> {
                 Some(text) => text.parse().map_or(Value::Word(text), Value::Number),
                 None => Value::Missing,
             },
-            "result" => match self.from {
-                Some(run) => value(run, name),
-                None => value(self.subject.run()?, name),
-            },
+            "result" => value(self.from.map_or_else(|| self.subject.run(), Ok)?, name),
             "before" => value(self.before.run()?, name),
             "up" => value(&self.subject.walked_to()?[0], name),
             "down" => value(&self.subject.walked_to()?[1], name),
             "walk" => {
-                let turns = self.subject.turns()?;
-                let (up, down) = (turns.up_crosses_from, turns.down_crosses_to);
+                let [up, down] = self.subject.turns()?;
                 let number = match name {
                     "up_crosses_from" => up,
                     "down_crosses_to" => down,
@@ -203,7 +187,6 @@ pub fn result_fields() -> Vec<ResultField> {
     of_summary.chain([ResultField { name: PERIOD_MULTIPLE, words: &[] }]).collect()
 }
 
-/// The field called `name` of a summary.
 pub(super) fn value(summary: &Summary, name: &str) -> Value {
     if name == PERIOD_MULTIPLE {
         return Value::Number(summary.period.map_or(0.0, f64::from));

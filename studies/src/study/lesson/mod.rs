@@ -62,7 +62,6 @@ pub fn check_lesson(
     Ok(report)
 }
 
-/// Checks one step, by its index, between two scenes.
 fn check_step(
     report: &mut LessonReport,
     document: &LessonDocument,

@@ -25,14 +25,7 @@ pub struct Subject<'a> {
     from: RefCell<Vec<(Start, Summary)>>,
     over_seeds: OnceCell<Vec<Summary>>,
     ends: OnceCell<[Summary; 2]>,
-    turns: OnceCell<Turns>,
-}
-
-/// Values at which the motion starts to cross on the upward walk and stops crossing on the downward walk.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Turns {
-    pub up_crosses_from: Option<f64>,
-    pub down_crosses_to: Option<f64>,
+    turns: OnceCell<[Option<f64>; 2]>,
 }
 
 impl<'a> Subject<'a> {
@@ -128,8 +121,9 @@ impl<'a> Subject<'a> {
         })
     }
 
-    /// The values at which the motion starts and stops crossing, over the whole walk.
-    pub(super) fn turns(&self) -> Result<Turns, Unjudged> {
+    /// The values at which the motion starts to cross on the upward walk and stops crossing on the downward
+    /// walk.
+    pub(super) fn turns(&self) -> Result<[Option<f64>; 2], Unjudged> {
         let turns = once(&self.turns, || {
             let Axis { field, values, .. } = self.axis()?;
             let downwards: Vec<f64> = values.iter().rev().copied().collect();
@@ -141,7 +135,7 @@ impl<'a> Subject<'a> {
                     seen.1 == (way == 1)
                 });
             let [up, down] = walks?;
-            Ok(Turns { up_crosses_from: up.0, down_crosses_to: down.0.filter(|_| !down.1) })
+            Ok([up.0, down.0.filter(|_| !down.1)])
         });
         turns.copied()
     }
@@ -212,10 +206,7 @@ impl<'a> Subject<'a> {
                 .map(Arc::new)
                 .map_err(|error| Unjudged::of("mechanism", &error.to_string()))
         };
-        match scene.mechanism == self.scene.mechanism {
-            true => once(&self.mechanism, build).cloned(),
-            false => build(),
-        }
+        if scene.mechanism == self.scene.mechanism { once(&self.mechanism, build).cloned() } else { build() }
     }
 }
 

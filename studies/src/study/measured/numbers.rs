@@ -44,12 +44,10 @@ pub fn table(
     assembled(&rows, rms(&apart), rms(measured))
 }
 
-/// Root mean square.
 pub(super) fn rms(values: &[f64]) -> f64 {
     (values.iter().map(|value| value * value).sum::<f64>() / values.len() as f64).sqrt()
 }
 
-/// RMS, minimum and maximum of measured and computed values.
 pub(super) fn statistics(unit: &'static str, measured: &[f64], computed: &[f64]) -> [Row; 3] {
     let fold = |values: &[f64], of: fn(f64, f64) -> f64| values.iter().copied().fold(f64::NAN, of);
     let both = |name, of: &dyn Fn(&[f64]) -> f64| (name, unit, of(measured), of(computed));
@@ -108,11 +106,7 @@ fn crossing(scene: &Scene, model: &Model, times: &[f64], measured: &[f64], compu
 }
 
 /// A rebound: the time of the impact, and its height.
-#[derive(Clone, Copy)]
-struct Rebound {
-    t: f64,
-    height: f64,
-}
+type Rebound = (f64, f64);
 
 /// Heights of the first rebound from each stop after a motion from the other side of the barrier. Each
 /// measured one is compared with the computed one nearest in time.
@@ -136,7 +130,7 @@ fn rebounds(model: &Model, times: &[f64], measured: &[f64], computed: &[f64]) ->
             let arrives = barrier.is_none() || !beside(from);
             let strikes = three[1].maximum == right && (at - stop).abs() < AT_STOP * room;
             let counts = arrives && strikes && beside(to);
-            counts.then(|| Rebound { t: times[three[1].at], height: (at - to).abs() })
+            counts.then(|| (times[three[1].at], (at - to).abs()))
         };
         all.windows(3).filter_map(rebound).collect()
     };
@@ -163,11 +157,11 @@ fn rebounds(model: &Model, times: &[f64], measured: &[f64], computed: &[f64]) ->
 /// Pairs of heights of the rebounds nearest in time, if closer than half the shortest interval of measured
 /// ones.
 fn paired(measured: &[Rebound], computed: &[Rebound]) -> Vec<(f64, f64)> {
-    let apart = measured.windows(2).map(|pair| pair[1].t - pair[0].t).fold(f64::INFINITY, f64::min);
-    let partner = |rebound: &Rebound| {
-        let far = |other: &Rebound| (other.t - rebound.t).abs();
+    let apart = measured.windows(2).map(|pair| pair[1].0 - pair[0].0).fold(f64::INFINITY, f64::min);
+    let partner = |(t, height): &Rebound| {
+        let far = |other: &Rebound| (other.0 - t).abs();
         let nearest = computed.iter().min_by(|a, b| far(a).total_cmp(&far(b)))?;
-        (far(nearest) < 0.5 * apart).then_some((rebound.height, nearest.height))
+        (far(nearest) < 0.5 * apart).then_some((*height, nearest.1))
     };
     measured.iter().filter_map(partner).collect()
 }

@@ -7,7 +7,6 @@ use super::{Orbit, allowed, map_of};
 use crate::dynamics::{Event, EventKind, Jacobian, MapState, Model, Outcome, Passage, Side, StroboscopicMap};
 use crate::study::Family;
 
-/// Largest number of steps of Newton's method.
 const MAX_STEPS: usize = 24;
 
 /// Half the step of the central difference of the map by the field, as a share of its range. The truncation
@@ -18,7 +17,6 @@ const MAX_STRETCH: f64 = 1e3;
 /// Relative difference of impact speeds between both sides above which a smaller step is used: near a grazing
 /// contact the map changes like the square root of the distance.
 const SAME_SPEED: f64 = 0.1;
-/// Smallest half step.
 const MIN_DIFFERENCE: f64 = 1e-14;
 
 /// Time in forcing periods below which an event at a stop is too near to a strobe.
@@ -83,7 +81,6 @@ impl Units {
     }
 }
 
-/// A periodic orbit on a branch.
 #[derive(Debug, Clone)]
 pub(super) struct Point {
     /// Displacement, velocity, state of the circuit and field in the units. Without a circuit its state is 0,

@@ -37,7 +37,6 @@ const OPPOSITE: f64 = 0.5;
 /// Number of halvings of the step between two points in the search for a breaking of the symmetry.
 const HALVINGS: i32 = 20;
 
-/// Largest number of evaluations for one event.
 const MAX_EVALUATIONS: usize = 80;
 
 /// Whether two motions touch the stops in a different order or number.

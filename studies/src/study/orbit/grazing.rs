@@ -66,7 +66,6 @@ impl Beside {
     }
 }
 
-/// The touch of an orbit that grazes a stop.
 #[derive(Debug, Clone)]
 pub(super) struct Touch {
     side: Side,
@@ -175,7 +174,6 @@ impl Touch {
         [self.solution.x, self.solution.x + corrector.flight()]
     }
 
-    /// The touch with another solution.
     pub fn at(&self, solution: Vector4<f64>) -> Self {
         Self { solution, ..self.clone() }
     }
@@ -356,11 +354,6 @@ impl Grazing<'_> {
         Some(self)
     }
 
-    /// The times of the grazing in forcing periods after a strobe.
-    pub fn times(&self) -> [f64; 2] {
-        self.touch.times(self.corrector)
-    }
-
     /// The orbit with a gap or speed in the units, from a guess, and the length of the last step.
     fn solve(&self, guess: Vector4<f64>, beside: Beside) -> Option<(Vector4<f64>, f64)> {
         let look = |at: &Vector4<f64>| {
@@ -390,11 +383,6 @@ impl Grazing<'_> {
             Some(Equations { at: *at, off, slopes, of: () })
         };
         newton(guess, &Vector4::y(), FINEST, look).map(|((), at, left)| (at, left))
-    }
-
-    /// The state at another phase of the drive.
-    pub fn at_phase(&self, phase: f64) -> Option<MapState> {
-        self.touch.at_phase(self.corrector, &self.point, phase)
     }
 
     /// The orbit on one side of the grazing at about this distance in the units.

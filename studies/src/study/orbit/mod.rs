@@ -16,7 +16,6 @@ mod locus;
 mod switch;
 mod walk;
 
-use std::fmt;
 use std::sync::atomic::AtomicBool;
 
 use nalgebra::{Matrix3, Vector3, Vector4};
@@ -34,7 +33,6 @@ pub use locus::{FieldRange, Locus, LocusEnd, LocusEvent, loci, loci_table};
 pub use switch::switched;
 use walk::Walk;
 
-/// Largest number of steps of Newton's method.
 const MAX_STEPS: usize = 40;
 
 /// Longest step, as a share of the scales, since the guess should be near the orbit.
@@ -194,10 +192,8 @@ pub fn orbit_near(map: &StroboscopicMap, guess: impl Into<MapState>, periods: u3
         };
         let length = largest(step);
         if largest(off) <= CLOSE && (length <= SMALLEST_STEP || length >= 0.5 * best) {
-            return Ok(shortest(
-                map,
-                Orbit { period: periods, state, passage, jacobian, circuit: map.model().circuit_state() },
-            ));
+            let circuit = map.model().circuit_state();
+            return Ok(shortest(map, Orbit { period: periods, state, passage, jacobian, circuit }));
         }
         if !length.is_finite() {
             return Err(NoOrbit::NotConverged);
@@ -227,7 +223,6 @@ pub(super) fn newton_step(jacobian: &Jacobian, off: [f64; 3]) -> Option<[f64; 3]
     Some([x / determinant, v / determinant, 0.0])
 }
 
-/// The orbit with its smallest period.
 fn shortest(map: &StroboscopicMap, orbit: Orbit) -> Orbit {
     let units = Units::of(map.model(), 1.0);
     let divisors = (1..orbit.period).filter(|period| orbit.period.is_multiple_of(*period));
@@ -295,24 +290,19 @@ fn with_orbits(table: Table, orbits: &[Orbit]) -> Table {
         .each("x_m", orbits, |orbit| orbit.state.x)
         .each("v_m_per_s", orbits, |orbit| orbit.state.v);
     let circuit = orbits.first().and_then(|orbit| orbit.circuit);
-    let table = match circuit {
+    let mut table = match circuit {
         Some(CircuitState::Current) => table.each("current_a", orbits, |orbit| orbit.state.electrical),
         Some(CircuitState::Voltage) => table.each("voltage_v", orbits, |orbit| orbit.state.electrical),
         None => table,
     };
-    let table = table
-        .each("multiplier_1_re", orbits, part(0, |multiplier| multiplier.re))
-        .each("multiplier_1_im", orbits, part(0, |multiplier| multiplier.im))
-        .each("multiplier_2_re", orbits, part(1, |multiplier| multiplier.re))
-        .each("multiplier_2_im", orbits, part(1, |multiplier| multiplier.im));
-    let table = match circuit.is_some() {
-        true => table.each("multiplier_3_re", orbits, part(2, |multiplier| multiplier.re)).each(
-            "multiplier_3_im",
+    for place in 0..if circuit.is_some() { 3 } else { 2 } {
+        let name = |ending: &str| format!("multiplier_{}_{ending}", place + 1);
+        table = table.each(&name("re"), orbits, part(place, |multiplier| multiplier.re)).each(
+            &name("im"),
             orbits,
-            part(2, |multiplier| multiplier.im),
-        ),
-        false => table,
-    };
+            part(place, |multiplier| multiplier.im),
+        );
+    }
     table
         .each("stable", orbits, stability)
         .each("impacts", orbits, |orbit| Some(orbit.passage.impacts))
@@ -321,42 +311,26 @@ fn with_orbits(table: Table, orbits: &[Orbit]) -> Table {
         .each("nearest_miss_m", orbits, |orbit| orbit.passage.nearest_miss())
 }
 
-/// Why a branch ended.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
-pub enum BranchEnd {
-    /// At an end of the range.
-    Range,
-    /// At a point where it had been before.
-    Closed,
-    /// The orbit grazes a stop, and no orbit was found beyond the grazing.
-    Grazing,
-    /// An orbit with a rest changes discontinuously, for example because the mass just fails to pass the
-    /// barrier, or because a chattering sequence no longer ends before the release.
-    Leap,
-    /// Newton's method finds no orbit near the last one: the orbit changes discontinuously or too fast, or
-    /// ends early.
-    Lost,
-    /// The largest number of points was reached.
-    Points,
-    /// The orbits become those of half their period.
-    Joined,
-}
-
-impl fmt::Display for BranchEnd {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Range => "at an end of the range",
-            Self::Closed => "where it had been before",
-            Self::Grazing => "where the motion touches a stop without speed, and none near to it goes on",
-            Self::Leap => "where the motion leaps to another one",
-            Self::Lost => {
-                "where no motion near the last one was found: it may leap to another, change too \
-                 fast, or end early"
-            }
-            Self::Points => "after the largest number of motions",
-            Self::Joined => "where its motions become those of half the period",
-        })
+words! {
+    /// Where and why a branch ended.
+    #[non_exhaustive]
+    BranchEnd {
+        /// At an end of the range.
+        Range = "at an end of the range",
+        /// At a point where it had been before.
+        Closed = "where it had been before",
+        /// The orbit grazes a stop, and no orbit was found beyond the grazing.
+        Grazing = "where the motion touches a stop without speed, and none near to it goes on",
+        /// An orbit with a rest changes discontinuously, for example because the mass just fails to pass the
+        /// barrier, or because a chattering sequence no longer ends before the release.
+        Leap = "where the motion leaps to another one",
+        /// Newton's method finds no orbit near the last one.
+        Lost = "where no motion near the last one was found: it may leap to another, change too fast, or end \
+                early",
+        /// The largest number of points was reached.
+        Points = "after the largest number of motions",
+        /// The orbits become those of half their period.
+        Joined = "where its motions become those of half the period",
     }
 }
 
@@ -379,7 +353,6 @@ pub struct Branch {
 }
 
 impl Branch {
-    /// A branch before its first orbit.
     fn empty(field: &str) -> Self {
         Self {
             field: field.to_owned(),

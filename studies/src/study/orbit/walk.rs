@@ -50,7 +50,6 @@ struct Stretch {
     is_last: bool,
 }
 
-/// A walk along a branch.
 pub(super) struct Walk<'a> {
     /// Its phase of the drive is kept away from impacts, at which a state has no derivative by the field.
     corrector: Corrector<'a>,
@@ -66,7 +65,6 @@ pub(super) struct Walk<'a> {
     options: BranchOptions,
     /// The coordinates of the rows, each with its arc length from the first.
     rows: Vec<(Vector4<f64>, f64)>,
-    /// Whether the branch has returned to an earlier orbit.
     meets: bool,
     at: Directed,
 }
@@ -215,7 +213,6 @@ impl<'a> Walk<'a> {
         !turns && onward.dot(along) > STRAIGHT && self.is_ahead(next) && self.is_near(next)
     }
 
-    /// Whether a point lies in the direction of the branch.
     fn is_ahead(&self, next: &Point) -> bool {
         let (point, along) = &self.at;
         let step = next.at - point.at;
@@ -267,8 +264,8 @@ impl<'a> Walk<'a> {
         });
         let nearest = ahead.into_iter().min_by(|a, b| distance(&a.0).total_cmp(&distance(&b.0)));
         let (grazing, beside) = nearest?;
-        let times = grazing.times();
-        let row = grazing.at_phase(self.options.phase);
+        let times = grazing.touch.times(&self.corrector);
+        let row = grazing.touch.at_phase(&self.corrector, &grazing.point, self.options.phase);
         let event = (BranchEvent::Grazing, grazing.point.clone(), row);
         if self.compliant {
             let mut stretch = self.smooth(next?, beyond.is_some())?;

@@ -132,10 +132,7 @@ pub(super) fn elastic_press(bench: &Bench) -> Trials {
     let setup =
         Setup::new(polynomial(&[1.0]), (-1.0, v0), 1e6).stops(stops_at(Some(1000.0), None, 1.0)).damping(1.0);
     let mut trial = bench.run_bare("2e6 impacts", &setup)?;
-    let impacts = match trial.run.summary.outcome {
-        Outcome::ImpactBudget { count, .. } => count,
-        _ => 0,
-    };
+    let impacts = if let Outcome::ImpactBudget { count, .. } = trial.run.summary.outcome { count } else { 0 };
     let n = impacts as f64;
     let exact = v0 / (1.0 + 2.0 / 3.0 * n * v0);
     // a = g = 1, so that z0 = v0

@@ -49,13 +49,11 @@ fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
 
-/// Standard error of the mean.
 fn spread(values: &[f64]) -> f64 {
     let (middle, n) = (mean(values), values.len() as f64);
     (values.iter().map(|value| (value - middle).powi(2)).sum::<f64>() / (n * (n - 1.0))).sqrt()
 }
 
-/// A unit of mass, length and time.
 #[derive(Clone, Copy)]
 struct Units {
     mass: f64,
@@ -66,7 +64,6 @@ struct Units {
 impl Units {
     const SI: Self = Self { mass: 1.0, length: 1.0, time: 1.0 };
 
-    /// The problem in these units.
     fn setup(self) -> Setup {
         let Self { mass: m, length: l, time: t } = self;
         let cubic = Mechanism::Cubic {

@@ -86,7 +86,6 @@ impl Step {
         Self { h, end, slope: k[6], error: error * std::f64::consts::FRAC_1_SQRT_2 / tolerance, dense }
     }
 
-    /// The state at a share of the step.
     fn at(&self, s: f64) -> Pair {
         let r = 1.0 - s;
         let [a, b, c, d, e] = &self.dense;
@@ -175,7 +174,6 @@ struct March<'a> {
     h: f64,
     /// (x', v') at `now`, where it is known.
     slope: Option<Pair>,
-    /// The stop at which the mass is.
     touching: Option<Side>,
     phase: Phase,
     steps: u64,

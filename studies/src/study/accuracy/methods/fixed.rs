@@ -3,7 +3,6 @@
 use super::{MethodRun, Problem, Scheme, Tally, TimedState, is_cancelled};
 use crate::dynamics::{Model, Phase, Request, Side};
 
-/// Steps between checks of the cancel flag.
 const CANCEL_STRIDE: u64 = 1 << 14;
 
 /// Largest number of steps of a run: some seconds.

@@ -90,11 +90,6 @@ impl Beside {
     pub fn parted(&self) -> Option<f64> {
         self.reaches(self.limit)
     }
-
-    /// Whether they are still apart at the end.
-    pub fn stays_apart(&self) -> bool {
-        self.at_end >= self.limit
-    }
 }
 
 /// Tolerance of the comparison run as a share of that of the run.
@@ -215,7 +210,6 @@ fn more_accurate(model: &Model, tolerance: f64, request: &Request) -> Option<(f6
     finished(run).map(|run| (finer, run))
 }
 
-/// The run; `None` if it was cancelled.
 pub(super) fn finished(run: Run) -> Option<Run> {
     (!matches!(run.summary.outcome, Outcome::Cancelled { .. })).then_some(run)
 }
@@ -226,7 +220,8 @@ fn parted(model: &Model, beside: &Beside, better: &Run, until: f64, next: Option
     let Some(next) = next.filter(|next| *next < TIMES * until) else { return Course::Coarse { until } };
     let summary = &better.summary;
     let settles = summary.period.is_some() || summary.regime == Regime::Rest;
-    if !model.is_shaken() || settles || !beside.stays_apart() {
+    let stay_apart = beside.at_end >= beside.limit;
+    if !model.is_shaken() || settles || !stay_apart {
         return Course::Sensitive { until };
     }
     // from the decades observed, or from the delay gained by the tighter pair of runs

@@ -34,7 +34,6 @@ pub struct Impact {
 /// The coefficients of the polynomials by which impacts are found.
 const TERMS: usize = 3;
 
-/// Smallest number of samples on each side of an impact.
 const FEWEST: usize = 4;
 
 /// Number of standard deviations, squared, by which two intersecting polynomials must fit better than a

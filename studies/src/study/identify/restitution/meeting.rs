@@ -89,7 +89,6 @@ impl Meeting {
         (e, self.of_residual(e) / self.towards.powi(2))
     }
 
-    /// Variance of away - e towards.
     fn of_residual(&self, e: f64) -> f64 {
         self.of_away + e * (e * self.of_towards - 2.0 * self.of_speeds)
     }

@@ -14,7 +14,6 @@ use crate::numeric::regression::{geometric, student};
 use crate::numeric::{elementary, short};
 use crate::study::Table;
 
-/// Columns of the restitution with its interval.
 const RESTITUTION: [&str; 3] = ["restitution", "restitution_low", "restitution_high"];
 
 /// Samples that a rebound should have.
@@ -146,7 +145,6 @@ fn scatter(common: Choice, singles: &[&Single]) -> Option<f64> {
     (square > 1.0 + 4.0 * (2.0 / count).sqrt()).then(|| square.sqrt())
 }
 
-/// Remark on a restitution above 1.
 fn above_one(number: &Identity) -> Option<String> {
     let which = match number.name {
         "restitution_left" => " of the left stop",
@@ -164,7 +162,6 @@ fn above_one(number: &Identity) -> Option<String> {
     Some(format!("the restitution{which} {text}"))
 }
 
-/// Remark on a stop that does not lie where it was given.
 fn elsewhere(right: bool, given: f64, place: Choice) -> Option<String> {
     let side = if right { "right" } else { "left" };
     let [found, place_given] = [place.value, given].map(|x| short(1e3 * x));
@@ -172,7 +169,6 @@ fn elsewhere(right: bool, given: f64, place: Choice) -> Option<String> {
     apart.then(|| format!("the {side} stop lies at {found} mm, not at {place_given} mm"))
 }
 
-/// How many contacts were left out, and why.
 fn left_out(motion: &Motion, contacts: &[Contact], singles: &[Single], used: usize) -> Option<String> {
     let found = contacts.len();
     let fitted = |k: usize| singles.binary_search_by_key(&k, |single| single.contact).is_ok();

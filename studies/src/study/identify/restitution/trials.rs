@@ -33,7 +33,6 @@ const LEAST_FREEDOM: usize = 3;
 /// All impacts, fitted with one window and one degree.
 pub struct Trial {
     setting: Setting,
-    /// Variance of the samples.
     variance: f64,
     /// Factor on a standard error that gives half of an interval.
     student: f64,
@@ -41,7 +40,6 @@ pub struct Trial {
     impacts: Vec<(usize, Meeting)>,
 }
 
-/// A single impact.
 pub struct Single {
     pub contact: usize,
     pub impact: Meeting,
@@ -51,7 +49,6 @@ pub struct Single {
 }
 
 impl Trial {
-    /// The impacts of those contacts that count.
     fn selected(&self, counts: &impl Fn(usize) -> bool) -> Vec<&Meeting> {
         self.impacts.iter().filter(|(contact, _)| counts(*contact)).map(|(_, impact)| impact).collect()
     }
@@ -105,7 +102,6 @@ fn all(motion: &Motion, contacts: &[Contact], terms: RangeInclusive<usize>) -> V
     trials
 }
 
-/// The motion on both sides of an impact over a window.
 fn sides(motion: &Motion, contact: &Contact, width: f64) -> Option<Sides> {
     let Impact { t, unsure, .. } = contact.impact?;
     let from = |t: f64| motion.from(t).clamp(contact.flights.start, contact.flights.end);
@@ -151,7 +147,6 @@ pub fn together(
     Some((choice, trial.selected(&counts).len()))
 }
 
-/// Estimates of each impact alone.
 pub fn each(trials: &[Trial], contacts: usize) -> Vec<Single> {
     let mut estimates = vec![Estimates::new(); contacts];
     for trial in trials {

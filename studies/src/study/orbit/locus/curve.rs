@@ -33,7 +33,6 @@ const LONGEST_RANGE: f64 = 100.0;
 /// Accuracy of the points of a locus.
 const GOOD: Accuracy = Accuracy { change: 1e-13, step: 1e-11 };
 
-/// The equations of a locus.
 pub(super) struct Curve<'a> {
     /// Its family has not the second field's value; see [`Curve::at_second`].
     pub corrector: Corrector<'a>,
@@ -42,18 +41,15 @@ pub(super) struct Curve<'a> {
     pub range: f64,
     pub of: BranchEvent,
     has_circuit: bool,
-    /// The touch of a grazing orbit.
     touch: Option<Touch>,
 }
 
-/// A point of a locus.
 #[derive(Clone)]
 pub(super) struct Spot {
     /// Displacement, velocity, state of the circuit and both fields in the units; of a grazing the time of
     /// the touch in forcing periods and 0 in place of displacement and velocity.
     pub at: Vector5<f64>,
     pub point: Point,
-    /// Derivatives of the equations.
     pub slopes: [Vector5<f64>; 4],
     /// The tangent.
     pub along: Vector5<f64>,
@@ -258,7 +254,6 @@ impl<'a> Curve<'a> {
         Some(Equations { at, off: [off[0], off[1], off[2], at_unit], slopes, of: (point, slopes) })
     }
 
-    /// The equations of a grazing.
     fn grazing(&self, touch: &Touch, at: &Vector5<f64>) -> Option<Equations<5, 4, [Vector5<f64>; 4]>> {
         let off = |at: &Vector5<f64>| {
             let touch = touch.at(first_four(at));

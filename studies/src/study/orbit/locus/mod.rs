@@ -33,31 +33,20 @@ words! {
     }
 }
 
-/// Why a locus ended.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
-pub enum LocusEnd {
-    /// At an end of a range.
-    Range,
-    /// At a point where it had been before.
-    Closed,
-    /// The orbit grazes a stop, or grazes once more, so that the condition no longer is one on a smooth map.
-    Grazing,
-    /// Newton's method finds no point near the last one.
-    Lost,
-    /// The largest number of points was reached.
-    Points,
-}
-
-impl std::fmt::Display for LocusEnd {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(match self {
-            Self::Range => "at an end of a range",
-            Self::Closed => "where it had been before",
-            Self::Grazing => "where it meets a locus of grazing",
-            Self::Lost => "where no motion near the last one was found",
-            Self::Points => "after the largest number of motions",
-        })
+words! {
+    /// Where and why a locus ended.
+    #[non_exhaustive]
+    LocusEnd {
+        /// At an end of a range.
+        Range = "at an end of a range",
+        /// At a point where it had been before.
+        Closed = "where it had been before",
+        /// The orbit grazes a stop, or grazes once more: the condition no longer is one on a smooth map.
+        Grazing = "where it meets a locus of grazing",
+        /// Newton's method finds no point near the last one.
+        Lost = "where no motion near the last one was found",
+        /// The largest number of points was reached.
+        Points = "after the largest number of motions",
     }
 }
 
@@ -138,7 +127,10 @@ pub fn loci(
         };
         found.push(match Curve::new(family, orbit, value, range, (of, second), options) {
             Some((curve, start)) => {
-                Walk::new(curve, locus, start, second, options.phase).run_out(range, options, task)?
+                let ranges = [range, second.range];
+                let mut walk = Walk { curve, locus, at: start, ranges, options: *options };
+                walk.locus.end = walk.run_out(task)?;
+                walk.locus
             }
             None => Locus {
                 values: vec![[value, second.range.0]],

@@ -6,7 +6,7 @@ use super::super::corrector::tangent;
 use super::super::events::{characteristic, differ, is_at, root_between};
 use super::super::walk::AT_AN_END;
 use super::curve::{Curve, Spot};
-use super::{BranchEvent, BranchOptions, FieldRange, Locus, LocusEnd, LocusEvent, NoOrbit, Orbit};
+use super::{BranchEvent, BranchOptions, Locus, LocusEnd, LocusEvent, NoOrbit, Orbit};
 use crate::numeric::elementary;
 use crate::study::Task;
 
@@ -29,45 +29,26 @@ const AT_A_CUSP: f64 = 1e-3;
 /// Length of the part of the tangent by both fields below which the phase of the drive is kept.
 const UPRIGHT: f64 = 1e-2;
 
-/// A walk along a locus.
 pub(super) struct Walk<'a> {
-    curve: Curve<'a>,
-    locus: Locus,
-    at: Spot,
-    /// The phase of the rows, in forcing periods.
-    phase: f64,
-    second: &'a FieldRange,
+    pub curve: Curve<'a>,
+    pub locus: Locus,
+    pub at: Spot,
+    /// The ranges of both fields.
+    pub ranges: [(f64, f64); 2],
+    /// Its phase is that of the rows.
+    pub options: BranchOptions,
 }
 
-impl<'a> Walk<'a> {
-    /// A walk from a point; `phase` is that of the rows in forcing periods.
-    pub fn new(curve: Curve<'a>, locus: Locus, at: Spot, second: &'a FieldRange, phase: f64) -> Self {
-        Self { curve, locus, at, phase, second }
-    }
-
-    /// The locus to its end. `range` is that of the first field.
-    pub fn run_out(
-        mut self,
-        range: (f64, f64),
-        options: &BranchOptions,
-        task: &Task,
-    ) -> Result<Locus, NoOrbit> {
-        self.locus.end = self.go_on(range, options, task)?;
-        Ok(self.locus)
-    }
-
-    fn go_on(
-        &mut self,
-        range: (f64, f64),
-        options: &BranchOptions,
-        task: &Task,
-    ) -> Result<LocusEnd, NoOrbit> {
+impl Walk<'_> {
+    pub fn run_out(&mut self, task: &Task) -> Result<LocusEnd, NoOrbit> {
         let units = [self.curve.corrector.units.range, self.curve.range];
-        let ends = [(range, units[0]), (self.second.range, units[1])]
-            .map(|((from, to), unit)| [from.min(to) / unit, from.max(to) / unit]);
-        let (mut step, mut farthest) = (FIRST.min(options.step), 0.0_f64);
+        let ends = [0, 1].map(|place| {
+            let ((from, to), unit) = (self.ranges[place], units[place]);
+            [from.min(to) / unit, from.max(to) / unit]
+        });
+        let (mut step, mut farthest) = (FIRST.min(self.options.step), 0.0_f64);
         self.add(None, &self.at.clone());
-        while self.locus.orbits.len() < options.count {
+        while self.locus.orbits.len() < self.options.count {
             task.check_cancelled().map_err(|_| NoOrbit::Cancelled)?;
             (task.tick)();
             let next = self.predicted(step, &ends);
@@ -95,7 +76,7 @@ impl<'a> Walk<'a> {
                 return Ok(LocusEnd::Closed);
             }
             self.keep_clear();
-            step = (step * 1.3).min(options.step);
+            step = (step * 1.3).min(self.options.step);
         }
         Ok(LocusEnd::Points)
     }
@@ -132,10 +113,7 @@ impl<'a> Walk<'a> {
         };
         let guess = at + along * step;
         // beyond an end nothing is computed
-        let next = match beyond(&guess) {
-            Some(_) => None,
-            None => Some(self.curve.correct(guess, along)?),
-        };
+        let next = if beyond(&guess).is_some() { None } else { Some(self.curve.correct(guess, along)?) };
         let to = next.as_ref().map_or(guess, |next| next.at);
         let (next, is_last) = match (beyond(&to), next) {
             (None, next) => (next?, false),
@@ -216,7 +194,6 @@ impl<'a> Walk<'a> {
         Some(found.into_iter().map(|(_, event, spot)| (event, spot)).collect())
     }
 
-    /// Why there is no further point.
     fn ended(&mut self, ends: &[[f64; 2]; 2]) -> LocusEnd {
         let at = self.at.at;
         let is_at_an_end = ends
@@ -242,10 +219,10 @@ impl<'a> Walk<'a> {
 
     /// Adds a row, with the state at the phase of the rows.
     fn add(&mut self, event: Option<LocusEvent>, spot: &Spot) {
-        let state = self.curve.state_at(spot, self.phase).unwrap_or(spot.point.orbit.state);
+        let state = self.curve.state_at(spot, self.options.phase).unwrap_or(spot.point.orbit.state);
         let values = [spot.point.value, spot.at[4] * self.curve.range];
         // a motion at an end is so but for the rounding of its unit
-        let (from, to) = self.second.range;
+        let (from, to) = self.ranges[1];
         let is_at = |end: &f64| (values[1] - end).abs() <= AT_AN_END * ((to - from).abs() + end.abs() * 1e-3);
         let second = [from, to].into_iter().find(is_at).unwrap_or(values[1]);
         self.locus.values.push([values[0], second]);
