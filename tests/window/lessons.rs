@@ -170,7 +170,8 @@ fn every_lesson_is_gone_through_from_its_first_step_to_its_last() {
                     });
                     let answer = harness.state().lesson().unwrap().answer().clone();
                     assert_eq!(answer.choice.as_deref(), Some(options[0].text.as_str()));
-                    let words = if answer.choice == answer.outcome { "So it did." } else { "It did: “" };
+                    let words =
+                        if answer.choice == answer.outcome { "That holds." } else { "What holds: “" };
                     assert!(is_anywhere(&harness, words), "{}", entry.name);
                     assert!(harness.state().session.player.is_playing());
                 }

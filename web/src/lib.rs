@@ -13,11 +13,11 @@ use std::cell::{Cell, RefCell};
 use std::sync::atomic::AtomicBool;
 
 use eframe::egui;
-use interwell::app::window::{Command, Window};
 use interwell::app::window::leave::Next;
+use interwell::app::window::{Command, Window};
 use interwell::app::{begin, session, task};
-use interwell::scene::linked_lesson;
 use interwell::scene::lesson::LESSONS;
+use interwell::scene::linked_lesson;
 use interwell::system::page;
 use wasm_bindgen::prelude::*;
 
@@ -50,8 +50,8 @@ struct Page {
 }
 
 impl Page {
-    /// Goes to what the address has become: undoes or redoes changes where that leads there, and opens another
-    /// scene or lesson where not.
+    /// Goes to what the address has become: undoes or redoes changes where that leads there, and opens
+    /// another scene or lesson where not.
     fn follow_address(&mut self, ctx: &egui::Context) {
         let asked = LINK.take().filter(|link| *link != self.link && !link.is_empty());
         if let Some(link) = asked {

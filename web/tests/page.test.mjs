@@ -15,6 +15,9 @@ const inFirefox = executablePath.includes("firefox");
 const dist = fileURLToPath(new URL("../dist/", import.meta.url));
 const pictures = process.env.PICTURES;
 const types = { ".html": "text/html", ".js": "text/javascript", ".wasm": "application/wasm", ".png": "image/png" };
+// heights of two rows of the menu of files
+const SAVE_THE_EVENTS = 316;
+const SAVE_THE_MAP = 388;
 const arguments_ = ["--no-sandbox", "--disable-quic", "--no-first-run", "--disable-background-networking"];
 
 let server, browser, address;
@@ -43,7 +46,8 @@ after(async () => {
 });
 
 async function open(link = "", options = {}) {
-  const context = await browser.newContext({ viewport: { width: 1280, height: 720 }, acceptDownloads: true, ...options });
+  const viewport = { width: 1280, height: 720 };
+  const context = await browser.newContext({ viewport, acceptDownloads: true, ...options });
   const page = await context.newPage();
   const problems = [];
   page.on("pageerror", (error) => problems.push(String(error)));
@@ -59,9 +63,10 @@ async function open(link = "", options = {}) {
 }
 
 const status = (page) => page.textContent("#status");
-const says = (page, words) =>
-  page.waitForFunction((words) => document.querySelector("#status").textContent.includes(words), words, { timeout: 60_000 });
-const addressHas = (page, words) => page.waitForFunction((words) => location.href.includes(words), words, { timeout: 30_000 });
+const says = (page, words) => page.waitForFunction(
+  (words) => document.querySelector("#status").textContent.includes(words), words, { timeout: 60_000 });
+const addressHas = (page, words) => page.waitForFunction(
+  (words) => location.href.includes(words), words, { timeout: 30_000 });
 
 // Drags the slider of the amplitude, at this height, over these places.
 async function drag(page, [from, ...to], y = 133) {
@@ -229,7 +234,10 @@ test("the back button opens the scene before", async () => {
   const { context, page } = await open("?scene=paper");
   await says(page, "cross");
   await page.evaluate(() => (location.hash = ""));
-  await page.evaluate(() => history.pushState(null, "", "?scene=harvester") ?? dispatchEvent(new PopStateEvent("popstate")));
+  await page.evaluate(() => {
+    history.pushState(null, "", "?scene=harvester");
+    dispatchEvent(new PopStateEvent("popstate"));
+  });
   await page.waitForFunction(() => /^Power from/.test(document.title), null, { timeout: 30_000 });
   await page.goBack();
   await page.waitForFunction(() => /Prototype/.test(document.title), null, { timeout: 30_000 });

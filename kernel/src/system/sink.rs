@@ -50,7 +50,10 @@ pub struct Sink {
 enum Kind {
     Stdout,
     Direct(File),
-    Replace { part: NamedTempFile, target: PathBuf },
+    Replace {
+        part: NamedTempFile,
+        target: PathBuf,
+    },
     /// A file that a web page hands to its user.
     #[cfg(target_arch = "wasm32")]
     Download(PathBuf),

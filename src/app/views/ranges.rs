@@ -8,6 +8,8 @@ use crate::app::session::pins::Pin;
 use crate::dynamics::{Model, STANDARD_GRAVITY};
 use crate::numeric::round::round_up;
 
+use super::stretch;
+
 /// Ends in g of an axis of the base's acceleration.
 const PUSHES: [f64; 14] = [0.01, 0.02, 0.05, 0.1, 0.2, 0.35, 0.6, 1.0, 1.5, 2.2, 3.2, 5.0, 10.0, 20.0];
 
@@ -82,7 +84,7 @@ pub struct Ranges {
     expected: Extremes,
     /// Values of the motion since the last change.
     seen: Extremes,
-    /// Values before the last change, kept until the motion has settled.
+    /// Values before the last change, kept until the motion has settled and they have left the traces.
     previous: Extremes,
     /// Values of the motion since the start.
     since_start: Extremes,
@@ -106,7 +108,9 @@ impl Ranges {
             self.since = Some(changed_at);
             self.looked_to = changed_at;
         }
-        if session.settling().is_none() {
+        // what was before the change is drawn until it has left the traces
+        let is_gone = watch.time() - changed_at > stretch(session.shown());
+        if session.settling().is_none() && is_gone {
             self.previous = Extremes::default();
         }
         let model = session.model();

@@ -300,13 +300,19 @@ fn number_rows(columns: &[Column], now: usize, with_threshold: bool) -> Vec<Row>
         rows.push(row("power into the load", unit, &text, &|run| Some(watt(run)? * factor), &decimals_for));
     }
     if with_threshold {
-        let found = |column: &Column| threshold(&column.card.as_ref()?.thresholds?.crossing);
-        let texts = columns.iter().map(|column| found(column).unwrap_or_else(|| UNKNOWN.to_owned()));
-        let row = Row::new(CROSSES, "g", texts.collect());
-        // left out where all are known and equal
-        if row.differs() || row.texts.iter().any(|text| text == UNKNOWN) {
-            rows.push(row);
-        }
+        let found = |column: &Column| {
+            let card = column.card.as_ref()?;
+            threshold(&card.scene, &card.thresholds?.crossing)
+        };
+        let all: Vec<_> = columns.iter().map(found).collect();
+        let unit = all.iter().flatten().next().map_or("g", |first| first.1);
+        // an amplitude of another unit has it beside its number
+        let text = |(number, its): &(String, &str)| match *its == unit {
+            true => number.clone(),
+            false => format!("{number} {its}"),
+        };
+        let texts = all.iter().map(|found| found.as_ref().map_or_else(|| UNKNOWN.to_owned(), text));
+        rows.push(Row::new(CROSSES, unit, texts.collect()));
     }
     rows
 }

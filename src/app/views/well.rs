@@ -27,7 +27,7 @@ use super::pane::{LEGEND, Pane, Place, kept_pane_ui};
 use super::ranges::{bottom, room_for_push};
 use super::stops::{WALL, stops_ui, travel_limits};
 use super::view::Axis;
-use super::{Span, View, ViewContext, too_small_ui};
+use super::{Span, View, ViewContext};
 
 /// Number of points of a curve.
 const POINTS: usize = 400;
@@ -76,10 +76,6 @@ impl Potential<'_> {
 
 pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let (area, style) = (ui.max_rect(), context.style);
-    if area.width() < 60.0 || area.height() < 60.0 {
-        return too_small_ui(ui, &style, area);
-    }
-    ui.painter().rect_filled(area, 0.0, style.ground());
     let (low, high) = energy_ends(ui, context, area.height());
     let (per_joule, unit) = suited_unit("J", std::iter::once(high - low));
     let (span, state) = (context.span, context.drawn.state(context.session));

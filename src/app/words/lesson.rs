@@ -17,11 +17,11 @@ pub fn expected(choice: Option<&str>, outcome: Option<&str>) -> String {
     let whole = |text: &'_ str| plain(text.trim_end_matches('.'));
     match (choice.map(whole), outcome.map(whole)) {
         (Some(choice), Some(outcome)) if choice == outcome => {
-            format!("You expected: “{choice}”. So it did.")
+            format!("You expected: “{choice}”. That holds.")
         }
-        (Some(choice), Some(outcome)) => format!("You expected: “{choice}”. It did: “{outcome}”."),
+        (Some(choice), Some(outcome)) => format!("You expected: “{choice}”. What holds: “{outcome}”."),
         (Some(choice), None) => format!("You expected: “{choice}”. Watch what it does."),
-        (None, Some(outcome)) => format!("It did: “{outcome}”."),
+        (None, Some(outcome)) => format!("What holds: “{outcome}”."),
         (None, None) => "Watch what it does.".to_owned(),
     }
 }
@@ -276,9 +276,9 @@ mod tests {
 
     #[test]
     fn a_prediction_is_compared_with_its_outcome() {
-        assert_eq!(expected(Some("a"), Some("a")), "You expected: “a”. So it did.");
-        assert_eq!(expected(Some("a"), Some("b")), "You expected: “a”. It did: “b”.");
-        assert_eq!(expected(None, Some("b")), "It did: “b”.");
+        assert_eq!(expected(Some("a"), Some("a")), "You expected: “a”. That holds.");
+        assert_eq!(expected(Some("a"), Some("b")), "You expected: “a”. What holds: “b”.");
+        assert_eq!(expected(None, Some("b")), "What holds: “b”.");
     }
 
     #[test]

@@ -148,8 +148,8 @@ impl Cells {
         place.clone()
     }
 
-    /// Checks all cells; wrong are those in which `faults` finds any, or whose mechanism is wrong. A mechanism
-    /// that is not solved is no fault.
+    /// Checks all cells; wrong are those in which `faults` finds any, or whose mechanism is wrong. A
+    /// mechanism that is not solved is no fault.
     pub fn check(
         &self,
         pool: &Pool,

@@ -249,8 +249,8 @@ impl OpenLesson {
         Turn::Show(Box::new(self.document.end(self.progress.step).clone()), true)
     }
 
-    /// Goes on, but neither past a covered prediction nor past the last step. A task that is not done is shown
-    /// solved, since the step after it speaks of that.
+    /// Goes on, but neither past a covered prediction nor past the last step. A task that is not done is
+    /// shown solved, since the step after it speaks of that.
     pub fn go_on(&mut self) -> Turn {
         if self.is_covering() || self.is_last() {
             return Turn::Stay;

@@ -11,8 +11,8 @@ use crate::dynamics::{Model, Outcome, Phase, Sample};
 use crate::study::{Standing, ended_remedy, standing};
 
 pub use super::kind::Kind;
-use super::numbers::{energy, length_beside, newtons};
 pub use super::numbers::{as_set, mm_beside, seconds, speed};
+use super::numbers::{energy, length_beside, newtons};
 use super::wells::well_name;
 pub use driven::{DrivenMotion, driven};
 pub use remedy::{threshold, ways};

@@ -12,12 +12,16 @@ pub(super) fn amplitude(scene: &Scene) -> Option<f64> {
     Some(scene.harmonic()?.amplitude_g().abs())
 }
 
+/// How many units of the amplitude of a scene's drive are 1 g, and the name of that unit.
+fn unit(scene: &Scene) -> (f64, &'static str) {
+    let drive = scene.harmonic();
+    drive.map_or((1.0, "g"), |drive| (drive.amplitude_of(STANDARD_GRAVITY), drive.unit()))
+}
+
 /// An amplitude in g, written by `form` in the unit of the drive's field, with that unit.
 pub(super) fn in_unit(scene: &Scene, form: fn(f64) -> String, g: f64) -> String {
-    let drive = scene.harmonic();
-    let (of_one, unit) =
-        drive.map_or((1.0, "g"), |drive| (drive.amplitude_of(STANDARD_GRAVITY), drive.unit()));
-    format!("{} {unit}", form(g * of_one))
+    let (per_g, unit) = unit(scene);
+    format!("{} {unit}", form(g * per_g))
 }
 
 /// Gaps that end below this multiple of the least amplitude that crosses are not mentioned.
@@ -39,9 +43,10 @@ fn about(found: &Found) -> &'static str {
     if found.undecided { "about " } else { "" }
 }
 
-/// A threshold in g as every view writes it.
-pub fn threshold(found: &Found) -> Option<String> {
-    Some(format!("{}{}", about(found), grams(found.value?)))
+/// A threshold as every view writes it, in the unit of the drive's field, and that unit.
+pub fn threshold(scene: &Scene, found: &Found) -> Option<(String, &'static str)> {
+    let (per_g, unit) = unit(scene);
+    Some((format!("{}{}", about(found), grams(found.value? * per_g)), unit))
 }
 
 /// What the thresholds, all from rest at this frequency, say of the present amplitude and motion.

@@ -109,8 +109,8 @@ fn source_row(basins: &Basins) -> impl Fn(usize) -> usize {
     }
 }
 
-/// The roles of the attractors, by what each is: the number of an attractor can change with every start that is
-/// added, its colour does not.
+/// The roles of the attractors, by what each is: the number of an attractor can change with every start that
+/// is added, its colour does not.
 fn roles(answer: &Answer) -> Vec<Role> {
     let words = answer.words();
     let rank = |word: &String| words.iter().filter(|other| *other < word).count();
