@@ -27,23 +27,14 @@ pub fn answer(
             }
         };
     }
-    answer_as!(
-        LiveRun,
-        PathQuestion,
-        TolerancesQuestion,
-        StepQuestion,
-        ThresholdsQuestion,
-        StopsQuestion,
-        SpectrumQuestion,
-        WalkQuestion,
-        BasinsQuestion,
-        CellsQuestion,
-        Search,
-        MeasuredQuestion,
-        FitQuestion,
-        OptionsQuestion,
-        GoalQuestion,
-    )
+    answer_as! {
+        LiveRun, PathQuestion, TolerancesQuestion, StepQuestion,
+        ThresholdsQuestion, StopsQuestion,
+        SpectrumQuestion, WalkQuestion, BasinsQuestion,
+        CellsQuestion, Search,
+        MeasuredQuestion, FitQuestion,
+        OptionsQuestion, GoalQuestion,
+    }
 }
 
 fn answered<Q: Question>(

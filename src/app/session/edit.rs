@@ -42,8 +42,7 @@ impl Session {
         match solve(&document, GESTURE_TOLERANCE) {
             Ok((mechanism, _)) => {
                 (self.mechanism, self.mechanism_of, self.is_coarse) = (mechanism, wanted.clone(), true);
-                self.tolerance = GESTURE_TOLERANCE;
-                self.refused = None;
+                (self.tolerance, self.refused) = (GESTURE_TOLERANCE, None);
                 self.edit(|scene| scene.mechanism = wanted)
             }
             Err(error) => {
@@ -175,8 +174,7 @@ impl Session {
 
     /// Ends a series of key presses after a second without one. Returns the time in s left for another one.
     pub fn follow_presses(&mut self, now: f64) -> Option<f64> {
-        let last = self.presses.as_ref()?.1;
-        let left = last + PRESS_GAP - now;
+        let left = self.presses.as_ref()?.1 + PRESS_GAP - now;
         if left <= 0.0 {
             self.end_gesture();
         }

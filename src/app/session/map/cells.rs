@@ -33,7 +33,8 @@ pub struct Map {
     pub(in crate::app::session) sweep: Arc<Sweep>,
     levels: Levels,
     cells: Vec<Option<Cell>>,
-    known: usize,
+    /// Number of cells that are known.
+    pub known: usize,
     /// Computing time after which it was last drawn.
     drawn_after: Option<Duration>,
     /// Computing time so far.
@@ -79,17 +80,8 @@ impl Map {
         })
     }
 
-    pub fn len(&self) -> usize {
+    pub fn count(&self) -> usize {
         self.cells.len()
-    }
-
-    /// Whether there are no cells, which does not occur.
-    pub fn is_empty(&self) -> bool {
-        self.cells.is_empty()
-    }
-
-    pub fn known(&self) -> usize {
-        self.known
     }
 
     pub fn is_whole(&self) -> bool {
@@ -146,7 +138,7 @@ impl Map {
         if is_new {
             self.coarse_after = Some(self.took);
         }
-        let every = Duration::from_micros(10 * self.len() as u64);
+        let every = Duration::from_micros(10 * self.count() as u64);
         let is_recent = self.drawn_after.is_some_and(|last| self.took < last + every);
         if is_recent && !is_new && !self.is_whole() {
             return false;

@@ -11,8 +11,8 @@ use crate::dynamics::{Model, Outcome, Phase, Sample};
 use crate::study::{Standing, ended_remedy, standing};
 
 pub use super::kind::Kind;
-use super::numbers::{energy, length_beside, newtons};
 pub use super::numbers::{as_set, mm_beside, seconds, speed};
+use super::numbers::{energy, length_beside, newtons};
 use super::wells::well_name;
 pub use driven::{DrivenMotion, driven};
 pub use remedy::{threshold, ways};
@@ -107,13 +107,11 @@ pub fn unshaken(model: &Model, state: &Sample) -> Sentence {
     let rests = state.phase != Phase::Free || pull < STILL_PULL;
     let still = state.v.abs() < 1e-4 * model.scales().speed && rests;
     let Some(Standing { well, pressed_n, energy_j, needed_j }) = standing(model, state) else {
-        return match still {
-            true => Sentence::new(Kind::Resting, "At rest; nothing shakes it."),
-            false => {
-                let speed = speed(state.v.abs());
-                Sentence::new(Kind::Other, format!("Moving at {speed} mm/s; nothing shakes it."))
-            }
-        };
+        if still {
+            return Sentence::new(Kind::Resting, "At rest; nothing shakes it.");
+        }
+        let speed = speed(state.v.abs());
+        return Sentence::new(Kind::Other, format!("Moving at {speed} mm/s; nothing shakes it."));
     };
     let wells = model.mechanism().landscape.wells().len();
     let (well, needed, left) = (well_name(well, wells), energy(needed_j), energy(energy_j));
