@@ -129,8 +129,7 @@ impl Drawing<'_> {
 
     fn curve(&self) -> Result<Chart> {
         let (scene, mechanism) = (&self.document.scene, self.mechanism()?);
-        let positions = default_positions(scene, &mechanism, CURVE_PICTURE_POINTS);
-        let table = curve(&mechanism, positions)?;
+        let table = curve(&mechanism, default_positions(scene, &mechanism, CURVE_PICTURE_POINTS))?;
         Ok(curve_chart(&table, &mechanism, stop_positions(scene), Ranges::default()))
     }
 

@@ -228,9 +228,8 @@ impl Session {
 
     /// Starts the scene at a displacement in m and a velocity in m/s, from now on, as one undo step.
     pub fn start_at(&mut self, x: f64, v: f64) {
-        let rounded = |value: f64, unit: f64| (value / unit).round() * unit;
-        let x_mm = decimal(rounded(x * 1e3, 1e-3));
-        let v_m_per_s = decimal(rounded(v, 1e-4));
+        let rounded = |value: f64, unit: f64| decimal((value / unit).round() * unit);
+        let (x_mm, v_m_per_s) = (rounded(x * 1e3, 1e-3), rounded(v, 1e-4));
         if self.edit_once(|scene| scene.start = Start::At { x_mm, v_m_per_s, electrical: 0.0 }) {
             self.apply();
             self.restart();

@@ -91,8 +91,8 @@ pub struct Session {
     tolerance: f64,
     /// Why the last change of the mechanism was refused.
     refused: Option<String>,
-    /// Live time in s of the last change.
-    changed_at: f64,
+    /// Live time in s of the last change: of the scene, or of the mass by hand.
+    pub changed_at: f64,
     /// Whether the last change was a move of the mass by hand.
     pub by_hand: bool,
     /// Whether the last change moved the mass to a stop.
@@ -101,7 +101,7 @@ pub struct Session {
     /// jumps while another one is moved.
     opened: SharedModel,
     /// Whether the motion was changed after its start, so that it is no run of the scene from its start.
-    continued: bool,
+    pub is_continued: bool,
     /// The stops that the scene gets when they are switched on.
     remembered_stops: Stops,
     /// The field of the current series of arrow key presses, and the time in s of the last press.
@@ -143,7 +143,7 @@ impl Session {
             by_hand: false,
             moved_to_stop: false,
             opened: model.clone(),
-            continued: false,
+            is_continued: false,
             remembered_stops: first_stops(&scene, &model),
             model,
             presses: None,
@@ -190,7 +190,7 @@ impl Session {
     pub fn restart(&mut self) {
         self.player.restart(&self.model);
         self.pins.restart(&self.wake);
-        (self.changed_at, self.continued, self.by_hand, self.moved_to_stop) = (0.0, false, false, false);
+        (self.changed_at, self.is_continued, self.by_hand, self.moved_to_stop) = (0.0, false, false, false);
         self.ask_settled();
     }
 
@@ -205,7 +205,7 @@ impl Session {
 
     /// Notes that the mass has been moved by hand, and asks again what the motion settles to.
     pub fn moved_by_hand(&mut self) {
-        (self.changed_at, self.continued, self.by_hand) = (self.player.watch().time(), true, true);
+        (self.changed_at, self.is_continued, self.by_hand) = (self.player.watch().time(), true, true);
         self.moved_to_stop = false;
         self.ask_settled();
     }
@@ -244,7 +244,7 @@ impl Session {
         let (left, right) = self.model.stop_positions();
         let is_far = (now - before).abs() > REPORTED_MOVE * self.model.scales().length;
         self.moved_to_stop = is_far && [left, right].contains(&Some(now));
-        (self.changed_at, self.continued, self.by_hand) = (self.player.watch().time(), true, false);
+        (self.changed_at, self.is_continued, self.by_hand) = (self.player.watch().time(), true, false);
         self.ask_settled();
     }
 
@@ -342,15 +342,6 @@ impl Session {
     pub fn end_of_run(&self) -> f64 {
         let begins_here = self.player.watch().from_here().is_some();
         self.model.duration() + if begins_here { self.changed_at } else { 0.0 }
-    }
-
-    pub fn is_continued(&self) -> bool {
-        self.continued
-    }
-
-    /// Live time in s of the last change: of the scene, or of the mass by hand.
-    pub fn changed_at(&self) -> f64 {
-        self.changed_at
     }
 
     /// Amplitude of the excitation in g, if it is harmonic.

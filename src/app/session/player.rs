@@ -298,10 +298,6 @@ impl Player {
         self.goal
     }
 
-    pub fn give_up(&mut self) {
-        self.goal = None;
-    }
-
     pub fn take_reached(&mut self) -> Option<Reached> {
         self.reached.take()
     }

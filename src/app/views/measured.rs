@@ -160,7 +160,7 @@ fn differences_ui(ui: &mut Ui, context: &ViewContext<'_>, over: &Overlay) {
     };
     let end = short(session.model().duration());
     let mut text = format!("Compared with the run of the scene {begin}, 0 to {end} s.");
-    if session.is_continued() {
+    if session.is_continued {
         text += " The motion on the screen was changed on its way and is another one: the button at the \
                  left of the time bar begins it anew.";
     }

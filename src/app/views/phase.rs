@@ -279,7 +279,7 @@ fn strobes(context: &ViewContext<'_>) -> Vec<State> {
     let Some(period) = session.shown().forcing_period() else { return Vec::new() };
     let (watch, now) = (session.player.watch(), session.player.time());
     // since the last change of the model, and since the mass was last moved by hand
-    let placed = if session.player.is_past() { 0.0 } else { session.changed_at() };
+    let placed = if session.player.is_past() { 0.0 } else { session.changed_at };
     let begin = watch.model_since(now).max(placed).max(watch.begin());
     let last = (now / period).floor();
     let first = (begin / period).ceil().max(last - MAX_STROBES);

@@ -94,7 +94,7 @@ pub struct Ranges {
 impl Ranges {
     /// Takes in the motion since the last call.
     pub fn follow(&mut self, session: &Session) -> &Self {
-        let changed_at = session.changed_at();
+        let changed_at = session.changed_at;
         let watch = session.player.watch();
         if watch.time() < self.looked_to {
             self.since_start = Extremes::default();

@@ -37,7 +37,7 @@ impl Window {
         if self.session.player.goal().is_some() {
             if ctx.input(|input| input.events.iter().any(is_pressed)) {
                 ctx.input_mut(|input| input.events.retain(|event| !is_pressed(event)));
-                self.session.player.give_up();
+                self.session.player.set_playing(false);
             }
             return;
         }

@@ -76,7 +76,7 @@ pub struct OpenLesson {
     pub hinted: bool,
     /// Number of scenes that were judged and did not do the task; whether the present one is among them.
     tries: (usize, bool),
-    /// Whether it goes on from where it was left, perhaps by another class, and nobody has said that it shall.
+    /// Whether it goes on where it was left, perhaps by another class, and nobody has said that it shall.
     pub begun_before: bool,
     pub(super) options: Background<OptionsQuestion, Outcome>,
     pub(super) goal: Background<GoalQuestion, TaskState>,

@@ -79,7 +79,7 @@ pub fn axis(path: &str, scene: &Scene, when_on: Stops, well_mm: Option<f64>) -> 
         let step = decimal(to / STEPS);
         (decimal(4.0 * step), to, step)
     };
-    let from_0_to = |greatest: f64, steps: f64| {
+    let from_zero = |greatest: f64, steps: f64| {
         let to = round_up(greatest);
         (0.0, to, decimal(to / steps))
     };
@@ -93,9 +93,9 @@ pub fn axis(path: &str, scene: &Scene, when_on: Stops, well_mm: Option<f64>) -> 
             AMPLITUDES_G
         }
         name if (name == "rms_g" || name.starts_with("amplitude_")) && present > 0.0 => {
-            from_0_to(2.0 * present, 100.0)
+            from_zero(2.0 * present, 100.0)
         }
-        "xi" => from_0_to((2.0 * present).max(0.1), STEPS),
+        "xi" => from_zero((2.0 * present).max(0.1), STEPS),
         name if name.starts_with("restitution") => (0.0, 1.0, 1.0 / STEPS),
         "seed" => (1.0, STEPS, 1.0),
         _ if signed < 0.0 => {
