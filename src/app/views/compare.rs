@@ -19,7 +19,7 @@ enum PinAction {
 /// Draws the view of the last change.
 pub fn before_now_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let (style, is_full) = (context.style, context.session.pins.is_full());
-    let before = context.session.before.as_ref().cloned();
+    let before = context.session.before.clone();
     let is_first = before.is_none();
     let column = |card| Column { card, ended: None, differs: false };
     let columns = [before, Some(context.session.now_card())].map(column);
