@@ -97,7 +97,7 @@ fn closed_it_works_nothing_out() {
     come(&mut harness);
     let session = &harness.state().session;
     assert!(session.accuracy.tolerances(session.model()).is_some_and(|(_, current)| !current));
-    assert!(!session.accuracy.is_running());
+    assert!(session.accuracy.working().is_none());
 }
 
 #[test]

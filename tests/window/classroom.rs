@@ -256,7 +256,7 @@ fn votes_are_counted_beside_a_prediction() {
     press_with_ctrl(&mut harness, Key::L);
     harness.query_all_by_label("B 0").next().unwrap().click();
     harness.run_steps(3);
-    assert_eq!(harness.state().lesson().unwrap().votes(), [1, 1, 2]);
+    assert_eq!(harness.state().lesson().unwrap().answer().votes, [1, 1, 2]);
     press_with_ctrl(&mut harness, Key::L);
     click_on(&mut harness, "Reveal");
     assert!(is_painted(&harness, "Votes: A 1, B 1, C 2"));

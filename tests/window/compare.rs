@@ -53,12 +53,12 @@ fn a_pin_of_the_scene_lies_on_the_motion_to_the_bit() {
     command(&mut harness, Command::Step);
     command(&mut harness, Command::Speed(6));
     command(&mut harness, Command::PlayPause);
-    let since = pinned(&harness.state().session, 'A').since();
+    let since = pinned(&harness.state().session, 'A').since;
     frames_until(&mut harness, "ten periods", |session| session.player.time() > since + 3.4);
     command(&mut harness, Command::PlayPause);
     frames_until(&mut harness, "the pin", |session| !session.pins.are_behind(session.player.time()));
     let session = &harness.state().session;
-    let (watch, pin) = (session.player.watch(), pinned(session, 'A').watch());
+    let (watch, pin) = (session.player.watch(), &pinned(session, 'A').watch);
     assert_eq!(watch.now(), pin.now());
     // sums that were taken in other pieces
     let (own_j, pin_j) = (watch.ledger().work_j, pin.ledger().work_j);
@@ -73,7 +73,7 @@ fn a_pin_of_the_scene_lies_on_the_motion_to_the_bit() {
     harness.run_steps(2);
     let session = &harness.state().session;
     assert!(session.player.is_past() && session.player.time() == then);
-    assert_eq!(pinned(session, 'A').state_at(then), session.player.state());
+    assert_eq!(pinned(session, 'A').watch.state_at(then), session.player.state());
 }
 
 #[test]
@@ -90,9 +90,9 @@ fn a_pin_keeps_its_scene_and_comes_back_in_one_step() {
     harness.run_steps(60);
     let session = &harness.state().session;
     let pin = pinned(session, 'A');
-    assert_eq!((pin.scene(), pin.watch().time()), (&before, session.player.watch().time()));
-    assert!((pin.watch().now().x - session.player.watch().now().x).abs() > 1e-4);
-    assert_eq!(pin.watch().model_at(pin.watch().time()).stop_positions(), (None, None));
+    assert_eq!((&pin.scene, pin.watch.time()), (&before, session.player.watch().time()));
+    assert!((pin.watch.now().x - session.player.watch().now().x).abs() > 1e-4);
+    assert_eq!(pin.watch.model_at(pin.watch.time()).stop_positions(), (None, None));
     frames_until(&mut harness, "what both settle to", |session| {
         session.now_card().settled.is_some() && pinned(session, 'A').settled().is_some()
     });
@@ -111,25 +111,25 @@ fn without_stops_it_is_another_motion_from_here_on() {
     play(&mut session, 1.0);
     assert_eq!(session.pin(PinKind::OtherStops), Ok('A'));
     let fork = session.player.watch().now();
-    let now = pinned(&session, 'A').watch().now();
+    let now = pinned(&session, 'A').watch.now();
     assert_eq!((now.t, now.x, now.v), (fork.t, fork.x, fork.v));
     play(&mut session, 3.0);
     let (watch, pin) = (session.player.watch(), pinned(&session, 'A'));
-    assert_eq!((pin.scene().stops, pin.since()), (Stops::None, fork.t));
+    assert_eq!((pin.scene.stops, pin.since), (Stops::None, fork.t));
     assert_ne!(session.scene().stops, Stops::None);
     let reach = |samples: &std::collections::VecDeque<interwell::dynamics::Sample>| {
         samples.iter().map(|sample| sample.x.abs()).fold(0.0, f64::max)
     };
-    assert!(reach(watch.samples()) <= 1.5e-3 && reach(pin.watch().samples()) > 3e-3);
+    assert!(reach(watch.samples()) <= 1.5e-3 && reach(pin.watch.samples()) > 3e-3);
     // the same drive at the same time, and the same way before
-    assert_eq!((watch.time(), watch.now().base_accel), (pin.watch().time(), pin.watch().now().base_accel));
-    assert!(distances(watch, pin.watch(), (0.0, fork.t), 100).iter().all(|point| point.1 == 0.0));
+    assert_eq!((watch.time(), watch.now().base_accel), (pin.watch.time(), pin.watch.now().base_accel));
+    assert!(distances(watch, &pin.watch, (0.0, fork.t), 100).iter().all(|point| point.1 == 0.0));
     // and back: with the stops that were there
     session.take_back('A');
     session.poll();
     assert_eq!(session.scene().stops, Stops::None);
     assert_eq!(session.pin(PinKind::OtherStops), Ok('B'));
-    assert_eq!(pinned(&session, 'B').scene().stops.travel_limit_mm(), Some(1.5));
+    assert_eq!(pinned(&session, 'B').scene.stops.travel_limit_mm(), Some(1.5));
 }
 
 #[test]
@@ -139,7 +139,7 @@ fn there_is_room_for_three() {
         press(&mut harness, Key::K);
     }
     let letters = |harness: &Harness<'static, Window>| -> String {
-        harness.state().session.pins.all().iter().map(Pin::letter).collect()
+        harness.state().session.pins.all().iter().map(|pin| pin.letter).collect()
     };
     assert_eq!(letters(&harness), "ABC");
     press(&mut harness, Key::K);
@@ -165,10 +165,10 @@ fn pins_begin_again_with_the_motion() {
     play(&mut session, 1.0);
     session.restart();
     let pin = pinned(&session, 'A');
-    assert_eq!((pin.watch().time(), pin.since()), (0.0, 0.0));
+    assert_eq!((pin.watch.time(), pin.since), (0.0, 0.0));
     assert!(pin.settled().is_none());
     play(&mut session, 0.5);
-    assert_eq!(pinned(&session, 'A').watch().time(), session.player.watch().time());
+    assert_eq!(pinned(&session, 'A').watch.time(), session.player.watch().time());
 }
 
 /// Distance in m of a twin from the mass after some seconds, and at the start.
@@ -177,9 +177,9 @@ fn twins(changes: &[&str], seconds: f64) -> (f64, f64) {
     play(&mut session, 0.5);
     assert_eq!(session.pin(PinKind::Twin), Ok('A'));
     assert_eq!(session.player.watch().time(), 0.0);
-    let first = session.player.watch().now().x - pinned(&session, 'A').watch().now().x;
+    let first = session.player.watch().now().x - pinned(&session, 'A').watch.now().x;
     play(&mut session, seconds);
-    let last = session.player.watch().now().x - pinned(&session, 'A').watch().now().x;
+    let last = session.player.watch().now().x - pinned(&session, 'A').watch.now().x;
     (first.abs(), last.abs())
 }
 
@@ -200,9 +200,9 @@ fn a_pin_that_ends_early_stays_there() {
     session.pin(PinKind::OtherStops).unwrap();
     play(&mut session, 2.0);
     let pin = pinned(&session, 'A');
-    let at = pin.ended().and_then(|outcome| outcome.ended_at()).unwrap();
-    assert!(at < 2.0 && pin.watch().time() == at);
-    assert_eq!(pin.state_at(session.player.time()), pin.watch().now());
+    let at = pin.watch.ended().and_then(|outcome| outcome.ended_at()).unwrap();
+    assert!(at < 2.0 && pin.watch.time() == at);
+    assert_eq!(pin.watch.state_at(session.player.time()), pin.watch.now());
 }
 
 #[test]
@@ -292,7 +292,7 @@ fn two_motions_stand_side_by_side_and_a_hand_moves_the_present_one_alone() {
     harness.state_mut().session.player.speed = 1.0;
     harness.run_steps(60);
     let session = &harness.state().session;
-    let (state, pin) = (session.player.state(), pinned(session, 'A').state_at(session.player.time()));
+    let (state, pin) = (session.player.state(), pinned(session, 'A').watch.state_at(session.player.time()));
     assert!(state.t == pin.t && state.base_accel == pin.base_accel && (state.x - pin.x).abs() > 1e-3);
     // two drawings and two wells, and one motion that can be taken hold of in each of them
     assert_eq!(harness.query_all_by_label("proof mass").count(), 2);

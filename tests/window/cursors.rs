@@ -195,7 +195,7 @@ fn distances_are_read_off_with_their_rate() {
     let at = harness.state().memory.cursors.at;
     let session = &harness.state().session;
     let pin = session.pins.get('A').unwrap();
-    let [first, second] = at.map(|t| (session.player.watch().state_at(t).x - pin.state_at(t).x).abs());
+    let [first, second] = at.map(|t| (session.player.watch().state_at(t).x - pin.watch.state_at(t).x).abs());
     let rate = (second / first).ln() / (at[1] - at[0]);
     let parts = harness.query_all_by_label_contains("exponential rate A ");
     let text = parts.last().unwrap().accesskit_node().value().unwrap();

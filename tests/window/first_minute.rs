@@ -45,7 +45,7 @@ fn shaking_harder_and_stops_both_make_it_cross() {
         harness.run_steps(2);
         // it goes on from where it was: what was seen stays, and nothing jumps but by a stop that carries the
         // mass
-        let (after, changed) = (seen(&harness), harness.state().session.changed_at());
+        let (after, changed) = (seen(&harness), harness.state().session.changed_at);
         assert!(before.len() > 5 && after.starts_with(&before) && changed >= before[before.len() - 1].t);
         let then = after.iter().position(|sample| sample.t == changed).unwrap();
         let (sample, next) = (after[then], after[then + 1]);

@@ -36,7 +36,7 @@ fn map(window: &Window) -> &Map {
 #[test]
 fn it_fills_and_a_click_is_one_step() {
     let mut harness = open("paper", WIDE, (0.25, 0.25));
-    assert_eq!(map(harness.state()).len(), 9 * 5);
+    assert_eq!(map(harness.state()).count(), 9 * 5);
     fill(&mut harness);
     assert!(map(harness.state()).is_whole() && !harness.state().session.map.is_running());
     let overlay = &map(harness.state()).overlay;
@@ -73,7 +73,7 @@ fn begin(harness: &mut Harness<'static, Window>) {
     harness.key_press_modifiers(Modifiers::COMMAND, Key::Num3);
     wait_until("the first cells", || {
         harness.run_steps(1);
-        harness.state().session.map.map().is_some_and(|map| map.known() > 0)
+        harness.state().session.map.map().is_some_and(|map| map.known > 0)
     });
 }
 
@@ -83,12 +83,12 @@ fn it_stops_and_goes_on() {
     begin(&mut harness);
     harness.get_by_label("Stop").click();
     harness.run_steps(3);
-    let known = map(harness.state()).known();
-    assert!(!harness.state().session.map.is_running() && known < map(harness.state()).len());
+    let known = map(harness.state()).known;
+    assert!(!harness.state().session.map.is_running() && known < map(harness.state()).count());
     harness.state_mut().session.stop_working();
     wait_for_threads(harness.state());
     harness.run_steps(3);
-    assert_eq!(map(harness.state()).known(), known);
+    assert_eq!(map(harness.state()).known, known);
     harness.get_by_label("Continue").click();
     harness.run_steps(3);
     assert!(harness.state().session.map.is_running());
@@ -103,14 +103,14 @@ fn hidden_it_computes_nothing() {
     assert!(harness.state().session.map.is_running());
     press_with_ctrl(&mut harness, Key::Num1);
     assert!(!harness.state().session.map.is_running());
-    let known = map(harness.state()).known();
+    let known = map(harness.state()).known;
     harness.state_mut().session.stop_working();
     wait_for_threads(harness.state());
     harness.run_steps(3);
-    assert_eq!(map(harness.state()).known(), known);
+    assert_eq!(map(harness.state()).known, known);
     // what is known is kept
     press_with_ctrl(&mut harness, Key::Num3);
-    assert!(harness.state().session.map.is_running() && map(harness.state()).known() >= known);
+    assert!(harness.state().session.map.is_running() && map(harness.state()).known >= known);
 }
 
 #[test]

@@ -6,8 +6,8 @@ use egui_kittest::{Harness, kittest::Queryable as _};
 use interwell::app::export::map_command_line;
 use interwell::app::session::map::Map;
 use interwell::app::window::{Command, Window};
-use interwell::app::words::columns::{COLUMNS, ShownColumn};
-use interwell::output::{Cell as DrawnCell, Cut, Marks, Panel, Projection, Role as Drawn, View};
+use interwell::app::words::columns::{COLUMNS, title};
+use interwell::output::{Cell as DrawnCell, Cut, Marks, Panel, Projection, Role as Drawn, View, words_of};
 use interwell::scene::{Layout, Stops, SweepAxis};
 use interwell::study::{Cell, RMS_VELOCITY, STANDARD_COLUMNS, SummaryField};
 
@@ -166,10 +166,10 @@ fn every_column_is_a_quantity_with_its_unit() {
         harness.run_steps(2);
         assert!(harness.state_mut().session.wait_for_map(LONG), "{}", field.name);
         harness.run_steps(3);
-        let label = format!("map of {}", field.title());
+        let label = format!("map of {}", title(field));
         harness.get_by_role_and_label(Role::ComboBox, &label);
         assert!(
-            field.shown_words().is_some()
+            words_of(field.name).is_some()
                 || painted(&harness)
                     .iter()
                     .any(|text| text.0.contains(field.label) || field.name == "period"),

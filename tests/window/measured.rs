@@ -97,7 +97,7 @@ fn a_dropped_record_lies_over_the_displacement_and_the_shift_is_found() {
     harness.get_by_label("Fit the shift").click();
     wait_until("the shift", || {
         harness.run_steps(2);
-        !harness.state().session.measured.is_fitting()
+        !harness.state().session.measured.fit.is_running()
     });
     // the motion repeats, its begin does not
     let shift = harness.state().session.measured.over.as_ref().unwrap().shift;

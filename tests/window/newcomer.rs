@@ -56,7 +56,7 @@ fn a_run_that_ended_begins_again() {
     assert_eq!(harness.state().session.player.time(), 0.0);
     harness.run_steps(60);
     let session = &harness.state().session;
-    assert!(session.player.ended().is_none() && session.player.is_playing() && !session.is_continued());
+    assert!(session.player.ended().is_none() && session.player.is_playing() && !session.is_continued);
     // by playing
     let mut harness = shaken_out();
     let ended_at = harness.state().session.player.time();
@@ -70,7 +70,7 @@ fn a_run_that_ended_begins_again() {
     let ended_at = harness.state().session.player.time();
     stops_on(&mut harness);
     let session = &harness.state().session;
-    assert!(session.player.ended().is_none() && session.changed_at() == ended_at);
+    assert!(session.player.ended().is_none() && session.changed_at == ended_at);
 }
 
 #[test]

@@ -179,7 +179,7 @@ fn a_drag_waits_for_nothing() {
         screen.step(Vec::new());
         // the next frame plays what was asked for, from where the mass was
         let session = &screen.window.session;
-        assert_eq!(session.changed_at(), now, "frame {frame}");
+        assert_eq!(session.changed_at, now, "frame {frame}");
         assert!(session.player.time() > now && session.player.is_playing());
         let state = session.player.state();
         let push = asked * STANDARD_GRAVITY * (std::f64::consts::TAU * 3.0 * state.t).sin();

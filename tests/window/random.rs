@@ -305,7 +305,7 @@ fn holds(screen: &Screen, seen: &mut Scene) {
     let session = &screen.window.session;
     let (player, state) = (&session.player, session.player.state());
     let numbers =
-        [state.t, state.x, state.v, state.base_accel, player.time(), player.speed, session.changed_at()];
+        [state.t, state.x, state.v, state.base_accel, player.time(), player.speed, session.changed_at];
     assert!(numbers.iter().all(|number| number.is_finite()), "{state:?}\n{:?}", session.editor.text());
     let ledger = player.watch().ledger();
     let energies = [ledger.work_j, ledger.by_hand_j, ledger.damping_j, ledger.impact_j, ledger.stored_j];

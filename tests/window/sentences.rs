@@ -279,7 +279,7 @@ fn the_future_until_it_has_been_seen() {
     }
     assert!(says(&session).1.starts_with("Interwell: crosses twice a period"), "{:?}", says(&session));
     // three periods of it have been drawn
-    let since = session.player.watch().time() - session.changed_at();
+    let since = session.player.watch().time() - session.changed_at;
     assert!(since >= 1.0 - 1e-9, "{since}");
     // paused in mid-air, it is not said to rest on a stop
     while session.player.state().phase != interwell::dynamics::Phase::Free {

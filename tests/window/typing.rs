@@ -166,7 +166,7 @@ fn presses_of_a_key_are_one_step_and_one_before() {
         harness.run_steps(2);
     }
     let before = |harness: &Harness<'static, Window>| {
-        let card = harness.state().session.before_card().cloned();
+        let card = harness.state().session.before.clone();
         card.map(|card| FieldPath::new("excitation.amplitude_g").get(&card.scene).unwrap())
     };
     assert_eq!((harness.state().session.amplitude_g(), before(&harness)), (Some(0.95), Some(0.9)));

@@ -29,8 +29,6 @@ use crate::system::threads::Pool;
 
 use super::figure::{FigureOrder, Subject};
 
-const NO_THREADS: &str = "The system has no threads to give: close something, and save again.";
-
 const CHANGED: &str = "The file of this scene is no longer what was opened, and the figure's command begins \
                        with it: save the scene first (Ctrl+S), or open it anew.";
 
@@ -79,7 +77,7 @@ fn document(order: &FigureOrder) -> Result<Document> {
 }
 
 fn threads() -> Result<Pool> {
-    pool().ok_or_else(|| anyhow!(NO_THREADS))
+    pool().ok_or_else(|| anyhow!("The system has no threads to give: close something, and save again."))
 }
 
 fn cancelled() -> Error {
@@ -125,17 +123,14 @@ impl Drawing<'_> {
         let sample_times = sample_times(&document.scene, &model, &Sampling::Default, None)?;
         let keep = Keep { times: sample_times, events: false, until_settled: None };
         let (simulation, trace) = simulate_with_trace(&model, &keep, times, Some(self.task.cancel));
-        let ranges = Ranges { x: times, y: None };
-        let mechanism = model.mechanism();
+        let (mechanism, ranges) = (model.mechanism(), Ranges { x: times, y: None });
         Ok(run_chart(&trace, &simulation.summary, (mechanism, model.mass()), panels, ranges))
     }
 
     fn curve(&self) -> Result<Chart> {
         let (scene, mechanism) = (&self.document.scene, self.mechanism()?);
-        let positions = default_positions(scene, &mechanism, CURVE_PICTURE_POINTS);
-        let table = curve(&mechanism, positions)?;
-        let stops = stop_positions(scene);
-        Ok(curve_chart(&table, &mechanism, stops, Ranges::default()))
+        let table = curve(&mechanism, default_positions(scene, &mechanism, CURVE_PICTURE_POINTS))?;
+        Ok(curve_chart(&table, &mechanism, stop_positions(scene), Ranges::default()))
     }
 
     fn shapes(&self, mm: f64) -> Result<Chart> {
@@ -176,19 +171,17 @@ impl Drawing<'_> {
             Some(_) => Overlay::default(),
             None => Overlay::of(scene, sweep.first_mechanism().ok().as_deref(), grid, &rows),
         };
-        let (rows, ranges) = (&rows, Ranges::default());
-        let plot = SweepPicture {
-            rows,
+        Ok(sweep_chart(&SweepPicture {
+            rows: &rows,
             grid,
             scene,
             until_settled: None,
             quantity,
             overlay,
             view,
-            ranges,
+            ranges: Ranges::default(),
             draws: "",
-        };
-        Ok(sweep_chart(&plot)?)
+        })?)
     }
 
     fn diagram(&self, subject: &Subject) -> Result<Chart> {
@@ -196,25 +189,25 @@ impl Drawing<'_> {
         let sections = Sections::new(&self.document.scene, &self.document.files, self.grid(subject)?);
         let sections = sections.with(options);
         let over = sections.grid().columns().first().map(String::as_str);
-        Ok(of_section(&self.rows(&sections)?, over, (None, None)))
+        let rows = self.rows(&sections)?;
+        Ok(section_chart(&rows, over, Some(0.0), (None, None), Ranges::default()))
     }
 
     fn section(&self) -> Result<Chart> {
         let (model, options) = (self.model()?, SectionOptions::default());
         let found = section(&model, &self.document.scene, &options, self.task.cancel);
         let (rows, _) = found.map_err(|fault| self.faulty(vec![fault]))?;
-        Ok(of_section(&rows, None, model.stop_positions()))
+        Ok(section_chart(&rows, None, Some(0.0), model.stop_positions(), Ranges::default()))
     }
 
     fn basins(&self, x_mm: (f64, f64), v: (f64, f64)) -> Result<Chart> {
         let even = |(from, to): (f64, f64)| EvenRange { from, to, count: STARTS };
         let starts = Starts::grid(&even(x_mm), &even(v))?;
         let basins = Basins::new(&self.document.scene, self.mechanism()?, starts);
-        let mut basins = basins.map_err(|problem| match problem {
-            NoBasins::Faults(faults) => self.faulty(faults),
-            other => other.into(),
-        })?;
-        let pool = threads()?;
+        let (mut basins, pool) = match basins {
+            Err(NoBasins::Faults(faults)) => return Err(self.faulty(faults)),
+            found => (found?, threads()?),
+        };
         while !basins.is_whole() && basins.run_level(&pool, &self.task) {}
         let answer = basins.answer(&self.task).ok_or_else(cancelled)?;
         Ok(basins_chart(&basins, &answer))
@@ -223,13 +216,6 @@ impl Drawing<'_> {
     fn spectrum(&self, signal: Signal, until_settled: Option<f64>) -> Result<Chart> {
         let options = SpectrumOptions { signal, taper: None, rate_hz: None, until_settled };
         let found = spectrum(&self.model()?, &options, &self.task)?;
-        let (quantity, ranges) = (SpectrumQuantity::Amplitude, Ranges::default());
-        Ok(spectrum_chart(&found, quantity, ranges))
+        Ok(spectrum_chart(&found, SpectrumQuantity::Amplitude, Ranges::default()))
     }
-}
-
-/// The stroboscopic states of one run, or of runs over a field.
-fn of_section(rows: &Table, over: Option<&str>, stops: (Option<f64>, Option<f64>)) -> Chart {
-    let ranges = Ranges::default();
-    section_chart(rows, over, Some(0.0), stops, ranges)
 }

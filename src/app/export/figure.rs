@@ -8,8 +8,8 @@ use anyhow::{Result, anyhow};
 use crate::app::session::Session;
 use crate::app::session::editor::keep_start_inside;
 use crate::app::session::explore::{STARTS, WalkQuantity, longest_wait};
-use crate::app::session::map::{ground, over};
-use crate::app::session::measured::Overlay;
+use crate::app::session::map::{NO_FIELDS, ground, over};
+use crate::app::session::measured::{Overlay, file_name};
 use crate::numeric::{elementary, short};
 use crate::output::{
     Argument, Cut, Figure, Format, RMS, RunPanel, Sheet, Sink, View, csv, picture_arguments, words_of,
@@ -84,8 +84,7 @@ impl Subject {
 
     /// The map as a surface, or with cuts through the scene's place.
     pub fn map(session: &Session, surface: bool, cuts: bool) -> Result<Self, String> {
-        let no_axes = || "This scene has no two fields to make a map over.".to_owned();
-        let axes = session.map_axes().ok_or_else(no_axes)?.to_vec();
+        let axes = session.map_axes().ok_or(NO_FIELDS)?.to_vec();
         let quantity = session.map.quantity().name;
         let view = match surface && words_of(quantity).is_none() {
             true => View::Surface,
@@ -111,12 +110,12 @@ impl Subject {
 
     /// The record as it lies over the computed.
     pub fn measured(session: &Session) -> Result<Self, String> {
-        let none = || "There is no record to lie over the computed: open one first (Ctrl+M).".to_owned();
-        session.measured.over.clone().map(Self::Measured).ok_or_else(none)
+        let none = "There is no record to lie over the computed: open one first (Ctrl+M).";
+        Ok(Self::Measured(session.measured.over.clone().ok_or(none)?))
     }
 
     pub fn basins(session: &Session) -> Result<Self, String> {
-        let question = session.explore.basins.question().ok_or_else(|| NOT_SEEN.to_owned())?;
+        let question = session.explore.basins.question().ok_or(NOT_SEEN)?;
         Ok(Self::Basins(question.x_mm, question.v))
     }
 
@@ -164,13 +163,11 @@ impl Subject {
             }
             Self::Sweep(_, quantity, view) => {
                 options.push(Argument::of("quantity", *quantity));
+                let of = |cut: &Cut| Argument::of("cut", format!("{}={}", cut.column, cut.value));
                 match view {
                     View::Top => {}
                     View::Surface => options.push(Argument::switch("surface")),
-                    View::Cuts(cuts) => {
-                        let of = |cut: &Cut| Argument::of("cut", format!("{}={}", cut.column, cut.value));
-                        options.extend(cuts.iter().map(of));
-                    }
+                    View::Cuts(cuts) => options.extend(cuts.iter().map(of)),
                 }
                 "sweep"
             }
@@ -217,9 +214,8 @@ impl Subject {
 impl FigureOrder {
     /// The figure of `subject` in a session; the error is a sentence.
     pub fn new(session: &Session, subject: Subject, place: Place) -> Result<Self, String> {
-        let no_name =
-            || "This scene has no name that a command could open: save it first (Ctrl+S).".to_owned();
-        let origin = session.editor.origin().ok_or_else(no_name)?;
+        let no_name = "This scene has no name that a command could open: save it first (Ctrl+S).";
+        let origin = session.editor.origin().ok_or(no_name)?;
         if let Some(fault) = session.fault() {
             return Err(fault.to_owned());
         }
@@ -227,11 +223,9 @@ impl FigureOrder {
         if let Subject::Measured(over) = &subject {
             read.push(over.record.path.clone());
         }
-        let is_read = |path: &Path| {
-            canonical(path)
-                .is_some_and(|path| read.iter().any(|read| canonical(read).as_ref() == Some(&path)))
-        };
-        if let Some(path) = place.data.iter().chain([&place.path]).find(|path| is_read(path)) {
+        let read: Vec<PathBuf> = read.iter().filter_map(|path| canonical(path)).collect();
+        let is_read = |path: &&PathBuf| canonical(path).is_some_and(|path| read.contains(&path));
+        if let Some(path) = place.data.iter().chain([&place.path]).find(is_read) {
             return Err(format!("{} is read by this scene: give the figure another name.", path.display()));
         }
         let (from, scene) = subject.scenes(session);
@@ -293,8 +287,7 @@ impl FigureOrder {
         for sink in sinks {
             let name = sink.name().to_owned();
             sink.finish().map_err(|error| failure(&name, error))?;
-            let file_name = Path::new(&name).file_name();
-            names.push(file_name.map_or(name.clone(), |file| file.to_string_lossy().into_owned()));
+            names.push(file_name(Path::new(&name)));
         }
         Ok(format!("Saved {}", names.join(" and ")))
     }

@@ -69,7 +69,7 @@ pub fn command_line(session: &Session) -> Option<(String, &'static str)> {
     let editor = &session.editor;
     let mut line = format!("interwell --headless simulate {}", quoted(&editor.origin()?));
     let here = || continued_scene(editor.scene(), &session.player.watch().from_here()?);
-    let is_continued = session.is_continued() && session.fault().is_none();
+    let is_continued = session.is_continued && session.fault().is_none();
     let from_start = match is_continued {
         true => "the scene from its start. This motion was changed on its way and is another",
         false => "this motion, from its start",

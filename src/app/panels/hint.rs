@@ -57,7 +57,7 @@ impl Hint {
             return false;
         }
         // A new crossing is recent: the last 50 events are enough. A crossing by hand does not count.
-        let since = session.changed_at();
+        let since = session.changed_at;
         let mut last = session.player.watch().events().iter().rev().take(50);
         let crossed = since > 0.0
             && !session.by_hand

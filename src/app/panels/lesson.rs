@@ -91,7 +91,7 @@ pub fn lesson_ui(
 pub fn votes_ui(ui: &mut Ui, lesson: &OpenLesson) -> Option<LessonAction> {
     let mut action = None;
     for option in 0..lesson.options().len() {
-        let (letter, votes) = (letter(option), lesson.votes().get(option).unwrap_or(&0));
+        let (letter, votes) = (letter(option), lesson.answer().votes.get(option).unwrap_or(&0));
         let hover = format!("One more vote for {letter} (Shift+{letter}). Right button: one less.");
         let button = ui.button(format!("{letter} {votes}")).on_hover_text(hover);
         let more = i32::from(button.clicked()) - i32::from(button.secondary_clicked());
@@ -220,8 +220,8 @@ fn below_ui(ui: &mut Ui, lesson: &mut OpenLesson, session: &Session, style: &Sty
         Step::Predict { .. } => {
             ui.horizontal_wrapped(|ui| {
                 ui.label(RichText::new(verdict(lesson)).heading());
-                if lesson.votes().iter().any(|votes| *votes > 0) {
-                    ui.label(RichText::new(tally(lesson.votes())).color(style.faint()));
+                if lesson.answer().votes.iter().any(|votes| *votes > 0) {
+                    ui.label(RichText::new(tally(&lesson.answer().votes)).color(style.faint()));
                 } else if lesson.answer().choice.is_some() {
                     reason_ui(ui, lesson, style);
                 }
@@ -384,7 +384,7 @@ fn options_ui(ui: &mut Ui, lesson: &OpenLesson) -> Option<LessonAction> {
         ui.horizontal(|ui| {
             for (i, choice) in choices.iter().enumerate() {
                 let option = row * columns + i;
-                let votes = *lesson.votes().get(option).unwrap_or(&0);
+                let votes = *lesson.answer().votes.get(option).unwrap_or(&0);
                 let button = ui.add_sized(each, Button::new(option_text(option, choice, votes)).wrap());
                 let letter = letter(option);
                 let hover = format!(

@@ -10,6 +10,7 @@ use std::time::Duration;
 use serde::{Deserialize, Serialize};
 
 use crate::app::task::{Background, Each, Question, Wake};
+use crate::app::words::capital;
 use crate::dynamics::{Model, Summary};
 use crate::study::accuracy::methods::Scheme;
 use crate::study::accuracy::scene::{
@@ -52,8 +53,8 @@ pub struct Accuracy {
     pub step: f64,
     pub(super) tolerances: Background<TolerancesQuestion, Tolerances>,
     pub(super) stepped: Background<StepQuestion, Result<StepSize, Unfit>>,
-    /// Whether the user has stopped the computations.
-    stopped: bool,
+    /// Whether the user has stopped the computations since the last change.
+    pub is_stopped: bool,
 }
 
 /// A run, and the time in s for which the error of its path is computed.
@@ -107,14 +108,13 @@ impl Question for StepQuestion {
 
 /// The error of the path, or the time up to which the path is reliable, in a few words.
 fn short(trust: &Trust, from: f64, is_regular: bool) -> String {
+    let reliable = |until: f64| format!("path reliable up to {}", moment(from + until));
     match trust.course {
         Course::Kept => format!("Path error {}", small_length(trust.error, trust.travel)),
         // a motion that comes to repeat was chaotic for a time alone
-        Course::Chaotic { until, .. } if !is_regular => {
-            format!("Chaotic: path reliable up to {}", moment(from + until))
-        }
+        Course::Chaotic { until, .. } if !is_regular => format!("Chaotic: {}", reliable(until)),
         Course::Chaotic { until, .. } | Course::Sensitive { until } | Course::Coarse { until } => {
-            format!("Path reliable up to {}", moment(from + until))
+            capital(&reliable(until))
         }
     }
 }
@@ -141,7 +141,7 @@ impl Default for Accuracy {
             step: FRAME,
             tolerances: Background::default(),
             stepped: Background::default(),
-            stopped: false,
+            is_stopped: false,
         }
     }
 }
@@ -149,12 +149,12 @@ impl Default for Accuracy {
 impl Accuracy {
     /// Begins with another run, or with `None` where its error cannot be known.
     pub(super) fn begin(&mut self, run: Option<LiveRun>) {
-        (self.run, self.stopped) = (run, false);
+        (self.run, self.is_stopped) = (run, false);
         self.trust.clear();
     }
 
     /// How long the longest computation has been running; `None` if none is.
-    pub(super) fn working(&self) -> Option<Duration> {
+    pub fn working(&self) -> Option<Duration> {
         let times = [self.trust.running_for(), self.tolerances.running_for(), self.stepped.running_for()];
         times.into_iter().flatten().max()
     }
@@ -164,36 +164,21 @@ impl Accuracy {
         self.trust.stop();
         self.tolerances.stop();
         self.stepped.stop();
-        self.stopped = true;
-    }
-
-    /// Whether the user has stopped the computations since the last change.
-    pub fn is_stopped(&self) -> bool {
-        self.stopped
-    }
-
-    pub(super) fn poll(&mut self) {
-        self.trust.poll();
-        self.tolerances.poll();
-        self.stepped.poll();
+        self.is_stopped = true;
     }
 
     /// Starts to compute the error of the motion if it is not known up to the live time `now` in s.
     pub(super) fn follow(&mut self, now: f64, wake: &Wake) {
         let Some(run) = &self.run else { return };
         let elapsed = now - run.from;
-        let duration = match (self.trust.question(), self.trust.answer()) {
-            (None, _) => run.model.duration(),
-            // once the runs have diverged they are not compared again
-            (Some(question), Some(trust))
-                if trust.course.until().is_none() && elapsed > question.duration =>
-            {
-                SPAN_FACTOR * elapsed
-            }
-            _ => return,
+        // once the runs have diverged they are not compared again
+        let agrees = self.trust.answer().is_some_and(|trust| trust.course.until().is_none());
+        let duration = match self.trust.question() {
+            None => run.model.duration(),
+            Some(question) if agrees && elapsed > question.duration => SPAN_FACTOR * elapsed,
+            Some(_) => return,
         };
-        let question = PathQuestion { run: run.clone(), duration };
-        self.trust.ask(question, wake);
+        self.trust.ask(PathQuestion { run: run.clone(), duration }, wake);
     }
 
     /// The live time in s up to which the path is reliable; `None` if that is not known.
@@ -219,17 +204,6 @@ impl Accuracy {
         self.stepped.want(question, still, wake);
     }
 
-    pub fn end_frame(&mut self) {
-        self.tolerances.end_frame();
-        self.stepped.end_frame();
-    }
-
-    pub(super) fn wait(&mut self, timeout: Duration) {
-        self.trust.wait(timeout);
-        self.tolerances.wait(timeout);
-        self.stepped.wait(timeout);
-    }
-
     /// The cost of each digit, and whether it is that in `model`.
     pub fn tolerances(&self, model: &Model) -> Option<(&Tolerances, bool)> {
         let same = std::ptr::eq(&*self.tolerances.question()?.0, model);
@@ -242,9 +216,5 @@ impl Accuracy {
         let same = std::ptr::eq(&*question.model, model)
             && (question.scheme, question.step) == (self.scheme, self.step);
         Some((self.stepped.newest()?, same && self.stepped.answer().is_some()))
-    }
-
-    pub fn is_running(&self) -> bool {
-        self.working().is_some()
     }
 }

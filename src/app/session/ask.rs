@@ -21,28 +21,12 @@ const KEPT: usize = 64;
 
 /// Thresholds found so far, oldest first: a scene that comes back, by an undo or in a lesson, has its own at
 /// once.
-static FOUND: Mutex<Vec<(Scene, Arc<Mechanism>, Thresholds)>> = Mutex::new(Vec::new());
-
 fn found() -> MutexGuard<'static, Vec<(Scene, Arc<Mechanism>, Thresholds)>> {
+    static FOUND: Mutex<Vec<(Scene, Arc<Mechanism>, Thresholds)>> = Mutex::new(Vec::new());
     FOUND.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// The thresholds of an unshaken scene, from [`FOUND`] or searched.
-fn thresholds(scene: &Scene, mechanism: &Arc<Mechanism>, task: &Task) -> Option<Thresholds> {
-    let is_same = |kept: &&(Scene, Arc<Mechanism>, Thresholds)| kept.0 == *scene && kept.1 == *mechanism;
-    let known = found().iter().find(is_same).map(|kept| kept.2);
-    known.or_else(|| {
-        let thresholds = study::thresholds(scene, mechanism, task)?;
-        let mut all = found();
-        if all.len() == KEPT {
-            all.remove(0);
-        }
-        all.push((scene.clone(), Arc::clone(mechanism), thresholds));
-        Some(thresholds)
-    })
-}
-
-/// The thresholds of an unshaken scene.
+/// The thresholds of an unshaken scene, from [`found`] or searched.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ThresholdsQuestion(pub Prepared);
 
@@ -51,7 +35,17 @@ impl Question for ThresholdsQuestion {
     type Part = Thresholds;
 
     fn answer(&self, cancel: &AtomicBool, _: Each<Thresholds>) -> Option<Thresholds> {
-        thresholds(&self.0.of, &self.0.mechanism, &Task { tick: &|| (), cancel })
+        let Prepared { of: SceneWithFiles { scene, .. }, mechanism, .. } = &self.0;
+        let known = found().iter().find(|kept| kept.0 == *scene && kept.1 == *mechanism).map(|kept| kept.2);
+        known.or_else(|| {
+            let thresholds = study::thresholds(scene, mechanism, &Task { tick: &|| (), cancel })?;
+            let mut all = found();
+            if all.len() == KEPT {
+                all.remove(0);
+            }
+            all.push((scene.clone(), Arc::clone(mechanism), thresholds));
+            Some(thresholds)
+        })
     }
 }
 
@@ -96,24 +90,19 @@ impl Session {
     }
 
     pub(super) fn ask_thresholds(&mut self) {
-        if !self.can_search() {
-            return;
+        if self.can_search() {
+            let question = ThresholdsQuestion(self.prepared(unshaken(&self.built)));
+            self.thresholds.want(question, true, &self.wake);
         }
-        let question = ThresholdsQuestion(self.prepared(unshaken(&self.built)));
-        self.thresholds.want(question, true, &self.wake);
     }
 
     /// Drops what it would take to cross. The thresholds stay if only the amplitude was changed.
     pub(super) fn forget_ways(&mut self) {
-        if self.fault.is_some() || !self.has_thresholds_of(&unshaken(&self.built)) {
+        let scene = unshaken(&self.built);
+        if self.fault.is_some() || self.thresholds.question().is_none_or(|asked| asked.0.of.scene != scene) {
             self.thresholds.clear();
         }
         self.stops_that_cross.clear();
-    }
-
-    /// Whether the thresholds asked for are those of this unshaken scene.
-    pub(super) fn has_thresholds_of(&self, scene: &Scene) -> bool {
-        self.thresholds.question().is_some_and(|asked| asked.0.of.scene == *scene)
     }
 
     /// What it would take to cross the barrier, in words; the first call starts the search.
@@ -127,10 +116,9 @@ impl Session {
         }
         let known = [&self.built.stops, &self.remembered_stops];
         let restitution = known.into_iter().find_map(|stops| stops.restitutions()[1]).unwrap_or(1.0);
-        let still = !self.editor.in_gesture();
-        let question =
-            StopsQuestion { of: self.prepared(self.built.clone()), restitution: Uncompared(restitution) };
-        self.stops_that_cross.want(question, still, &self.wake);
+        let (of, restitution) = (self.prepared(self.built.clone()), Uncompared(restitution));
+        let question = StopsQuestion { of, restitution };
+        self.stops_that_cross.want(question, !self.editor.in_gesture(), &self.wake);
         match (self.settled.answer(), self.thresholds.answer(), self.stops_that_cross.answer()) {
             (Some(settled), Some(thresholds), Some(stops)) => {
                 status::ways(self.scene(), settled, thresholds, *stops)
@@ -144,7 +132,9 @@ impl Session {
 
     /// Starts to compute the error of the motion once the scene stands still and its settled motion is known.
     pub(super) fn follow_accuracy(&mut self) {
-        self.accuracy.poll();
+        self.accuracy.trust.poll();
+        self.accuracy.tolerances.poll();
+        self.accuracy.stepped.poll();
         if self.stands_still() && self.settled.answer().is_some() {
             self.accuracy.follow(self.player.watch().time(), &self.wake);
         }

@@ -2,7 +2,7 @@
 
 use std::sync::atomic::AtomicBool;
 
-use crate::app::task::{Question, from_message, to_message};
+use crate::app::task::{Each, Question, from_message, to_message};
 
 use super::accuracy::{LiveRun, PathQuestion, StepQuestion, TolerancesQuestion};
 use super::ask::{StopsQuestion, ThresholdsQuestion};
@@ -13,12 +13,7 @@ use super::map::CellsQuestion;
 use super::measured::{FitQuestion, MeasuredQuestion};
 
 /// Answers the question of a name in a message, and passes on each part of its answer as a message.
-pub fn answer(
-    name: &str,
-    question: &[u8],
-    cancel: &AtomicBool,
-    each: &(dyn Fn(Vec<u8>) + Sync),
-) -> Result<(), String> {
+pub fn answer(name: &str, question: &[u8], cancel: &AtomicBool, each: Each<Vec<u8>>) -> Result<(), String> {
     macro_rules! answer_as {
         ($($question:ty),+ $(,)?) => {
             match name {
@@ -27,30 +22,17 @@ pub fn answer(
             }
         };
     }
-    answer_as!(
-        LiveRun,
-        PathQuestion,
-        TolerancesQuestion,
-        StepQuestion,
-        ThresholdsQuestion,
-        StopsQuestion,
-        SpectrumQuestion,
-        WalkQuestion,
-        BasinsQuestion,
-        CellsQuestion,
-        Search,
-        MeasuredQuestion,
-        FitQuestion,
-        OptionsQuestion,
-        GoalQuestion,
-    )
+    answer_as! {
+        LiveRun, PathQuestion, TolerancesQuestion, StepQuestion,
+        ThresholdsQuestion, StopsQuestion,
+        SpectrumQuestion, WalkQuestion, BasinsQuestion,
+        CellsQuestion, Search,
+        MeasuredQuestion, FitQuestion,
+        OptionsQuestion, GoalQuestion,
+    }
 }
 
-fn answered<Q: Question>(
-    question: &[u8],
-    cancel: &AtomicBool,
-    each: &(dyn Fn(Vec<u8>) + Sync),
-) -> Result<(), String> {
+fn answered<Q: Question>(question: &[u8], cancel: &AtomicBool, each: Each<Vec<u8>>) -> Result<(), String> {
     // a part that cannot be written is left out
     let send = |part: Q::Part| to_message(&part).map_or((), each);
     if let Some(last) = from_message::<Q>(question)?.answer(cancel, &send) {

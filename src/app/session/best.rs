@@ -129,11 +129,10 @@ impl Session {
         }
         self.end_gesture();
         self.best.close();
-        let search = match self.best_search() {
-            Ok(search) => search,
-            Err(why) => return self.best.refusal = Some(why),
-        };
-        self.best.search.ask(search, &self.wake);
+        match self.best_search() {
+            Ok(search) => self.best.search.ask(search, &self.wake),
+            Err(why) => self.best.refusal = Some(why),
+        }
     }
 
     fn best_search(&self) -> Result<Search, &'static str> {
@@ -144,8 +143,7 @@ impl Session {
             return Err("The best stops are searched for where both stand equally far out: switch off \
                         “different stops left and right” under Advanced first.");
         }
-        let Some(field) = info(LIMIT) else { return Err("") };
-        let reach = reach(field, self);
+        let reach = reach(info(LIMIT).ok_or("")?, self);
         let axis = SweepAxis { field: LIMIT.to_owned(), ..SweepAxis::default() };
         let mut scene = ground(self.scene(), self.remembered_stops(), std::slice::from_ref(&axis));
         if !FieldPath::new(LIMIT).set(&mut scene, reach.low) {

@@ -55,25 +55,24 @@ pub(super) fn fault_message(error: &CannotRun, scene: &Scene) -> String {
     error.to_string()
 }
 
+/// Distance of the right-hand well from the middle in mm.
+pub(super) fn well_distance_mm(model: &Model) -> Option<f64> {
+    model.mechanism().landscape.right_stable().map(|well| well.x.abs() * 1e3)
+}
+
 /// The stops that the scene gets when they are first switched on.
 pub(super) fn first_stops(scene: &Scene, model: &Model) -> Stops {
     let hinted = || scene.app.as_ref().and_then(|hints| hints.stops_when_on);
     let suiting = || {
-        let well = model.mechanism().landscape.right_stable().map(|well| well.x.abs() * 1e3);
-        Stops::Rigid { travel_limit_mm: suiting_limit(well), restitution: RESTITUTION }
+        let travel_limit_mm = suiting_limit(well_distance_mm(model));
+        Stops::Rigid { travel_limit_mm, restitution: RESTITUTION }
     };
-    match scene.stops {
-        Stops::None => hinted().unwrap_or_else(suiting),
-        stops => stops,
-    }
+    if scene.stops == Stops::None { hinted().unwrap_or_else(suiting) } else { scene.stops }
 }
 
 /// Travel limit in mm that suits a well at this distance: the same share of it as in the prototype.
 fn suiting_limit(well_mm: Option<f64>) -> f64 {
-    match well_mm.filter(|mm| *mm > 0.0 && mm.is_finite()) {
-        Some(mm) => rounded(0.215 * mm, 2),
-        None => 1.5,
-    }
+    well_mm.filter(|mm| *mm > 0.0 && mm.is_finite()).map_or(1.5, |mm| rounded(0.215 * mm, 2))
 }
 
 #[cfg(test)]

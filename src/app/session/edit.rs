@@ -42,8 +42,7 @@ impl Session {
         match solve(&document, GESTURE_TOLERANCE) {
             Ok((mechanism, _)) => {
                 (self.mechanism, self.mechanism_of, self.is_coarse) = (mechanism, wanted.clone(), true);
-                self.tolerance = GESTURE_TOLERANCE;
-                self.refused = None;
+                (self.tolerance, self.refused) = (GESTURE_TOLERANCE, None);
                 self.edit(|scene| scene.mechanism = wanted)
             }
             Err(error) => {
@@ -76,7 +75,7 @@ impl Session {
         (self.mechanism, self.tolerance) = (mechanism, FLEXURE_TOLERANCE);
         self.model = SharedModel::new(model, self.prepared(self.built.clone()));
         self.player.change(&self.model);
-        self.continued = true;
+        self.is_continued = true;
         self.ask_settled();
     }
 
@@ -175,8 +174,7 @@ impl Session {
 
     /// Ends a series of key presses after a second without one. Returns the time in s left for another one.
     pub fn follow_presses(&mut self, now: f64) -> Option<f64> {
-        let last = self.presses.as_ref()?.1;
-        let left = last + PRESS_GAP - now;
+        let left = self.presses.as_ref()?.1 + PRESS_GAP - now;
         if left <= 0.0 {
             self.end_gesture();
         }
@@ -186,9 +184,8 @@ impl Session {
     /// A sine that suits the scales of the mechanism: 3 Hz and 0.5 g for the prototype.
     pub fn suiting_sine(&self) -> Excitation {
         let scales = &self.model().scales();
-        let one_digit = |value: f64, otherwise: f64| match value > 0.0 && value.is_finite() {
-            true => rounded(value, 1),
-            false => otherwise,
+        let one_digit = |value: f64, otherwise: f64| {
+            if value > 0.0 && value.is_finite() { rounded(value, 1) } else { otherwise }
         };
         let frequency_hz = one_digit(0.2 / (std::f64::consts::TAU * scales.time), 3.0);
         let amplitude_g = one_digit(0.075 * scales.length / scales.time.powi(2) / STANDARD_GRAVITY, 0.5);

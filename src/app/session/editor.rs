@@ -42,11 +42,11 @@ impl Editor {
             Source::BuiltIn(name) => Document::load(name).ok(),
             Source::File(_) | Source::Text => None,
         };
-        if named.is_none() {
+        let Some(named) = named else {
             document.source = Source::Text;
-        }
-        let editor = Self::new(document);
-        Self { named: named.map_or_else(|| editor.saved.clone(), |named| named.scene), ..editor }
+            return Self::new(document);
+        };
+        Self { named: named.scene, ..Self::new(document) }
     }
 
     pub fn open(spec: &str) -> Result<Self, SceneError> {
@@ -103,10 +103,7 @@ impl Editor {
 
     /// The file that the scene is saved to.
     pub fn path(&self) -> Option<&Path> {
-        match &self.document.source {
-            Source::File(path) => Some(path),
-            Source::BuiltIn(_) | Source::Text => None,
-        }
+        if let Source::File(path) = &self.document.source { Some(path) } else { None }
     }
 
     pub fn is_dirty(&self) -> bool {
@@ -223,8 +220,7 @@ impl Editor {
         for scene in self.undo.iter_mut().chain(&mut self.redo) {
             update_names(scene, &before, &mut self.document.scene, &mut now);
         }
-        self.saved = document.scene.clone();
-        self.named = document.scene.clone();
+        (self.saved, self.named) = (document.scene.clone(), document.scene.clone());
         self.document = document;
         Ok(copied)
     }
@@ -271,10 +267,7 @@ fn copy_files(scene: &mut Scene, files: &Files, target: &Path) -> Result<Vec<Str
     if files.folder.as_deref().is_some_and(|folder| is_same(folder, target_folder)) {
         return Ok(written);
     }
-    for path in named_paths(scene) {
-        if Path::new(path.as_str()).is_absolute() {
-            continue;
-        }
+    for path in named_paths(scene).into_iter().filter(|path| !Path::new(path.as_str()).is_absolute()) {
         let text = match files.read(path) {
             Err(FileError::Missing { embedded: true, .. }) => Files::default().read(path),
             read => read,
@@ -316,20 +309,16 @@ fn free_name(path: &str, text: &str, target: &Path) -> Result<String, String> {
     });
     let fits = |name: &String| {
         let there = target.with_file_name(name);
-        there != target
-            && (!system::files::exists(&there)
-                || system::files::bytes(&there).is_ok_and(|bytes| bytes == text.as_bytes()))
+        let holds_text = || system::files::bytes(&there).is_ok_and(|bytes| bytes == text.as_bytes());
+        there != target && (!system::files::exists(&there) || holds_text())
     };
-    names
-        .take(1000)
-        .find(fits)
-        .ok_or_else(|| format!("no name is free for `{path}` beside {}", target.display()))
+    let none = || format!("no name is free for `{path}` beside {}", target.display());
+    names.take(1000).find(fits).ok_or_else(none)
 }
 
 fn is_same(a: &Path, b: &Path) -> bool {
     let whole = |path: &Path| {
-        let path = if path.as_os_str().is_empty() { Path::new(".") } else { path };
-        system::files::canonical(path)
+        system::files::canonical(if path.as_os_str().is_empty() { Path::new(".") } else { path })
     };
     whole(a).is_some_and(|a| whole(b) == Some(a))
 }

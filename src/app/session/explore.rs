@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::app::session::Session;
 use crate::app::session::map::{ground, is_amplitude};
-use crate::app::session::prepared::{Prepared, SharedModel};
+use crate::app::session::prepared::{Prepared, SharedModel, first_problem};
 use crate::app::task::{Background, Each, Question, Uncompared, pool};
 use crate::app::words::numbers::decimal;
 use crate::dynamics::Model;
@@ -19,26 +19,12 @@ use crate::study::{
     followed_until, spectrum, up_and_down,
 };
 
-/// The studies that the views of the layout Explore ask for.
 #[derive(Default)]
 pub struct Explore {
     pub walks: Walks,
-    pub basins: BasinsFound,
+    /// The basins, level by level, or why there are none.
+    pub basins: Background<BasinsQuestion, Result<Level, String>>,
     pub spectra: Spectra,
-}
-
-impl Explore {
-    pub(super) fn poll(&mut self) {
-        self.walks.found.poll();
-        self.basins.poll();
-        self.spectra.found.poll();
-    }
-
-    pub fn end_frame(&mut self) {
-        self.walks.found.end_frame();
-        self.basins.end_frame();
-        self.spectra.found.end_frame();
-    }
 }
 
 /// A model, and the signal of its motion to analyse.
@@ -110,7 +96,6 @@ pub struct WalkQuestion {
     pub axis: SweepAxis,
     /// The scene, from rest, with the value of the field that it has.
     ground: Uncompared<Prepared>,
-    /// The values of the axis.
     values: Uncompared<Vec<f64>>,
 }
 
@@ -120,8 +105,8 @@ impl Question for WalkQuestion {
     type Part = (usize, Visit);
 
     fn answer(&self, cancel: &AtomicBool, each: Each<Self::Part>) -> Option<Self::Part> {
-        let (pool, task, Prepared { of, mechanism, .. }) =
-            (pool()?, Task { tick: &|| (), cancel }, &self.ground.0);
+        let (pool, task) = (pool()?, Task { tick: &|| (), cancel });
+        let Prepared { of, mechanism, .. } = &self.ground.0;
         let family = Family::new(of, &of.files, mechanism, &self.axis.field);
         for stride in [COARSE, 1] {
             let values: Vec<f64> = self.values.0.iter().step_by(stride).copied().collect();
@@ -158,16 +143,14 @@ impl Session {
 
     /// Asks for the walks of the present scene; to be called in every frame that shows them.
     pub fn want_walks(&mut self) {
-        let still = self.stands_still();
-        let question = match self.walk_question() {
-            Ok(question) => question,
-            Err(problem) => return self.explore.walks.problem = Some(problem),
-        };
-        self.explore.walks.problem = None;
-        self.explore.walks.found.want(question, still, &self.wake);
+        let (still, question) = (self.stands_still(), self.walk_question());
+        let walks = &mut self.explore.walks;
+        walks.problem = question.as_ref().err().cloned();
+        if let Ok(question) = question {
+            walks.found.want(question, still, &self.wake);
+        }
     }
 
-    /// The question of the walks, or why there are none.
     fn walk_question(&self) -> Result<WalkQuestion, String> {
         let axis = self.walk_axis().ok_or("This scene has no field to walk over.")?;
         let ground = ground(self.scene(), self.remembered_stops(), std::slice::from_ref(&axis));
@@ -176,7 +159,7 @@ impl Session {
         if !self.model().repeats() {
             return Err("Each run goes on from the state of the one before at the drive's phase 0: that \
                         needs shaking that repeats, such as a sine."
-                .to_owned());
+                .into());
         }
         let mut scene = ground.clone();
         let is_set = FieldPath::new(&axis.field).set(&mut scene, axis.from);
@@ -233,9 +216,6 @@ pub struct Level {
     pub room: (f64, f64),
 }
 
-/// The basins, level by level, or why there are none.
-pub type BasinsFound = Background<BasinsQuestion, Result<Level, String>>;
-
 impl Session {
     /// Asks for the basins of the present scene over a range of displacements in m and of velocities `v` in
     /// m/s; to be called in every frame that shows them.
@@ -248,9 +228,8 @@ impl Session {
 
     /// Starts the scene at a displacement in m and a velocity in m/s, from now on, as one undo step.
     pub fn start_at(&mut self, x: f64, v: f64) {
-        let rounded = |value: f64, unit: f64| (value / unit).round() * unit;
-        let x_mm = decimal(rounded(x * 1e3, 1e-3));
-        let v_m_per_s = decimal(rounded(v, 1e-4));
+        let rounded = |value: f64, unit: f64| decimal((value / unit).round() * unit);
+        let (x_mm, v_m_per_s) = (rounded(x * 1e3, 1e-3), rounded(v, 1e-4));
         if self.edit_once(|scene| scene.start = Start::At { x_mm, v_m_per_s, electrical: 0.0 }) {
             self.apply();
             self.restart();
@@ -261,12 +240,11 @@ impl Session {
 fn find_basins(question: &BasinsQuestion, cancel: &AtomicBool, each: &dyn Fn(Level)) -> Result<(), String> {
     let range = |(from, to): (f64, f64)| EvenRange { from, to, count: question.starts };
     let starts = Starts::grid(&range(question.x_mm), &range(question.v)).map_err(|why| why.to_string())?;
-    let message = |error: NoBasins| match error {
-        NoBasins::Faults(faults) => faults.first().map_or(String::new(), |fault| fault.problem.clone()),
+    let Prepared { of, mechanism, .. } = &question.of;
+    let mut basins = Basins::new(of, Arc::clone(mechanism), starts).map_err(|error| match error {
+        NoBasins::Faults(faults) => first_problem(&faults),
         other => other.to_string(),
-    };
-    let mut basins =
-        Basins::new(&question.of.of, Arc::clone(&question.of.mechanism), starts).map_err(message)?;
+    })?;
     let per_speed = suited_unit("m/s", [question.v.0, question.v.1].into_iter()).0;
     let task = Task { tick: &|| (), cancel };
     let Some(pool) = pool() else { return Ok(()) };

@@ -56,10 +56,11 @@ impl MeasuredRecord {
             }
         }
         let read = text.channels(chosen).map_err(|problem| {
-            let text = problem.to_string();
-            format!("The file {text}{}", if text.ends_with('.') { "" } else { "." })
-                .replacen("The file line", "Line", 1)
-                .replacen("The file column", "Column", 1)
+            sentence(&format!("the file {problem}")).replacen("The file line", "Line", 1).replacen(
+                "The file column",
+                "Column",
+                1,
+            )
         })?;
         let Measured { channels: [across, values], decimal_commas } = read;
         let timing = (across.quantity == Quantity::Time).then(|| Timing::of(&across.values));
@@ -207,7 +208,7 @@ pub struct MeasuredData {
     /// The differences, or why they are not known.
     pub found: Background<MeasuredQuestion, Result<Differences, String>>,
     /// The shift in s that fits best, or why there is none.
-    pub(super) fit: Background<FitQuestion, Result<f64, String>>,
+    pub fit: Background<FitQuestion, Result<f64, String>>,
     pub no_fit: Option<String>,
 }
 
@@ -227,10 +228,6 @@ impl MeasuredData {
             self.fit.clear();
             self.no_fit = None;
         }
-    }
-
-    pub fn is_fitting(&self) -> bool {
-        self.fit.is_running()
     }
 
     pub(super) fn poll(&mut self) {

@@ -51,25 +51,6 @@ const LEAST_CONTINUATION: f64 = 0.02;
 /// Least displacement of the mass by a change that is reported, as a share of the length scale.
 const REPORTED_MOVE: f64 = 0.02;
 
-/// Scales that set the ranges of the sliders: those of the scene as it was opened, so that no slider jumps
-/// while another one is moved.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct OpenedScales {
-    /// Length in m.
-    pub length: f64,
-    /// Time in s.
-    pub time: f64,
-    /// Distance of the right-hand well from the middle in mm.
-    pub well_mm: Option<f64>,
-}
-
-impl OpenedScales {
-    fn of(model: &Model) -> Self {
-        let well_mm = model.mechanism().landscape.right_stable().map(|well| well.x.abs() * 1e3);
-        Self { length: model.scales().length, time: model.scales().time, well_mm }
-    }
-}
-
 /// A side of the card Before / now.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Card {
@@ -97,7 +78,8 @@ pub struct Session {
     pub explore: Explore,
     pub pins: Pins,
     pub measured: MeasuredData,
-    before: Option<Card>,
+    /// The scene before the last gesture, for the card.
+    pub before: Option<Card>,
     /// The scene that the model was built from.
     built: Scene,
     mechanism: Arc<Mechanism>,
@@ -109,16 +91,17 @@ pub struct Session {
     tolerance: f64,
     /// Why the last change of the mechanism was refused.
     refused: Option<String>,
-    /// Live time in s of the last change.
-    changed_at: f64,
+    /// Live time in s of the last change: of the scene, or of the mass by hand.
+    pub changed_at: f64,
     /// Whether the last change was a move of the mass by hand.
     pub by_hand: bool,
     /// Whether the last change moved the mass to a stop.
     moved_to_stop: bool,
-    /// The scales of the scene as it was opened.
-    opened: OpenedScales,
+    /// The model of the scene as it was opened, whose scales set the ranges of the sliders, so that no slider
+    /// jumps while another one is moved.
+    opened: SharedModel,
     /// Whether the motion was changed after its start, so that it is no run of the scene from its start.
-    continued: bool,
+    pub is_continued: bool,
     /// The stops that the scene gets when they are switched on.
     remembered_stops: Stops,
     /// The field of the current series of arrow key presses, and the time in s of the last press.
@@ -136,6 +119,8 @@ impl Session {
         let (mechanism, model) = solve(document, FLEXURE_TOLERANCE)?;
         let scene = editor.scene().clone();
         let of = SceneWithFiles { scene: scene.clone(), files: document.files.clone() };
+        let prepared = Prepared { of, mechanism: Arc::clone(&mechanism), tolerance: FLEXURE_TOLERANCE };
+        let model = SharedModel::new(model, prepared);
         let mut session = Self {
             editor,
             fault: None,
@@ -153,14 +138,14 @@ impl Session {
             is_coarse: false,
             tolerance: FLEXURE_TOLERANCE,
             refused: None,
-            mechanism: Arc::clone(&mechanism),
+            mechanism,
             changed_at: 0.0,
             by_hand: false,
             moved_to_stop: false,
-            opened: OpenedScales::of(&model),
-            continued: false,
+            opened: model.clone(),
+            is_continued: false,
             remembered_stops: first_stops(&scene, &model),
-            model: SharedModel::new(model, Prepared { of, mechanism, tolerance: FLEXURE_TOLERANCE }),
+            model,
             presses: None,
             keeps_remedy: false,
             best: BestStops::default(),
@@ -180,7 +165,9 @@ impl Session {
         self.thresholds.poll();
         self.stops_that_cross.poll();
         self.map.take();
-        self.explore.poll();
+        self.explore.walks.found.poll();
+        self.explore.basins.poll();
+        self.explore.spectra.found.poll();
         self.pins.poll();
         self.note_thresholds();
         self.measured.poll();
@@ -190,18 +177,20 @@ impl Session {
 
     /// Stops what no view has asked for in this frame; to be called once a frame.
     pub fn end_frame(&mut self) {
-        self.map.end_frame();
+        self.map.cells.end_frame();
         self.measured.found.end_frame();
-        self.explore.end_frame();
-        self.accuracy.end_frame();
+        self.explore.walks.found.end_frame();
+        self.explore.basins.end_frame();
+        self.explore.spectra.found.end_frame();
+        self.accuracy.tolerances.end_frame();
+        self.accuracy.stepped.end_frame();
         self.player.end_frame();
     }
 
     pub fn restart(&mut self) {
         self.player.restart(&self.model);
         self.pins.restart(&self.wake);
-        (self.changed_at, self.continued, self.by_hand) = (0.0, false, false);
-        self.moved_to_stop = false;
+        (self.changed_at, self.is_continued, self.by_hand, self.moved_to_stop) = (0.0, false, false, false);
         self.ask_settled();
     }
 
@@ -216,7 +205,7 @@ impl Session {
 
     /// Notes that the mass has been moved by hand, and asks again what the motion settles to.
     pub fn moved_by_hand(&mut self) {
-        (self.changed_at, self.continued, self.by_hand) = (self.player.watch().time(), true, true);
+        (self.changed_at, self.is_continued, self.by_hand) = (self.player.watch().time(), true, true);
         self.moved_to_stop = false;
         self.ask_settled();
     }
@@ -247,21 +236,16 @@ impl Session {
     fn continue_motion(&mut self) {
         let (ended, before) = (self.player.ended().is_some(), self.player.watch().now().x);
         self.player.change(&self.model);
-        if ended && !self.can_continue() {
+        let lasts = |from: Model| study::lasts(&from, LEAST_CONTINUATION * from.characteristic_time());
+        if ended && !self.player.watch().from_here().is_some_and(lasts) {
             return self.restart();
         }
         let now = self.player.watch().now().x;
         let (left, right) = self.model.stop_positions();
         let is_far = (now - before).abs() > REPORTED_MOVE * self.model.scales().length;
         self.moved_to_stop = is_far && [left, right].contains(&Some(now));
-        (self.changed_at, self.continued, self.by_hand) = (self.player.watch().time(), true, false);
+        (self.changed_at, self.is_continued, self.by_hand) = (self.player.watch().time(), true, false);
         self.ask_settled();
-    }
-
-    /// Whether the motion continues from its present state for at least a short time.
-    fn can_continue(&self) -> bool {
-        let Some(model) = self.player.watch().from_here() else { return false };
-        study::lasts(&model, LEAST_CONTINUATION * model.characteristic_time())
     }
 
     /// Whether the last change moved the mass to a stop, and the motion since then is short.
@@ -301,7 +285,9 @@ impl Session {
         self.thresholds.wait(timeout);
         self.stops_that_cross.wait(timeout);
         self.follow_accuracy();
-        self.accuracy.wait(timeout);
+        self.accuracy.trust.wait(timeout);
+        self.accuracy.tolerances.wait(timeout);
+        self.accuracy.stepped.wait(timeout);
     }
 
     pub fn scene(&self) -> &Scene {
@@ -329,8 +315,8 @@ impl Session {
 
     /// Whether the settled motion crosses the barrier; `None` until it is known.
     pub fn crosses(&self) -> Option<bool> {
-        let summary = self.settled.answer()?;
-        (self.fault.is_none() && summary.outcome == Outcome::Done).then_some(summary.crossings > 0)
+        let summary = self.settled_now()?;
+        (summary.outcome == Outcome::Done).then_some(summary.crossings > 0)
     }
 
     /// What the present scene settles to; `None` until it is known.
@@ -351,25 +337,11 @@ impl Session {
         }
     }
 
-    /// The scene before the last gesture, for the card.
-    pub fn before_card(&self) -> Option<&Card> {
-        self.before.as_ref()
-    }
-
     /// The live time in s at which the run ends: the scene's run length after the last change, or after the
     /// start if the excitation is a function of the time since then.
     pub fn end_of_run(&self) -> f64 {
         let begins_here = self.player.watch().from_here().is_some();
         self.model.duration() + if begins_here { self.changed_at } else { 0.0 }
-    }
-
-    pub fn is_continued(&self) -> bool {
-        self.continued
-    }
-
-    /// Live time in s of the last change: of the scene, or of the mass by hand.
-    pub fn changed_at(&self) -> f64 {
-        self.changed_at
     }
 
     /// Amplitude of the excitation in g, if it is harmonic.

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use crate::app::task::{Background, Wake};
-use crate::dynamics::{Outcome, Sample, Summary};
+use crate::dynamics::Summary;
 use crate::scene::{Scene, Start, Stops};
 use crate::study::{Thresholds, Watch};
 use crate::system::clock::WallClock;
@@ -39,65 +39,30 @@ pub enum PinKind {
 }
 
 pub struct Pin {
-    letter: char,
-    kind: PinKind,
-    scene: Scene,
+    pub letter: char,
+    pub kind: PinKind,
+    pub scene: Scene,
     model: SharedModel,
-    watch: Watch,
+    pub watch: Watch,
     /// Live time in s from which on it is computed separately.
-    since: f64,
+    pub since: f64,
     /// What it settles to, if that was known when it was pinned.
     known: Option<Summary>,
     /// What it settles to, if it had to be asked.
     settled: Background<LiveRun, Summary>,
     /// Its thresholds, if they were searched for the open scene.
-    thresholds: Option<Thresholds>,
+    pub thresholds: Option<Thresholds>,
 }
 
 impl Pin {
-    pub fn letter(&self) -> char {
-        self.letter
-    }
-
     /// The index of its name, from 0.
     pub fn place(&self) -> usize {
         LETTERS.iter().position(|letter| *letter == self.letter).unwrap_or(0)
     }
 
-    pub fn kind(&self) -> PinKind {
-        self.kind
-    }
-
-    pub fn scene(&self) -> &Scene {
-        &self.scene
-    }
-
-    pub fn watch(&self) -> &Watch {
-        &self.watch
-    }
-
-    pub fn since(&self) -> f64 {
-        self.since
-    }
-
-    /// Its state at a live time in s; after its end, its last state.
-    pub fn state_at(&self, t: f64) -> Sample {
-        self.watch.state_at(t)
-    }
-
-    /// How it ended; `None` if it goes on.
-    pub fn ended(&self) -> Option<Outcome> {
-        self.watch.ended()
-    }
-
     /// What it settles to; `None` until it is known.
     pub fn settled(&self) -> Option<&Summary> {
         self.known.as_ref().or(self.settled.answer())
-    }
-
-    /// Its thresholds; `None` until they are known.
-    pub fn thresholds(&self) -> Option<&Thresholds> {
-        self.thresholds.as_ref()
     }
 
     fn ask(&mut self, wake: &Wake) {
@@ -107,7 +72,7 @@ impl Pin {
     }
 
     fn is_behind(&self, t: f64) -> bool {
-        self.watch.time() < t && self.ended().is_none()
+        self.watch.time() < t && self.watch.ended().is_none()
     }
 
     /// Continues to the live time `to` in s, or as far as a frame's share of computing time allows.
@@ -156,9 +121,7 @@ impl Pins {
     }
 
     pub(super) fn poll(&mut self) {
-        for pin in &mut self.all {
-            pin.settled.poll();
-        }
+        self.all.iter_mut().for_each(|pin| pin.settled.poll());
     }
 
     pub(super) fn restart(&mut self, wake: &Wake) {
@@ -181,9 +144,7 @@ impl Pins {
 impl Session {
     /// Pins a motion beside the present one. Returns the letter of the pin; the error says why there is none.
     pub fn pin(&mut self, kind: PinKind) -> Result<char, String> {
-        let Some(letter) = self.pins.free_letter() else {
-            return Err(FULL.to_owned());
-        };
+        let letter = self.pins.free_letter().ok_or(FULL)?;
         self.end_gesture();
         self.apply();
         if let Some(fault) = self.fault() {
@@ -220,7 +181,7 @@ impl Session {
 
     /// Replaces the scene by that of a pin, as one undo step. Returns whether the scene changed.
     pub fn take_back(&mut self, letter: char) -> bool {
-        let Some(scene) = self.pins.get(letter).map(|pin| pin.scene().clone()) else { return false };
+        let Some(scene) = self.pins.get(letter).map(|pin| pin.scene.clone()) else { return false };
         self.edit_once(|edited| *edited = scene)
     }
 

@@ -288,8 +288,7 @@ impl Player {
             && let Some(event) = self.first(kind, past)
         {
             self.seek(event.t);
-            self.reached = Some(Reached::Event(event));
-            return;
+            return self.arrive(Reached::Event(event));
         }
         (self.past, self.held, self.reached) = (None, false, None);
         self.goal = Some(goal);
@@ -297,10 +296,6 @@ impl Player {
 
     pub fn goal(&self) -> Option<Goal> {
         self.goal
-    }
-
-    pub fn give_up(&mut self) {
-        self.goal = None;
     }
 
     pub fn take_reached(&mut self) -> Option<Reached> {
@@ -331,12 +326,11 @@ impl Player {
             }
             // also if the stretch is too short to change the time in floating point
             if self.watch.time() >= until || arrived && self.watch.time() <= before {
-                let reached = match goal {
-                    Goal::Time(_) => Reached::Time,
-                    Goal::Settled(_) => return self.set_playing(true),
-                    Goal::First(kind, _) => Reached::Nothing(kind),
+                return match goal {
+                    Goal::Time(_) => self.arrive(Reached::Time),
+                    Goal::Settled(_) => self.set_playing(true),
+                    Goal::First(kind, _) => self.arrive(Reached::Nothing(kind)),
                 };
-                return self.arrive(reached);
             }
             if begun.elapsed() >= FRAME_SHARE {
                 return;

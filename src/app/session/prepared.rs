@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use crate::app::task::Identity;
 use crate::dynamics::{Beginning, Model};
 use crate::mechanics::Mechanism;
-use crate::scene::{self, Files, Scene, named_texts, read_records};
+use crate::scene::{self, Fault, Files, Scene, named_texts, read_records};
 
 /// A scene with the files that it names, which is compared by the scene and written with their texts.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -57,31 +57,24 @@ impl Deref for SceneWithFiles {
 
 /// A scene with its mechanism, which is compared by the scene and written with the tolerance of its flexures.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(try_from = "Unsolved", into = "Unsolved")]
+#[serde(try_from = "(SceneWithFiles, f64)", into = "(SceneWithFiles, f64)")]
 pub struct Prepared {
     pub of: SceneWithFiles,
     pub mechanism: Arc<Mechanism>,
     pub tolerance: f64,
 }
 
-#[derive(Serialize, Deserialize)]
-struct Unsolved {
-    of: SceneWithFiles,
-    tolerance: f64,
-}
-
-impl From<Prepared> for Unsolved {
+impl From<Prepared> for (SceneWithFiles, f64) {
     fn from(Prepared { of, tolerance, .. }: Prepared) -> Self {
-        Self { of, tolerance }
+        (of, tolerance)
     }
 }
 
-impl TryFrom<Unsolved> for Prepared {
+impl TryFrom<(SceneWithFiles, f64)> for Prepared {
     type Error = String;
 
-    fn try_from(Unsolved { of, tolerance }: Unsolved) -> Result<Self, String> {
-        let mechanism = solved(&of, tolerance)?;
-        Ok(Self { of, mechanism, tolerance })
+    fn try_from((of, tolerance): (SceneWithFiles, f64)) -> Result<Self, String> {
+        Ok(Self { mechanism: solved(&of, tolerance)?, of, tolerance })
     }
 }
 
@@ -115,16 +108,10 @@ impl PartialEq for Prepared {
 /// The model of a scene, from its start or from a present state, which is compared by its address and written
 /// with the state.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(try_from = "Unbuilt", into = "Unbuilt")]
+#[serde(try_from = "(Arc<Prepared>, Beginning)", into = "(Arc<Prepared>, Beginning)")]
 pub struct SharedModel {
     pub model: Identity<Model>,
     of: Arc<Prepared>,
-}
-
-#[derive(Serialize, Deserialize)]
-struct Unbuilt {
-    of: Arc<Prepared>,
-    beginning: Beginning,
 }
 
 impl SharedModel {
@@ -139,21 +126,25 @@ impl SharedModel {
     }
 }
 
-impl From<SharedModel> for Unbuilt {
+impl From<SharedModel> for (Arc<Prepared>, Beginning) {
     fn from(SharedModel { model, of }: SharedModel) -> Self {
-        Self { beginning: model.beginning(), of }
+        (of, model.beginning())
     }
 }
 
-impl TryFrom<Unbuilt> for SharedModel {
+impl TryFrom<(Arc<Prepared>, Beginning)> for SharedModel {
     type Error = String;
 
-    fn try_from(Unbuilt { of, beginning }: Unbuilt) -> Result<Self, String> {
+    fn try_from((of, beginning): (Arc<Prepared>, Beginning)) -> Result<Self, String> {
         let built = Model::build(&of.of, Arc::clone(&of.mechanism));
-        let fault =
-            |faults: Vec<scene::Fault>| faults.first().map_or(String::new(), |fault| fault.problem.clone());
-        Ok(Self { model: Identity(Arc::new(built.map_err(fault)?.begun_at(&beginning))), of })
+        let built = built.map_err(|faults| first_problem(&faults))?;
+        Ok(Self { model: Identity(Arc::new(built.begun_at(&beginning))), of })
     }
+}
+
+/// What is wrong first; empty without faults.
+pub(super) fn first_problem(faults: &[Fault]) -> String {
+    faults.first().map_or_else(String::new, |fault| fault.problem.clone())
 }
 
 impl PartialEq for SharedModel {

@@ -19,7 +19,7 @@ enum PinAction {
 /// Draws the view of the last change.
 pub fn before_now_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let (style, is_full) = (context.style, context.session.pins.is_full());
-    let before = context.session.before_card().cloned();
+    let before = context.session.before.clone();
     let is_first = before.is_none();
     let column = |card| Column { card, ended: None, differs: false };
     let columns = [before, Some(context.session.now_card())].map(column);
@@ -90,9 +90,9 @@ fn buttons_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
 fn pinned_ui(ui: &mut Ui, context: &ViewContext<'_>) -> Option<PinAction> {
     let pins = context.session.pins.all();
     let pinned = |pin: &Pin| {
-        let thresholds = pin.thresholds().copied().filter(|_| !context.session.keeps_remedy);
-        let card = Card { scene: pin.scene().clone(), settled: pin.settled().copied(), thresholds };
-        let ended = pin.ended().and_then(|outcome| outcome.ended_at());
+        let thresholds = pin.thresholds.filter(|_| !context.session.keeps_remedy);
+        let card = Card { scene: pin.scene.clone(), settled: pin.settled().copied(), thresholds };
+        let ended = pin.watch.ended().and_then(|outcome| outcome.ended_at());
         Column { card: Some(card), ended, differs: true }
     };
     let now = Column { card: Some(context.session.now_card()), ended: None, differs: false };
@@ -108,21 +108,21 @@ fn pinned_ui(ui: &mut Ui, context: &ViewContext<'_>) -> Option<PinAction> {
 
 /// Name of a pin and the buttons that act on it. Returns the action clicked.
 fn heading_ui(ui: &mut Ui, context: &ViewContext<'_>, pin: &Pin, width: f32) -> Option<PinAction> {
-    let (letter, mut action) = (pin.letter(), None);
+    let (letter, mut action) = (pin.letter, None);
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
-        let kind = match (pin.kind(), pin.scene().stops) {
+        let kind = match (pin.kind, pin.scene.stops) {
             (PinKind::Motion, _) => "pinned as it was",
             (PinKind::OtherStops, Stops::None) => "pinned without stops",
             (PinKind::OtherStops, _) => "pinned with stops",
             (PinKind::Twin, _) => "begun a micrometre beside the mass",
         };
         let hover = format!("{letter}: {kind}. In brackets: how much more or less it is than now.");
-        let name = if pin.kind() == PinKind::Twin { format!("{letter} twin") } else { letter.to_string() };
+        let name = if pin.kind == PinKind::Twin { format!("{letter} twin") } else { letter.to_string() };
         ui.label(RichText::new(name).heading()).on_hover_text(hover);
         let hover = "The scene as it is in this pin: one step that can be undone. The motion goes on from \
                      where it is.";
-        let other = pin.scene() != context.session.scene();
+        let other = pin.scene != *context.session.scene();
         let text = RichText::new(if width < WIDE_COLUMN { "Back" } else { "Take back" }).small();
         let back = ui.add_enabled(other, Button::new(text).small().wrap_mode(Extend));
         let spoken = format!("Take {letter} back");

@@ -50,12 +50,13 @@ impl Drawn {
 
     /// The state of the motion that is drawn, at the time that is shown.
     pub(super) fn state(self, session: &Session) -> Sample {
-        self.pin(session).map_or_else(|| session.player.state(), |pin| pin.state_at(session.player.time()))
+        self.pin(session)
+            .map_or_else(|| session.player.state(), |pin| pin.watch.state_at(session.player.time()))
     }
 
     /// Its model at that time.
     pub(super) fn model(self, session: &Session) -> &Arc<Model> {
-        self.pin(session).map_or(session.shown(), |pin| pin.watch().model_at(session.player.time()))
+        self.pin(session).map_or(session.shown(), |pin| pin.watch.model_at(session.player.time()))
     }
 }
 

@@ -40,9 +40,9 @@ pub fn distance_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     }
     let (session, now) = (&context.session, context.session.player.time());
     let pins = session.pins.all();
-    let from = pins.iter().map(|pin| pin.since()).fold(now, f64::min);
-    let of_pin = |pin: &Pin| distances(session.player.watch(), pin.watch(), (pin.since(), now), MAX_POINTS);
-    let lines: Vec<(char, Vec<(f64, f64)>)> = pins.iter().map(|pin| (pin.letter(), of_pin(pin))).collect();
+    let from = pins.iter().map(|pin| pin.since).fold(now, f64::min);
+    let of_pin = |pin: &Pin| distances(session.player.watch(), &pin.watch, (pin.since, now), MAX_POINTS);
+    let lines: Vec<(char, Vec<(f64, f64)>)> = pins.iter().map(|pin| (pin.letter, of_pin(pin))).collect();
     let seen = || lines.iter().flat_map(|line| &line.1).map(|point| elementary::log10(point.1 * 1e3));
     let finite = || seen().filter(|log| log.is_finite());
     // if all motions are equal to the last digit, the axis starts at its lowest end
@@ -55,9 +55,9 @@ pub fn distance_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let to = from + ((now - from) / PRESENT).max(shortest);
     let (from, to) = context.memory.axes.ends(Axis::Across(View::Distance), (from, to));
     let (low, high) = context.memory.axes.ends(Axis::Up(View::Distance), (low, high));
-    let distance = |pin: &Pin, t: f64| (session.player.watch().state_at(t).x - pin.state_at(t).x).abs();
+    let distance = |pin: &Pin, t: f64| (session.player.watch().state_at(t).x - pin.watch.state_at(t).x).abs();
     let of_all = |word: &dyn Fn(&Pin) -> String| {
-        pins.iter().map(|pin| format!("{} {}", pin.letter(), word(pin))).collect::<Vec<_>>().join(", ")
+        pins.iter().map(|pin| format!("{} {}", pin.letter, word(pin))).collect::<Vec<_>>().join(", ")
     };
     let at_each = |t: f64| of_all(&|pin| millimetres(distance(pin, t)));
     let between = |a: f64, b: f64| {

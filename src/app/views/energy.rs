@@ -116,7 +116,7 @@ pub fn energy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let (model, watch, now) = (session.shown(), session.player.watch(), session.player.time());
     let (unit, name) = unit_of(model.mass() * model.scales().speed.powi(2));
     let ledgers = |watch: &Watch| [watch.ledger_at(now).map(|at| at.1), watch.last_period(now)];
-    let pins: Vec<_> = session.pins.all().iter().map(|pin| (pin.place(), ledgers(pin.watch()))).collect();
+    let pins: Vec<_> = session.pins.all().iter().map(|pin| (pin.place(), ledgers(&pin.watch))).collect();
     let count = COUNT + if model.has_transducer() { 1.0 } else { 0.0 };
     let row = (area.height() / count).clamp(ROWS.0, ROWS.1);
     let shaken = model.forcing_period().is_some();

@@ -46,13 +46,13 @@ pub(super) fn ghosts(context: &ViewContext<'_>) -> Vec<Ghost> {
     let t = session.player.time();
     let ghost = |(pin, aside): (&Pin, f32)| Ghost {
         place: pin.place(),
-        letter: pin.letter(),
-        state: pin.state_at(t),
-        model: Arc::clone(pin.watch().model_at(t)),
+        letter: pin.letter,
+        state: pin.watch.state_at(t),
+        model: Arc::clone(pin.watch.model_at(t)),
         aside,
     };
     let pins = session.pins.all();
-    let places: Vec<f64> = pins.iter().map(|pin| pin.state_at(t).x).collect();
+    let places: Vec<f64> = pins.iter().map(|pin| pin.watch.state_at(t).x).collect();
     pins.iter().zip(offsets(&places)).map(ghost).collect()
 }
 

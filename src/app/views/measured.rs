@@ -76,7 +76,7 @@ fn head_ui(ui: &mut Ui, context: &mut ViewContext<'_>, over: &Overlay) {
             ui.add(name).on_hover_text(format!("{across}, {values}. {}", record.describe()));
         });
         if record.timing.is_some() {
-            let fitting = context.session.measured.is_fitting();
+            let fitting = context.session.measured.fit.is_running();
             let fit = ui.add_enabled(!fitting, Button::new("Fit the shift").small());
             let hover = "The shift with the least mean square difference from the run of the scene, where at \
                          least half of the shorter of the two overlaps; of several that fit, the one nearest \
@@ -160,7 +160,7 @@ fn differences_ui(ui: &mut Ui, context: &ViewContext<'_>, over: &Overlay) {
     };
     let end = short(session.model().duration());
     let mut text = format!("Compared with the run of the scene {begin}, 0 to {end} s.");
-    if session.is_continued() {
+    if session.is_continued {
         text += " The motion on the screen was changed on its way and is another one: the button at the \
                  left of the time bar begins it anew.";
     }

@@ -8,7 +8,6 @@
 
 use eframe::egui::{self, Align2, Color32, Pos2, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
 
-use crate::app::session::pins::Pin;
 use crate::app::ui::style::{BALL, RING_SECONDS};
 use crate::app::words::meanings::explained;
 use crate::app::words::numbers::{decimals_for, three};
@@ -291,7 +290,7 @@ fn rings(ui: &Ui, context: &mut ViewContext<'_>, rect: Rect, y: f32) {
     let (left, right) = model.stop_positions();
     if to > from && !context.reduce_motion {
         let pin = context.drawn.pin(context.session);
-        let watch = pin.map_or(context.session.player.watch(), Pin::watch);
+        let watch = pin.map_or(context.session.player.watch(), |pin| &pin.watch);
         let first = watch.events().partition_point(|event| event.t <= from);
         let scale = model.scales().speed * model.scales().speed;
         for event in watch.events().range(first..).take_while(|event| event.t <= to) {

@@ -228,8 +228,8 @@ fn ghost_trails(layers: &mut Vec<Layer>, context: &ViewContext<'_>, pane: &Pane)
     let length = model.forcing_period().unwrap_or(TRAIL_SWINGS / TRAIL_PERIODS * model.natural_time());
     let now = session.player.time();
     for pin in session.pins.all() {
-        let watch = pin.watch();
-        let path = recent(watch.samples(), pin.state_at(now), length.min(now - pin.since()));
+        let watch = &pin.watch;
+        let path = recent(watch.samples(), pin.watch.state_at(now), length.min(now - pin.since));
         let mut pieces_left = MAX_TOTAL_PIECES;
         let mut points: Vec<State> = Vec::with_capacity(2 * path.len());
         for pair in path.windows(2) {
@@ -279,7 +279,7 @@ fn strobes(context: &ViewContext<'_>) -> Vec<State> {
     let Some(period) = session.shown().forcing_period() else { return Vec::new() };
     let (watch, now) = (session.player.watch(), session.player.time());
     // since the last change of the model, and since the mass was last moved by hand
-    let placed = if session.player.is_past() { 0.0 } else { session.changed_at() };
+    let placed = if session.player.is_past() { 0.0 } else { session.changed_at };
     let begin = watch.model_since(now).max(placed).max(watch.begin());
     let last = (now / period).floor();
     let first = (begin / period).ceil().max(last - MAX_STROBES);

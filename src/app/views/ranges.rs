@@ -4,7 +4,6 @@
 //! scene, grow by coarse steps if the motion exceeds them, and shrink only once a change has settled.
 
 use crate::app::session::Session;
-use crate::app::session::pins::Pin;
 use crate::dynamics::{Model, STANDARD_GRAVITY};
 use crate::numeric::round::round_up;
 
@@ -97,7 +96,7 @@ pub struct Ranges {
 impl Ranges {
     /// Takes in the motion since the last call.
     pub fn follow(&mut self, session: &Session) -> &Self {
-        let changed_at = session.changed_at();
+        let changed_at = session.changed_at;
         let watch = session.player.watch();
         if watch.time() < self.looked_to {
             self.since_start = Extremes::default();
@@ -114,7 +113,7 @@ impl Ranges {
             self.previous = Extremes::default();
         }
         let model = session.model();
-        for watch in session.pins.all().iter().map(Pin::watch).chain([watch]) {
+        for watch in session.pins.all().iter().map(|pin| &pin.watch).chain([watch]) {
             let first = watch.samples().partition_point(|sample| sample.t < self.looked_to);
             for sample in watch.samples().range(first..) {
                 self.seen = self.seen.or(Extremes {

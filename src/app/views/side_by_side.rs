@@ -76,12 +76,12 @@ fn heading_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     };
     let scene = if let Some(shown) = context.drawn.pin(context.session) {
         for (place, pin) in context.session.pins.all().iter().enumerate() {
-            let button = ui.selectable_label(pin.letter() == shown.letter(), pin.letter().to_string());
+            let button = ui.selectable_label(pin.letter == shown.letter, pin.letter.to_string());
             if button.on_hover_text("The pinned motion that is shown here.").clicked() {
                 context.memory.beside_place = place;
             }
         }
-        shown.scene()
+        &shown.scene
     } else {
         ui.label(RichText::new("now").heading());
         context.session.scene()

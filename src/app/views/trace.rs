@@ -151,10 +151,10 @@ pub fn trace_ui(ui: &mut Ui, quantity: TraceQuantity, context: &mut ViewContext<
     let painter = ui.painter().with_clip_rect(area);
     // each pin has its letter at the end of its line, beside those of the others
     for (i, pin) in pinned(context.session, quantity).iter().enumerate() {
-        let value = quantity.value_in(pin.watch(), &pin.state_at(end));
+        let value = quantity.value_in(&pin.watch, &pin.watch.state_at(end));
         if let Some(at) = pane.place(0, (end, value.clamp(low, high))).filter(|_| value.is_finite()) {
             let at = at + vec2(LETTER * (i as f32 + 0.5), 0.0);
-            painter.text(at, Align2::CENTER_CENTER, pin.letter(), style.small(), style.ink());
+            painter.text(at, Align2::CENTER_CENTER, pin.letter, style.small(), style.ink());
         }
     }
     let pass = ui.ctx().cumulative_pass_nr();
@@ -198,10 +198,10 @@ fn chart(session: &Session, quantity: TraceQuantity, (from, to): Point, (low, hi
     }
     lines.extend(measured);
     for pin in pinned(session, quantity) {
-        let (from, to) = (from.max(pin.since()), now.min(to));
-        let samples = &mut thinned(pin.watch(), (from, to), MAX_GHOST_POINTS, pin.state_at(to));
-        let path = line(pin.watch(), samples);
-        lines.push(Layer::new(Role::Pin(pin.place()), &pin.letter().to_string(), path));
+        let (from, to) = (from.max(pin.since), now.min(to));
+        let samples = &mut thinned(&pin.watch, (from, to), MAX_GHOST_POINTS, pin.watch.state_at(to));
+        let path = line(&pin.watch, samples);
+        lines.push(Layer::new(Role::Pin(pin.place()), &pin.letter.to_string(), path));
     }
     lines.push(Layer::new(role, "", line(watch, &mut samples.iter().copied())));
     let stable = session.shown().mechanism().landscape.equilibria.iter().filter(|point| point.stable);

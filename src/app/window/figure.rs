@@ -154,7 +154,7 @@ impl Figures {
             return (false, fault.to_owned());
         }
         let mut words = match view {
-            _ if panel(view).is_some() && session.is_continued() => {
+            _ if panel(view).is_some() && session.is_continued => {
                 "The run of the scene as it now stands, from its start: what was changed on the way of this \
                  motion has no command."
             }
@@ -192,7 +192,7 @@ fn times(session: &Session, memory: &Memory) -> Option<(f64, f64)> {
     let now = session.player.time();
     let window = memory.timeline.window.unwrap_or_else(|| stretch(session.model()));
     let from = (now - window).max(0.0);
-    (!session.is_continued() && now - from > LEAST_SHARE * window).then(|| round_times((from, now))).flatten()
+    (!session.is_continued && now - from > LEAST_SHARE * window).then(|| round_times((from, now))).flatten()
 }
 
 enum Action {

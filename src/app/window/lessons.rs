@@ -51,7 +51,7 @@ pub(super) struct Lessons {
 impl Lessons {
     /// Whether a dialog of theirs is open.
     pub fn ask(&self) -> bool {
-        self.finished.is_some() || self.open.as_ref().is_some_and(OpenLesson::was_begun_before)
+        self.finished.is_some() || self.open.as_ref().is_some_and(|lesson| lesson.begun_before)
     }
 
     /// The session that comes back when the lesson is left.
@@ -260,7 +260,7 @@ impl Window {
             }
             LessonAction::NextLesson(name) => return self.open_lesson(name),
             LessonAction::Hint => {
-                lesson.turn_hint();
+                lesson.hinted = !lesson.hinted;
                 Turn::Stay
             }
         };
@@ -294,7 +294,7 @@ impl Window {
                 next.into_iter().for_each(|name| self.open_lesson(name));
             }
         }
-        let Some(lesson) = self.lessons.open.as_mut().filter(|open| open.was_begun_before()) else { return };
+        let Some(lesson) = self.lessons.open.as_mut().filter(|open| open.begun_before) else { return };
         let (mut anew, title) = (false, &lesson.lesson().title);
         let (goes_on, is_closed) = dialog_ui(ui, ("begun before", 480.0), (title, 6.0), |ui| {
             let (step, count) = (lesson.number() + 1, lesson.lesson().steps.len());
@@ -309,7 +309,7 @@ impl Window {
         if anew {
             self.begin_lesson_anew();
         } else if goes_on || is_closed {
-            lesson.resume();
+            lesson.begun_before = false;
         }
     }
 

@@ -6,7 +6,7 @@ use crate::app::export;
 use crate::app::panels::hint;
 use crate::app::panels::transport::EVENT_AHEAD;
 use crate::app::session::measured::MeasuredData;
-use crate::app::session::pins::{Pin, PinKind};
+use crate::app::session::pins::PinKind;
 use crate::app::session::player::{Goal, SPEEDS};
 use crate::app::views::{Memory, View};
 use crate::dynamics::EventKind;
@@ -37,7 +37,7 @@ impl Window {
         if self.session.player.goal().is_some() {
             if ctx.input(|input| input.events.iter().any(is_pressed)) {
                 ctx.input_mut(|input| input.events.retain(|event| !is_pressed(event)));
-                self.session.player.give_up();
+                self.session.player.set_playing(false);
             }
             return;
         }
@@ -242,7 +242,7 @@ impl Window {
 
     /// The view that opens with the newest pin.
     pub(super) fn view_of_pins(&self) -> View {
-        match self.session.pins.all().last().map(Pin::kind) {
+        match self.session.pins.all().last().map(|pin| pin.kind) {
             Some(PinKind::Twin) => View::Distance,
             _ => View::Compare,
         }

@@ -1,8 +1,8 @@
 //! The columns of a summary on the screen: their groups, titles, units and words.
 
 use crate::app::words::capital;
-use crate::output::{RMS, words_of};
-use crate::study::{Read, SummaryField};
+use crate::output::RMS;
+use crate::study::SummaryField;
 
 /// The columns that are offered, in groups.
 #[rustfmt::skip]
@@ -31,28 +31,9 @@ pub const COLUMNS: [(&str, &[&str]); 7] = [
     ]),
 ];
 
-pub trait ShownColumn {
-    /// Its label with an initial capital, for a heading.
-    fn title(&self) -> String;
-
-    /// The words that can be its values, in order; `None` for a numeric column.
-    fn shown_words(&self) -> Option<&'static [&'static str]>;
-
-    fn is_count(&self) -> bool;
-}
-
-impl ShownColumn for SummaryField {
-    fn title(&self) -> String {
-        capital(self.label)
-    }
-
-    fn shown_words(&self) -> Option<&'static [&'static str]> {
-        words_of(self.name)
-    }
-
-    fn is_count(&self) -> bool {
-        matches!(self.read, Read::Count(_))
-    }
+/// The label of a column with an initial capital, for a heading.
+pub fn title(column: &SummaryField) -> String {
+    capital(column.label)
 }
 
 /// The text on the screen for a word of a column.
@@ -72,7 +53,8 @@ pub fn said(column: &str, word: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::study::SUMMARY_FIELDS;
+    use crate::output::words_of;
+    use crate::study::{Read, SUMMARY_FIELDS};
 
     #[test]
     fn every_field_of_a_summary_has_one_name() {
@@ -80,13 +62,13 @@ mod tests {
         for field in SUMMARY_FIELDS {
             assert_eq!(all.iter().filter(|name| **name == field.name).count(), 1, "{}", field.name);
             let words = matches!(field.read, Read::Word(_) | Read::Flag(_));
-            assert_eq!((!field.words.is_empty(), field.shown_words().is_some()), (words, words));
+            assert_eq!((!field.words.is_empty(), words_of(field.name).is_some()), (words, words));
         }
         assert_eq!(all.len(), SUMMARY_FIELDS.len());
         let mut names: Vec<&str> = SUMMARY_FIELDS.iter().map(|field| field.label).collect();
         names.sort_unstable();
         names.dedup();
         assert_eq!(names.len(), all.len());
-        assert_eq!(SummaryField::find(RMS).unwrap().title(), "RMS velocity");
+        assert_eq!(title(SummaryField::find(RMS).unwrap()), "RMS velocity");
     }
 }

@@ -26,7 +26,6 @@ pub fn expected(choice: Option<&str>, outcome: Option<&str>) -> String {
     }
 }
 
-/// The letter of an option of a prediction.
 pub fn letter(option: usize) -> char {
     ('A'..='Z').nth(option).unwrap_or('?')
 }
@@ -87,9 +86,7 @@ fn lacking(asked: &Condition, found: &Value, on_stops: bool) -> String {
         }
         Condition::Any(_) => "none of what is asked for holds".to_owned(),
         Condition::Not(part) => match part.as_ref() {
-            Condition::Is(field, word) if field.ends_with(REGIME) => {
-                format!("{}{}", coming(field), still(word, on_stops))
-            }
+            Condition::Is(field, word) if field.ends_with(REGIME) => still(field, word, on_stops),
             part => match part.field().and_then(name_and_unit_of) {
                 Some((name, _)) => format!("the {name} must not be what it is"),
                 None => "what must not be is so".to_owned(),
@@ -104,17 +101,6 @@ fn lacking(asked: &Condition, found: &Value, on_stops: bool) -> String {
     }
 }
 
-fn bounds(condition: &Condition) -> Vec<f64> {
-    match condition {
-        Condition::AtLeast(_, bound)
-        | Condition::AtMost(_, bound)
-        | Condition::Above(_, bound)
-        | Condition::Below(_, bound) => vec![*bound],
-        Condition::Between(_, low, high) => vec![*low, *high],
-        _ => Vec::new(),
-    }
-}
-
 /// Why a condition on one field does not hold.
 fn lacking_field(asked: &Condition, found: &Value, on_stops: bool) -> String {
     let field = asked.field().unwrap_or_default();
@@ -122,9 +108,7 @@ fn lacking_field(asked: &Condition, found: &Value, on_stops: bool) -> String {
         return "it differs from what is asked".to_owned();
     };
     match (found, asked) {
-        (Value::Word(word), Condition::Is(..)) if field.ends_with(REGIME) => {
-            format!("{}{}", coming(field), still(word, on_stops))
-        }
+        (Value::Word(word), Condition::Is(..)) if field.ends_with(REGIME) => still(field, word, on_stops),
         (Value::Word(word), Condition::Is(_, wanted)) => format!("the {name} is {word}, not {wanted}"),
         (Value::Number(x), Condition::Below(..) | Condition::Above(..)) if field == "result.final_x_m" => {
             format!("it ends on the {}-hand side", if *x > 0.0 { "right" } else { "left" })
@@ -137,7 +121,14 @@ fn lacking_field(asked: &Condition, found: &Value, on_stops: bool) -> String {
                 _ => (*number, unit.to_owned()),
             };
             // a share as the sentence and the table have it, unless that is a bound
-            let is_bound = |whole: f64| bounds(condition).iter().any(|bound| whole == 100.0 * bound);
+            let is_bound = |whole: f64| match condition {
+                Condition::AtLeast(_, bound)
+                | Condition::AtMost(_, bound)
+                | Condition::Above(_, bound)
+                | Condition::Below(_, bound) => whole == 100.0 * bound,
+                Condition::Between(_, low, high) => whole == 100.0 * low || whole == 100.0 * high,
+                _ => false,
+            };
             let value = match scaled.round() {
                 whole if scaled == whole || unit == "%" && !is_bound(whole) => whole.to_string(),
                 _ => three(scaled),
@@ -161,15 +152,6 @@ fn lacking_field(asked: &Condition, found: &Value, on_stops: bool) -> String {
 
 const REGIME: &str = ".regime";
 
-/// Which of several runs a field belongs to, in the words of a task.
-fn coming(field: &str) -> &'static str {
-    match field.split('.').next() {
-        Some("up") => "coming from below, ",
-        Some("down") => "coming from above, ",
-        _ => "",
-    }
-}
-
 fn motion(regime: &str, on_stops: bool) -> &'static str {
     match regime {
         "rest" if on_stops => "it rests on its stop",
@@ -182,9 +164,14 @@ fn motion(regime: &str, on_stops: bool) -> &'static str {
     }
 }
 
-/// What it does although it should not.
-fn still(regime: &str, on_stops: bool) -> String {
-    motion(regime, on_stops).replacen("it ", "it still ", 1)
+/// What it does although it should not, in the run of several that the field belongs to.
+fn still(field: &str, regime: &str, on_stops: bool) -> String {
+    let coming = match field.split('.').next() {
+        Some("up") => "coming from below, ",
+        Some("down") => "coming from above, ",
+        _ => "",
+    };
+    format!("{coming}{}", motion(regime, on_stops).replacen("it ", "it still ", 1))
 }
 
 fn crossings(count: f64, asked: &Condition) -> String {

@@ -163,10 +163,7 @@ pub fn mm(m: f64) -> String {
 /// A travel limit in mm: two decimals, as on a slider, or one if the second is 0.
 pub fn limit_mm(mm: f64) -> String {
     let text = format!("{mm:.2}");
-    match text.strip_suffix('0') {
-        Some(short) => short.to_owned(),
-        None => text,
-    }
+    text.strip_suffix('0').unwrap_or(&text).to_owned()
 }
 
 /// Energy in mJ with two decimals, fewer where three digits stand before them, or with three significant

@@ -72,14 +72,13 @@ pub struct OpenLesson {
     progress: Progress,
     /// Time of the window in s at which the lesson was opened.
     opened: Option<f64>,
-    hinted: bool,
+    /// Whether the hint of a task is to be shown.
+    pub hinted: bool,
     /// Number of scenes that were judged and did not do the task; whether the present one is among them.
     tries: (usize, bool),
-    /// Whether it goes on from where it was left, and nobody has said that it shall.
-    begun_before: bool,
-    /// Which option of the prediction in the step of this number holds.
+    /// Whether it goes on where it was left, perhaps by another class, and nobody has said that it shall.
+    pub begun_before: bool,
     pub(super) options: Background<OptionsQuestion, Outcome>,
-    /// What a run of the scene says about the task.
     pub(super) goal: Background<GoalQuestion, TaskState>,
     /// The time in s since which the scene of the goal has stood still.
     still_since: f64,
@@ -153,10 +152,7 @@ impl OpenLesson {
 
     /// The options of a prediction; empty in any other step.
     pub fn options(&self) -> &[Choice] {
-        match self.step() {
-            Step::Predict { options, .. } => options,
-            _ => &[],
-        }
+        if let Step::Predict { options, .. } = self.step() { options } else { &[] }
     }
 
     /// Whether the motion and all results are covered: in a prediction that has not been shown.
@@ -172,19 +168,19 @@ impl OpenLesson {
     /// The starts that the conditions of the present step name, or else those of the last step before it that
     /// names some: displacement in m and velocity in m/s, each once.
     pub fn starts(&self) -> Vec<(f64, f64)> {
-        let steps = &self.lesson().steps[..=self.progress.step];
+        let steps = self.lesson().steps[..=self.progress.step].iter().rev();
         let of_step = |step: &Step| {
             let mut starts = Vec::new();
             for start in step.conditions().into_iter().flat_map(Condition::all_starts) {
-                if let Start::At { x_mm, v_m_per_s, .. } = start
-                    && !starts.contains(&(x_mm * 1e-3, *v_m_per_s))
-                {
-                    starts.push((x_mm * 1e-3, *v_m_per_s));
+                let Start::At { x_mm, v_m_per_s, .. } = start else { continue };
+                let start = (x_mm * 1e-3, *v_m_per_s);
+                if !starts.contains(&start) {
+                    starts.push(start);
                 }
             }
             starts
         };
-        steps.iter().rev().map(of_step).find(|starts| !starts.is_empty()).unwrap_or_default()
+        steps.map(of_step).find(|starts| !starts.is_empty()).unwrap_or_default()
     }
 
     /// Whether a view is covered until the first prediction has been shown: one that tells the answer, unless
@@ -231,11 +227,8 @@ impl OpenLesson {
     }
 
     pub fn choose(&mut self, option: usize) -> Turn {
-        let Some(choice) = self.options().get(option) else { return Turn::Stay };
-        let text = choice.text.clone();
-        if !self.is_covering() {
-            return Turn::Stay;
-        }
+        let choice = self.options().get(option).filter(|_| self.is_covering());
+        let Some(text) = choice.map(|choice| choice.text.clone()) else { return Turn::Stay };
         self.answer_mut().choice = Some(text);
         self.reveal()
     }
@@ -255,16 +248,12 @@ impl OpenLesson {
         if self.is_covering() || self.is_last() {
             return Turn::Stay;
         }
-        let is_skipped = !self.may_go_on();
-        match self.enter(self.progress.step + 1) {
-            Turn::Same if is_skipped => Turn::Show(Box::new(self.preceding_scene()), true),
-            turn => turn,
-        }
+        let (is_skipped, next) = (!self.may_go_on(), self.progress.step + 1);
+        if is_skipped { self.enter_from_elsewhere(next) } else { self.enter(next) }
     }
 
     pub fn go_back(&mut self) -> Turn {
-        let Some(number) = self.progress.step.checked_sub(1) else { return Turn::Stay };
-        self.enter_from_elsewhere(number)
+        self.progress.step.checked_sub(1).map_or(Turn::Stay, |number| self.enter_from_elsewhere(number))
     }
 
     /// Goes on from the step and with the answers that were kept.
@@ -272,16 +261,6 @@ impl OpenLesson {
         self.progress = Progress::of(self.lesson(), Some(kept));
         self.begun_before = self.progress.step > 0;
         self.enter_from_elsewhere(self.progress.step)
-    }
-
-    /// Whether to ask if it is to begin anew: it was begun before, perhaps by another class.
-    pub fn was_begun_before(&self) -> bool {
-        self.begun_before
-    }
-
-    /// Goes on from where it was left.
-    pub fn resume(&mut self) {
-        self.begun_before = false;
     }
 
     pub fn begin_anew(&mut self) -> Turn {
@@ -310,10 +289,8 @@ impl OpenLesson {
             Step::Predict { .. } => {
                 let judged = Uncompared(Judged::new(&document, number, end));
                 self.options.ask(OptionsQuestion { number, judged }, &self.wake);
-                match self.answer().shown {
-                    true => Turn::Show(Box::new(end.clone()), true),
-                    false => Turn::Show(Box::new(begin.clone()), false),
-                }
+                let shown = self.answer().shown;
+                Turn::Show(Box::new(if shown { end } else { begin }.clone()), shown)
             }
             Step::Say(_) | Step::Explain(_) if number > 0 => Turn::Same,
             Step::Do { .. } | Step::Say(_) | Step::Explain(_) => Turn::Show(Box::new(begin.clone()), true),
@@ -324,13 +301,9 @@ impl OpenLesson {
     /// its answer, or of the last task, solved.
     fn preceding_scene(&self) -> Document {
         let step = self.progress.step;
-        for number in (0..step).rev() {
-            match &self.lesson().steps[number] {
-                Step::Say(_) | Step::Explain(_) => {}
-                Step::Predict { .. } | Step::Do { .. } => return self.document.end(number).clone(),
-            }
-        }
-        self.document.begin(step).clone()
+        let only_tells = |step: &Step| matches!(step, Step::Say(_) | Step::Explain(_));
+        let before = (0..step).rfind(|number| !only_tells(&self.lesson().steps[*number]));
+        before.map_or_else(|| self.document.begin(step), |number| self.document.end(number)).clone()
     }
 
     /// Receives verdicts, and has the scene judged once it stands still; to be called once a frame, at `now`
@@ -339,17 +312,11 @@ impl OpenLesson {
         self.options.poll();
         self.goal.poll();
         self.opened.get_or_insert(now);
-        let mut next = None;
-        match self.step() {
-            Step::Predict { .. } => {
-                if let (true, Outcome::Holds(option)) = (self.answer().shown, self.outcome()) {
-                    let text = self.options()[option].text.clone();
-                    self.answer_mut().outcome = Some(text);
-                }
-            }
-            Step::Do { .. } => next = self.judge_task(session, now),
-            Step::Say(_) | Step::Explain(_) => {}
+        if let (true, Outcome::Holds(option)) = (self.answer().shown, self.outcome()) {
+            self.answer_mut().outcome = self.options().get(option).map(|option| option.text.clone());
         }
+        let is_task = matches!(self.step(), Step::Do { .. });
+        let next = if is_task { self.judge_task(session, now) } else { None };
         self.progress.done |= self.is_last() && self.may_go_on();
         next
     }
@@ -367,12 +334,11 @@ impl OpenLesson {
         if self.goal.question().is_none_or(|asked| asked.scene != *scene) {
             (self.still_since, self.tries.1) = (now, false);
             let edited = session.editor.runnable();
-            let built = session.mechanism_of == edited.scene.mechanism;
-            let mechanism = built.then(|| Arc::clone(session.model().mechanism()));
             let mut judged = Judged::new(&self.document, self.progress.step, &edited);
-            judged.mechanism = mechanism;
-            let judged = Uncompared(judged);
-            self.goal.ask(GoalQuestion { scene: scene.clone(), judged }, &self.wake);
+            let is_built = session.mechanism_of == edited.scene.mechanism;
+            judged.mechanism = is_built.then(|| Arc::clone(session.model().mechanism()));
+            let question = GoalQuestion { scene: scene.clone(), judged: Uncompared(judged) };
+            self.goal.ask(question, &self.wake);
             return Some(STILL);
         }
         // the scene with which the task begins is no try
@@ -383,9 +349,9 @@ impl OpenLesson {
         if self.goal.answer() != Some(&TaskState::Met) {
             return None;
         }
-        let still_for = now - self.still_since;
-        if still_for < STILL {
-            return Some(STILL - still_for);
+        let left = STILL - (now - self.still_since);
+        if left > 0.0 {
+            return Some(left);
         }
         let settings = arguments(&self.document.begin(self.progress.step).scene, scene).join(", ");
         let answer = self.answer_mut();
@@ -435,11 +401,6 @@ impl OpenLesson {
         self.opened.map_or(0.0, |opened| now - opened)
     }
 
-    /// Votes for the options of a prediction, in their order.
-    pub fn votes(&self) -> &[u32] {
-        &self.answer().votes
-    }
-
     /// Adds votes for an option of a covered prediction, or takes some away.
     pub fn vote(&mut self, option: usize, more: i32) {
         let count = self.options().len();
@@ -450,16 +411,9 @@ impl OpenLesson {
         }
     }
 
-    pub fn turn_hint(&mut self) {
-        self.hinted = !self.hinted;
-    }
-
     /// The solution of a task, as pairs of field and value.
     pub fn solution(&self) -> &[(String, String)] {
-        match self.step() {
-            Step::Do { solution, .. } => solution,
-            _ => &[],
-        }
+        if let Step::Do { solution, .. } = self.step() { solution } else { &[] }
     }
 
     /// Waits for the verdicts that are being computed, at most `timeout` for each.

@@ -47,13 +47,10 @@ pub fn fields(scene: &Scene, when_on: Stops) -> Vec<String> {
 /// The axes of a scene's map: its two sweep axes if both have even steps, else travel limit and amplitude,
 /// else the first two fields of the scene that can be axes.
 pub fn default_axes(scene: &Scene, when_on: Stops, well_mm: Option<f64>) -> Option<[SweepAxis; 2]> {
-    let known = fields(scene, when_on);
+    let (known, with_stops) = (fields(scene, when_on), ground(scene, when_on, &scene.sweep));
+    let has_field = |axis: &SweepAxis| FieldPath::new(&axis.field).get(&with_stops).is_some();
     if let [a, b] = scene.sweep.as_slice()
-        && a.values.is_empty()
-        && b.values.is_empty()
-        && [a, b]
-            .iter()
-            .all(|axis| FieldPath::new(&axis.field).get(&ground(scene, when_on, &scene.sweep)).is_some())
+        && [a, b].into_iter().all(|axis| axis.values.is_empty() && has_field(axis))
     {
         return Some([a.clone(), b.clone()]);
     }
@@ -82,25 +79,23 @@ pub fn axis(path: &str, scene: &Scene, when_on: Stops, well_mm: Option<f64>) -> 
         let step = decimal(to / STEPS);
         (decimal(4.0 * step), to, step)
     };
+    let from_zero = |greatest: f64, steps: f64| {
+        let to = round_up(greatest);
+        (0.0, to, decimal(to / steps))
+    };
     let (from, to, step) = match name {
         "travel_limit_mm" | "left_mm" | "right_mm" => match well_mm.filter(|mm| *mm > 0.0) {
             Some(mm) if (6.0..=7.2).contains(&mm) => LIMITS_MM,
             Some(mm) => up_to(mm),
             None => up_to(2.0 * present),
         },
-        "amplitude_g" | "rms_g" if (0.3..=AMPLITUDES_G.1).contains(&present) => AMPLITUDES_G,
-        "amplitude_g" | "rms_g" => {
-            let to = if present > 0.0 { round_up(2.0 * present) } else { AMPLITUDES_G.1 };
-            (0.0, to, decimal(to / 100.0))
+        "amplitude_g" | "rms_g" if present == 0.0 || (0.3..=AMPLITUDES_G.1).contains(&present) => {
+            AMPLITUDES_G
         }
-        name if name.starts_with("amplitude_") && present > 0.0 => {
-            let to = round_up(2.0 * present);
-            (0.0, to, decimal(to / 100.0))
+        name if (name == "rms_g" || name.starts_with("amplitude_")) && present > 0.0 => {
+            from_zero(2.0 * present, 100.0)
         }
-        "xi" => {
-            let to = round_up((2.0 * present).max(0.1));
-            (0.0, to, decimal(to / STEPS))
-        }
+        "xi" => from_zero((2.0 * present).max(0.1), STEPS),
         name if name.starts_with("restitution") => (0.0, 1.0, 1.0 / STEPS),
         "seed" => (1.0, STEPS, 1.0),
         _ if signed < 0.0 => {

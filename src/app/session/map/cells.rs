@@ -33,7 +33,8 @@ pub struct Map {
     pub(in crate::app::session) sweep: Arc<Sweep>,
     levels: Levels,
     cells: Vec<Option<Cell>>,
-    known: usize,
+    /// Number of cells that are known.
+    pub known: usize,
     /// Computing time after which it was last drawn.
     drawn_after: Option<Duration>,
     /// Computing time so far.
@@ -61,17 +62,15 @@ impl Map {
         }
         let [across, up] = grid.axes() else { return Err("a map has two axes".to_owned()) };
         let edges = [across, up].map(|axis| Edges::new(&axis.values));
-        let cells = vec![None; grid.cells() as usize];
         let release =
             (!grid.changes_mechanism()).then(|| release_line(&question.scene, mechanism, &grid)).flatten();
-        let (levels, overlay) = (Levels::of(&grid), Overlay { release, first_crossing: None });
         Ok(Self {
             question: question.clone(),
             edges,
-            overlay,
+            overlay: Overlay { release, first_crossing: None },
+            levels: Levels::of(&grid),
+            cells: vec![None; grid.cells() as usize],
             sweep: Arc::new(question.sweep(grid)),
-            levels,
-            cells,
             known: 0,
             drawn_after: None,
             took: Duration::ZERO,
@@ -79,17 +78,8 @@ impl Map {
         })
     }
 
-    pub fn len(&self) -> usize {
+    pub fn count(&self) -> usize {
         self.cells.len()
-    }
-
-    /// Whether there are no cells, which does not occur.
-    pub fn is_empty(&self) -> bool {
-        self.cells.is_empty()
-    }
-
-    pub fn known(&self) -> usize {
-        self.known
     }
 
     pub fn is_whole(&self) -> bool {
@@ -146,7 +136,7 @@ impl Map {
         if is_new {
             self.coarse_after = Some(self.took);
         }
-        let every = Duration::from_micros(10 * self.len() as u64);
+        let every = Duration::from_micros(10 * self.count() as u64);
         let is_recent = self.drawn_after.is_some_and(|last| self.took < last + every);
         if is_recent && !is_new && !self.is_whole() {
             return false;
@@ -192,10 +182,8 @@ impl Map {
     pub fn cuts(&self, scene: &Scene) -> Vec<Cut> {
         let (column, row) = self.nearest_cell(scene);
         let names = self.grid().columns();
-        let cut = |i: usize, place: usize| {
-            let edges: &Edges = &self.edges[i];
-            Cut { column: names[i].clone(), value: edges.values[place] }
-        };
+        let cut =
+            |i: usize, place: usize| Cut { column: names[i].clone(), value: self.edges[i].values[place] };
         vec![cut(1, row), cut(0, column)]
     }
 
@@ -235,12 +223,11 @@ impl Map {
         };
         let mut chart = drawn(&self.table(true, &more), view.clone())?;
         if matches!(view, View::Cuts(_)) && !self.is_whole() {
-            let known = drawn(&self.table(false, &more), view.clone())?;
-            let whole = std::mem::replace(&mut chart, known);
-            let map = whole.columns.into_iter().next().and_then(|column| column.panels.into_iter().next());
-            if let (Some(map), Some(panel)) = (map, chart.first_panel()) {
-                *panel = map;
+            let mut known = drawn(&self.table(false, &more), view.clone())?;
+            if let (Some(map), Some(panel)) = (chart.first_panel(), known.first_panel()) {
+                std::mem::swap(map, panel);
             }
+            return Ok(known);
         }
         Ok(chart)
     }

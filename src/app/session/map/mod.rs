@@ -29,6 +29,8 @@ const STILL: f64 = 0.25;
 
 const MAX_SCENES: usize = 400;
 
+pub const NO_FIELDS: &str = "This scene has no two fields to make a map over.";
+
 /// The column of the mean power into the load of a transducer.
 pub const LOAD_POWER: &str = "mean_load_power_w";
 
@@ -107,13 +109,13 @@ pub struct Mapping {
     /// The default axes, as they were when the map was first shown: they do not move with the scene.
     default_axes: Option<[SweepAxis; 2]>,
     /// The axes of the enlarged parts of the map, each a part of the one before.
-    enlarged: Vec<[SweepAxis; 2]>,
+    pub enlarged: Vec<[SweepAxis; 2]>,
     map: Option<Map>,
     /// The previous map, shown until the new one has a result everywhere.
     previous: Option<Map>,
     /// The cells of the map that have come and are not in it yet.
     pub(super) cells: Background<CellsQuestion, (u64, Cell)>,
-    version: u64,
+    pub version: u64,
     /// A question that waits for a pause in the gesture, and the time in s since which it has not changed.
     waiting: Option<(MapQuestion, f64)>,
     problem: Option<String>,
@@ -136,10 +138,6 @@ impl Mapping {
     /// The map of the present question, as far as it is known.
     pub fn map(&self) -> Option<&Map> {
         self.map.as_ref()
-    }
-
-    pub fn version(&self) -> u64 {
-        self.version
     }
 
     pub fn is_running(&self) -> bool {
@@ -185,32 +183,13 @@ impl Mapping {
 
     /// The map as the command line writes it; `None` until all cells are known.
     pub fn csv(&self) -> Option<String> {
-        self.map
-            .as_ref()
-            .filter(|map| map.is_whole())
-            .map(|map| map.csv(&self.columns().unwrap_or_else(|| STANDARD_COLUMNS.to_vec())))
+        let whole = self.map.as_ref().filter(|map| map.is_whole())?;
+        Some(whole.csv(&self.columns().unwrap_or_else(|| STANDARD_COLUMNS.to_vec())))
     }
 
     /// Chooses axes; `None` for the default axes.
     pub fn choose(&mut self, axes: Option<[SweepAxis; 2]>) {
         (self.chosen, self.enlarged) = (axes, Vec::new());
-    }
-
-    pub fn enlarge(&mut self, axes: [SweepAxis; 2]) {
-        self.enlarged.push(axes);
-    }
-
-    pub fn is_enlarged(&self) -> bool {
-        !self.enlarged.is_empty()
-    }
-
-    /// Goes back to the axes before the last enlargement.
-    pub fn show_larger(&mut self) {
-        self.enlarged.pop();
-    }
-
-    pub fn show_whole(&mut self) {
-        self.enlarged.clear();
     }
 
     /// The axes of the enlarged part, or those that the user has chosen.
@@ -230,20 +209,14 @@ impl Mapping {
             self.previous = None;
         }
     }
-
-    pub fn end_frame(&mut self) {
-        self.cells.end_frame();
-    }
 }
 
 impl Session {
     /// The axes of the map; `None` if the scene has fewer than two fields for them.
     pub fn map_axes(&self) -> Option<[SweepAxis; 2]> {
         let mut known = self.map.chosen().into_iter().chain(&self.map.default_axes);
-        match known.find(|axes| self.has_fields_of(*axes)) {
-            Some(axes) => Some(axes.clone()),
-            None => axes::default_axes(self.scene(), self.remembered_stops(), self.well_mm()),
-        }
+        let usual = || axes::default_axes(self.scene(), self.remembered_stops(), self.well_mm());
+        known.find(|axes| self.has_fields_of(*axes)).cloned().or_else(usual)
     }
 
     /// Whether the scene, with its stops switched on if need be, has the fields of these axes.
@@ -267,7 +240,7 @@ impl Session {
     /// Asks for the map of the scene at `time` in s. Returns whether it waits for a pause in the gesture.
     pub fn want_map(&mut self, time: f64) -> bool {
         let Some(axes) = self.map_axes() else {
-            self.map.problem = Some("This scene has no two fields to make a map over.".to_owned());
+            self.map.problem = Some(NO_FIELDS.to_owned());
             return false;
         };
         // chosen axes whose fields the scene lacks at present stay chosen

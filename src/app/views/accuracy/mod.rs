@@ -54,7 +54,7 @@ fn name(digits: bool) -> &'static str {
 fn waiting_ui(ui: &mut Ui, context: &ViewContext<'_>) {
     let text = match context.session.fault() {
         Some(_) => "This scene cannot run.",
-        None if context.session.accuracy.is_stopped() => "Stopped: the next change begins it again.",
+        None if context.session.accuracy.is_stopped => "Stopped: the next change begins it again.",
         None => "Working it out.",
     };
     let room = ui.available_rect_before_wrap();

@@ -10,13 +10,13 @@ use crate::app::session::best::LIMIT;
 use crate::app::session::map::{Map, short};
 use crate::app::ui::style::Style;
 use crate::app::ui::widgets::tell;
-use crate::app::words::columns::{ShownColumn, said};
+use crate::app::words::columns::said;
 use crate::app::words::kind::Kind;
 use crate::app::words::numbers::three;
 use crate::app::words::status::speed;
 use crate::dynamics::{Regime, Summary};
-use crate::output::{Cell as DrawnCell, Marks, PlotAxis, RMS, View as MapShape, suited_unit};
-use crate::study::{SummaryField, label_and_unit};
+use crate::output::{Cell as DrawnCell, Marks, PlotAxis, RMS, View as MapShape, suited_unit, words_of};
+use crate::study::{Read, SummaryField, label_and_unit};
 
 use super::labels::haloed;
 use super::pane::{Pane, kept_pane_ui};
@@ -57,7 +57,7 @@ pub fn map_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let quantity = context.session.map.quantity();
     let (place, scene) = (map.place(context.session.scene()), map.nearest_cell(context.session.scene()));
     let has_room = area.width() > ROOM_FOR_CUTS.0 && area.height() > ROOM_FOR_CUTS.1;
-    let is_surface = look.surface && quantity.shown_words().is_none();
+    let is_surface = look.surface && words_of(quantity.name).is_none();
     let shape = match (is_surface, look.cuts && has_room) {
         (true, _) => MapShape::Surface,
         (false, true) => MapShape::Cuts(map.cuts(context.session.scene())),
@@ -65,12 +65,12 @@ pub fn map_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     };
     // where height is short, what is above the map is its legend alone
     let is_short = LegendRow::given(ui).is_some();
-    let key = (context.session.map.version(), quantity.name, look, style, shape.clone(), is_short);
+    let key = (context.session.map.version, quantity.name, look, style, shape.clone(), is_short);
     let pane = kept_pane_ui(ui, &style, area, key, || {
         // one that cannot be a surface is seen from above
         let above = || map.chart(quantity, &MapShape::Cuts(Vec::new()));
         let mut chart = map.chart(quantity, &shape).or_else(|_| above()).unwrap_or_default();
-        if look.surface && quantity.shown_words().is_some() {
+        if look.surface && words_of(quantity.name).is_some() {
             let rest = if is_short { String::new() } else { format!("; {}", chart.subtitle) };
             chart.subtitle = format!("words have no height: seen from above{rest}");
         } else if is_short {
@@ -128,7 +128,7 @@ pub fn map_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         let over = pane.response.clone().on_hover_cursor(egui::CursorIcon::PointingHand);
         over.on_hover_text_at_pointer(reading(map, quantity, cell));
     }
-    let is_enlarged = context.session.map.is_enlarged();
+    let is_enlarged = !context.session.map.enlarged.is_empty();
     let targets =
         Targets { map, is_enlarged, style, cell_at: &cell_at, pane: &pane, rect, scene: (at, scene) };
     let wanted = pointer::action_ui(ui, &mut context.memory.map_pointer, &targets);
@@ -249,7 +249,7 @@ fn value_text(quantity: &SummaryField, summary: &Summary) -> Option<String> {
         return Some(said(quantity.name, word));
     }
     let value = quantity.number(summary)?;
-    if quantity.is_count() {
+    if matches!(quantity.read, Read::Count(_)) {
         return Some(format!("{} {value:.0}", quantity.label));
     }
     let (factor, unit) = suited_unit(label_and_unit(quantity.name).1, std::iter::once(value));

@@ -144,7 +144,9 @@ pub fn perform(context: &mut ViewContext<'_>, action: Option<MapAction>) {
                 session.end_gesture();
             }
         }
-        Some(MapAction::Part(axes)) if session.map_problem(&axes).is_none() => session.map.enlarge(axes),
+        Some(MapAction::Part(axes)) if session.map_problem(&axes).is_none() => {
+            session.map.enlarged.push(axes)
+        }
         Some(MapAction::Closer(column, row)) => {
             let (Some(axes), Some((map, _))) = (session.map_axes(), session.map.shown()) else { return };
             // the axes chosen last, even if their map is not computed yet
@@ -156,11 +158,11 @@ pub fn perform(context: &mut ViewContext<'_>, action: Option<MapAction>) {
             };
             let axes = [around(0, column), around(1, row)];
             if session.map_problem(&axes).is_none() {
-                session.map.enlarge(axes);
+                session.map.enlarged.push(axes);
             }
         }
-        Some(MapAction::Larger) => session.map.show_larger(),
-        Some(MapAction::Whole) => session.map.show_whole(),
+        Some(MapAction::Larger) => _ = session.map.enlarged.pop(),
+        Some(MapAction::Whole) => session.map.enlarged.clear(),
         Some(MapAction::Part(_)) | None => {}
     }
 }

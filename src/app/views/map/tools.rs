@@ -6,7 +6,8 @@ use crate::app::panels::controls;
 use crate::app::session::map::Mapping;
 use crate::app::ui::knob::refuse;
 use crate::app::ui::widgets::{choices_ui, tell};
-use crate::app::words::columns::{COLUMNS, ShownColumn};
+use crate::app::words::columns::{COLUMNS, title};
+use crate::output::words_of;
 use crate::scene::SweepAxis;
 use crate::study::SummaryField;
 
@@ -81,20 +82,21 @@ fn row_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     });
     let mapping = &context.session.map;
     if let Some(map) = mapping.map().filter(|_| mapping.is_running()) {
-        bar_ui(ui, (map.known(), map.len()), 24.0);
+        bar_ui(ui, (map.known, map.count()), 24.0);
     }
 }
 
 /// Choice of the quantity, by groups of columns.
 fn quantity_ui(ui: &mut Ui, mapping: &mut Mapping) {
     let chosen = mapping.quantity();
-    let title = RichText::new(chosen.title()).heading();
-    let combo = ComboBox::from_id_salt("quantity").width(TITLE).height(420.0).selected_text(title).truncate();
+    let heading = RichText::new(title(chosen)).heading();
+    let combo =
+        ComboBox::from_id_salt("quantity").width(TITLE).height(420.0).selected_text(heading).truncate();
     let inner = combo.show_ui(ui, |ui| {
         for (group, columns) in &COLUMNS {
             ui.menu_button(*group, |ui| {
                 for column in columns.iter().filter_map(|name| SummaryField::find(name)) {
-                    let entry = ui.selectable_label(column.name == chosen.name, column.title());
+                    let entry = ui.selectable_label(column.name == chosen.name, title(column));
                     let cost =
                         if column.needs_ledger { " The runs are made anew for it, one by one." } else { "" };
                     if entry.on_hover_text(format!("{}{cost}", column.about)).clicked() {
@@ -105,7 +107,7 @@ fn quantity_ui(ui: &mut Ui, mapping: &mut Mapping) {
             });
         }
     });
-    tell(&inner.response, egui::Role::ComboBox, &format!("map of {}", chosen.title()));
+    tell(&inner.response, egui::Role::ComboBox, &format!("map of {}", title(chosen)));
     inner.response.on_hover_text(chosen.about);
 }
 
@@ -113,7 +115,7 @@ fn quantity_ui(ui: &mut Ui, mapping: &mut Mapping) {
 fn look_ui(ui: &mut Ui, look: &mut MapLook, quantity: &SummaryField) {
     ui.selectable_value(&mut look.surface, false, "From above")
         .on_hover_text("Each run is a cell, and its colour the quantity.");
-    let surface = if quantity.shown_words().is_some() {
+    let surface = if words_of(quantity.name).is_some() {
         "Words have no height: they are seen from above."
     } else {
         "The same as a surface: height and colour are the quantity."
@@ -181,13 +183,13 @@ fn ranges_items_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axes: &[SweepAxis
 
 fn progress_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let mapping = &mut context.session.map;
-    if mapping.is_enlarged()
+    if !mapping.enlarged.is_empty()
         && ui.button("Whole map").on_hover_text("A double click on the map does the same.").clicked()
     {
-        mapping.show_whole();
+        mapping.enlarged.clear();
     }
     let Some(map) = mapping.map() else { return };
-    let (known, all) = (map.known(), map.len());
+    let (known, all) = (map.known, map.count());
     let took = map.took.as_secs_f64();
     if mapping.is_running() {
         if ui.button("Stop").on_hover_text("Leave the map as it is now.").clicked() {

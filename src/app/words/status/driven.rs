@@ -65,13 +65,9 @@ impl DrivenMotion<'_> {
     fn settling_time(&self) -> String {
         let period = self.model.forcing_period().unwrap_or(0.0);
         let late = |at: &f64| *at > AT_ONCE * period && self.now < self.origin + *at;
-        match self.summary.settles_at.filter(late) {
-            Some(at) => {
-                let t = self.origin + at;
-                format!(" from {}{} on", self.about(t), seconds(t))
-            }
-            None => String::new(),
-        }
+        let Some(at) = self.summary.settles_at.filter(late) else { return String::new() };
+        let t = self.origin + at;
+        format!(" from {}{} on", self.about(t), seconds(t))
     }
 
     /// What is known of a motion that has not settled; empty if it has.
@@ -257,36 +253,29 @@ fn ramped(facts: &DrivenMotion, firsts: &Firsts) -> Sentence {
     let stopped = summary.total_impacts > 0 || summary.rests > 0 || summary.regime == Regime::Rest;
     let is_over = now >= end;
     let tense = |is_past: bool, past: &'static str, future: &'static str| if is_past { past } else { future };
-    match &firsts.release {
-        Some(first) => {
-            let released = tense(passed(&firsts.release), "was first released", "will first be released");
-            parts.push(format!("{released} {}", at(first)));
-        }
-        None if stopped && model.stop_positions() != (None, None) && firsts.crossing.is_none() => {
-            parts.push(tense(is_over, "was never released", "will never be released").to_owned());
-        }
-        None => {}
+    if let Some(first) = &firsts.release {
+        let released = tense(passed(&firsts.release), "was first released", "will first be released");
+        parts.push(format!("{released} {}", at(first)));
+    } else if stopped && model.stop_positions() != (None, None) && firsts.crossing.is_none() {
+        parts.push(tense(is_over, "was never released", "will never be released").to_owned());
     }
-    match (&firsts.crossing, &firsts.crossing_in_every_period) {
-        (Some(first), always) => {
-            let has_crossed = passed(&firsts.crossing);
-            let rest = match always {
-                Some(always) if first == always => ", and in every period from then on".to_owned(),
-                Some(always) => format!("; in every period from {}{} on", place(always), time(always)),
-                None => String::new(),
-            };
-            let crosses = match always == &Some(*first) {
-                true => tense(has_crossed, "crossed", "will cross"),
-                false => tense(has_crossed, "first crossed", "will first cross"),
-            };
-            parts.push(format!("{crosses} {}{rest}", at(first)));
-        }
-        (None, _) => parts.push(tense(is_over, "never crossed", "will never cross").to_owned()),
+    let always = &firsts.crossing_in_every_period;
+    if let Some(first) = &firsts.crossing {
+        let has_crossed = passed(&firsts.crossing);
+        let crosses = tense(has_crossed, "first crossed", "will first cross");
+        let (crosses, rest) = match always {
+            Some(always) if first == always => {
+                let crosses = tense(has_crossed, "crossed", "will cross");
+                (crosses, ", and in every period from then on".to_owned())
+            }
+            Some(always) => (crosses, format!("; in every period from {}{} on", place(always), time(always))),
+            None => (crosses, String::new()),
+        };
+        parts.push(format!("{crosses} {}{rest}", at(first)));
+    } else {
+        parts.push(tense(is_over, "never crossed", "will never cross").to_owned());
     }
-    let until = match firsts.crossing_in_every_period {
-        Some(_) => String::new(),
-        None => format!(" up to {}", seconds(end)),
-    };
+    let until = if always.is_some() { String::new() } else { format!(" up to {}", seconds(end)) };
     Sentence::new(kind, format!("Growing shaking: {}{until}.", parts.join("; ")))
 }
 

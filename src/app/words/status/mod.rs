@@ -107,13 +107,11 @@ pub fn unshaken(model: &Model, state: &Sample) -> Sentence {
     let rests = state.phase != Phase::Free || pull < STILL_PULL;
     let still = state.v.abs() < 1e-4 * model.scales().speed && rests;
     let Some(Standing { well, pressed_n, energy_j, needed_j }) = standing(model, state) else {
-        return match still {
-            true => Sentence::new(Kind::Resting, "At rest; nothing shakes it."),
-            false => {
-                let speed = speed(state.v.abs());
-                Sentence::new(Kind::Other, format!("Moving at {speed} mm/s; nothing shakes it."))
-            }
-        };
+        if still {
+            return Sentence::new(Kind::Resting, "At rest; nothing shakes it.");
+        }
+        let speed = speed(state.v.abs());
+        return Sentence::new(Kind::Other, format!("Moving at {speed} mm/s; nothing shakes it."));
     };
     let wells = model.mechanism().landscape.wells().len();
     let (well, needed, left) = (well_name(well, wells), energy(needed_j), energy(energy_j));

@@ -30,9 +30,7 @@ const NARROW: f64 = 1.03;
 /// The clause that says how far gaps reach above the least amplitude that crosses; empty without gaps.
 fn gaps(scene: &Scene, found: &Thresholds, from: f64) -> String {
     match found.crossing.without_gap {
-        Some(whole) if whole > NARROW * from => {
-            format!(", with gaps up to {}", in_unit(scene, grams, whole))
-        }
+        Some(g) if g > NARROW * from => format!(", with gaps up to {}", in_unit(scene, grams, g)),
         None => ", with gaps above it".to_owned(),
         Some(_) => String::new(),
     }
@@ -58,13 +56,8 @@ pub(super) fn remedy(scene: &Scene, summary: &Summary, found: &Thresholds) -> St
     let crosses = summary.crossings > 0;
     let Some(from) = found.crossing.value else {
         let limit = in_unit(scene, grams, found.searched_to);
-        return match crosses {
-            true => String::new(),
-            false if found.crossing.undecided => {
-                format!("From rest no shaking up to {limit} was seen to cross.")
-            }
-            false => format!("From rest no shaking up to {limit} crosses."),
-        };
+        let never = if found.crossing.undecided { "was seen to cross" } else { "crosses" };
+        return if crosses { String::new() } else { format!("From rest no shaking up to {limit} {never}.") };
     };
     let about = about(&found.crossing);
     let (least, gaps) = (format!("{about}{}", in_unit(scene, grams, from)), gaps(scene, found, from));
@@ -74,9 +67,7 @@ pub(super) fn remedy(scene: &Scene, summary: &Summary, found: &Thresholds) -> St
         (true, false) => format!("From rest it takes {least} to cross{gaps}."),
         (false, true) => format!("From rest it crosses from {least}{gaps}."),
         (false, false) => match found.frees_at.filter(|frees| *frees > g) {
-            Some(frees) => {
-                format!("Frees at {}, crosses from {least}{gaps}.", in_unit(scene, grams_up, frees))
-            }
+            Some(g) => format!("Frees at {}, crosses from {least}{gaps}.", in_unit(scene, grams_up, g)),
             None => format!("{about}{} short of crossing at {least}{gaps}.", apart(from - g)),
         },
     };
