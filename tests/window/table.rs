@@ -1,9 +1,12 @@
 //! Before / now and Compare: one table.
 
+use std::f64::consts::TAU;
+
 use egui_kittest::Harness;
 use interwell::app::session::pins::PinKind;
 use interwell::app::views::View;
 use interwell::app::window::{Command, Window};
+use interwell::scene::Excitation;
 
 use crate::support::{LONG, WIDE, command, painted, window};
 
@@ -115,4 +118,23 @@ fn an_undecided_threshold_is_one_number() {
     assert!(shown.starts_with("about 1.1"), "{shown}");
     let text = harness.state().session.sentence().whole();
     assert!(text.contains(&format!("short of crossing at {shown} g")), "{text}");
+}
+
+#[test]
+fn a_threshold_is_in_the_unit_of_the_drive() {
+    let mut harness = window("paper", WIDE);
+    let session = &mut harness.state_mut().session;
+    session.edit_once(|scene| {
+        let push_n = 0.6 * 9.80665 * scene.mass_g / 1e3;
+        scene.excitation =
+            Excitation::Force { amplitude_n: push_n, frequency_rad_per_s: TAU * 3.0, phase_deg: 0.0 };
+    });
+    session.wait(LONG);
+    harness.run_steps(3);
+    alone(&mut harness, View::BeforeNow);
+    let row = named(&rows(&harness, View::BeforeNow), "crosses from").clone();
+    // two drives of two units, each with its own
+    assert_eq!(row[1..], ["g", "0.718", "0.107 N"]);
+    let text = harness.state().session.sentence().whole();
+    assert!(text.contains("0.107 N"), "{text}");
 }
