@@ -340,6 +340,8 @@ fn asked<T: std::str::FromStr>(name: &str, otherwise: T) -> T {
 
 #[test]
 fn the_window_stands_what_hands_do() {
+    // a figure that the hands save lies in the folder of the process
+    std::env::set_current_dir(env!("CARGO_TARGET_TMPDIR")).unwrap();
     let mut hand = Hand::new(asked("INTERWELL_SEED", SEED));
     let mut screen = Screen::new("first-look", SIZES[0]);
     screen.ctx.enable_accesskit();
