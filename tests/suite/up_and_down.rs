@@ -19,7 +19,7 @@ fn visits((name, changes): (&str, &[&str]), field: &str, values: &[f64], jobs: u
     let (found, cancel) = (Mutex::new(Vec::new()), AtomicBool::new(false));
     let task = Task { tick: &|| (), cancel: &cancel };
     let each = |visit: Visit| found.lock().unwrap().push(visit);
-    assert!(up_and_down(&family, values, &Pool::new(jobs).unwrap(), &task, &each));
+    assert!(up_and_down(&family, values, &Direction::ALL, &Pool::new(jobs).unwrap(), &task, &each));
     found.into_inner().unwrap()
 }
 
@@ -86,8 +86,8 @@ fn it_ends_when_it_is_cancelled() {
     let (count, cancel) = (Mutex::new(0), AtomicBool::new(false));
     let task = Task { tick: &|| cancel.store(true, std::sync::atomic::Ordering::Relaxed), cancel: &cancel };
     let values: Vec<f64> = (1..1000).map(|i| f64::from(i) / 1e3).collect();
-    let whole =
-        up_and_down(&family, &values, &Pool::new(1).unwrap(), &task, &|_| *count.lock().unwrap() += 1);
+    let count_one = |_| *count.lock().unwrap() += 1;
+    let whole = up_and_down(&family, &values, &Direction::ALL, &Pool::new(1).unwrap(), &task, &count_one);
     assert!(!whole);
     assert_eq!(*count.lock().unwrap(), 1);
 }

@@ -57,7 +57,11 @@ function work() {
       work();
       answer_part(question.id);
     };
-    worker.onmessage = ({ data }) => (data.part ? answer_part(question.id, data.part) : end(data.problem));
+    worker.onmessage = ({ data }) => {
+      if (data.part) answer_part(question.id, data.part);
+      else if (data.name) globalThis.interwell.download(data.name, data.bytes);
+      else end(data.problem);
+    };
     worker.onerror = (event) => end(event.message ?? "a worker did not load");
     workers.busy.set(question.id, worker);
     worker.postMessage(question);

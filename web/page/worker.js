@@ -2,6 +2,9 @@
 
 import init, { answer } from "./interwell.js";
 
+// The files that an answer writes.
+globalThis.interwell = { download: (name, bytes) => postMessage({ name, bytes: bytes.slice() }) };
+
 let ready;
 
 onmessage = async ({ data }) => {

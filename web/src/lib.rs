@@ -15,7 +15,7 @@ use std::sync::atomic::AtomicBool;
 use eframe::egui;
 use interwell::app::window::leave::Next;
 use interwell::app::window::{Command, Window};
-use interwell::app::{begin, session, task};
+use interwell::app::{begin, export, task};
 use interwell::scene::lesson::LESSONS;
 use interwell::scene::linked_lesson;
 use interwell::system::page;
@@ -132,10 +132,7 @@ pub async fn open_window(
     dark: bool,
 ) -> Result<(), JsValue> {
     page::set_address(address);
-    page::set_download(|name, bytes| {
-        download(name, bytes);
-        Ok(())
-    });
+    page::set_download(hand_on);
     task::set_workers(task::Workers { ask, cancel, share: share() });
     let options = eframe::WebOptions { dithering: false, ..eframe::WebOptions::default() };
     let start = move |creation: &eframe::CreationContext<'_>| -> Result<Box<dyn eframe::App>, _> {
@@ -144,6 +141,12 @@ pub async fn open_window(
         Ok(Box::new(Page { window, looked_at: f64::NEG_INFINITY, link: String::new() }))
     };
     eframe::WebRunner::new().start(canvas, options, Box::new(start)).await
+}
+
+/// Hands a file to the page, which hands it to the user.
+fn hand_on(name: &str, bytes: &[u8]) -> Result<(), String> {
+    download(name, bytes);
+    Ok(())
 }
 
 /// Opens another scene or lesson, as the address has changed.
@@ -163,11 +166,12 @@ pub fn answer_part(id: u32, message: Option<Box<[u8]>>) {
 #[wasm_bindgen]
 pub fn answer(name: &str, question: &[u8], each: js_sys::Function) -> Option<String> {
     EACH.set(Some(each));
+    page::set_download(hand_on);
     let pass = |part: Vec<u8>| {
         let part = js_sys::Uint8Array::from(part.as_slice());
         EACH.with_borrow(|each| each.as_ref().map(|each| each.call1(&JsValue::NULL, &part)));
     };
-    session::asked::answer(name, question, &AtomicBool::new(false), &pass).err()
+    export::asked::answer(name, question, &AtomicBool::new(false), &pass).err()
 }
 
 /// Tables of a built-in scene as CSV, to be compared with those of a desktop.

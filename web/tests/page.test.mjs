@@ -15,7 +15,8 @@ const inFirefox = executablePath.includes("firefox");
 const dist = fileURLToPath(new URL("../dist/", import.meta.url));
 const pictures = process.env.PICTURES;
 const types = { ".html": "text/html", ".js": "text/javascript", ".wasm": "application/wasm", ".png": "image/png" };
-// heights of two rows of the menu of files
+// heights of rows of the menu of files
+const SAVE_THE_RUN = 292;
 const SAVE_THE_EVENTS = 316;
 const SAVE_THE_MAP = 388;
 const arguments_ = ["--no-sandbox", "--disable-quic", "--no-first-run", "--disable-background-networking"];
@@ -81,6 +82,16 @@ async function written(page, key) {
   const download = page.waitForEvent("download", { timeout: 60_000 });
   await page.keyboard.press(key);
   return readFileSync(await (await download).path(), "utf8");
+}
+
+// The file that a row of the menu of files, at this height, writes.
+async function fromMenu(page, y) {
+  await page.mouse.click(22, 17);
+  // where the processor draws, a frame may take long
+  await page.waitForTimeout(2_000);
+  const download = page.waitForEvent("download", { timeout: 30_000 });
+  await page.mouse.click(90, y);
+  return download;
 }
 
 async function drop(page, files) {
@@ -181,16 +192,12 @@ test("a map is divided among workers, and frames go on beside it", async () => {
     const [longest, frames] = await page.evaluate(() => [window.longest, window.frames_]);
     console.log(`${processors} processors: ${frames} frames, the longest ${longest.toFixed(0)} ms`);
     assert.ok(frames > 20, `${frames} frames`);
-    // two workers at least, and one less than processors
-    if (!inFirefox) assert.equal(page.workers().length, Math.max(2, processors - 1));
+    // all workers but one have had a part of the map
+    const [least, most] = [Math.max(1, processors - 2), Math.max(2, processors - 1)];
+    const hired = page.workers().length;
+    assert.ok(inFirefox || (least <= hired && hired <= most), `${hired} workers`);
     await picture(page, `map-${processors}`);
-    // Save the map as CSV...
-    await page.mouse.click(22, 17);
-    await page.waitForTimeout(500);
-    await picture(page, `menu-${processors}`);
-    const download = page.waitForEvent("download", { timeout: 30_000 });
-    await page.mouse.click(90, SAVE_THE_MAP);
-    const file = await download;
+    const file = await fromMenu(page, SAVE_THE_MAP);
     assert.equal(file.suggestedFilename(), "scene-map.csv");
     tables.push(readFileSync(await file.path(), "utf8"));
     assert.deepEqual(problems, []);
@@ -294,6 +301,19 @@ test("what others append to a link changes nothing", async () => {
   await context.close();
 });
 
+test("a worker computes the whole run and hands over its file", async () => {
+  const { context, page, problems } = await open("?scene=paper");
+  await says(page, "cross");
+  const file = await fromMenu(page, SAVE_THE_RUN);
+  assert.equal(file.suggestedFilename(), "scene-run.csv");
+  const rows = readFileSync(await file.path(), "utf8").trim().split("\n");
+  // 10 s
+  assert.match(rows[0], /^t_s,/);
+  assert.match(rows.at(-1), /^10,/);
+  assert.deepEqual(problems, []);
+  await context.close();
+});
+
 test("a figure is saved as a download", async () => {
   const { context, page, problems } = await open("?scene=paper");
   await says(page, "cross");
@@ -319,11 +339,8 @@ test("an export does not replace the table of the scene", async () => {
   await drop(page, [["pull.ron", scene], ["pull.csv", table]]);
   await page.waitForFunction(() => document.title.startsWith("Pulled"), null, { timeout: 30_000 });
   const words = (await status(page)).slice(0, 30);
-  await page.mouse.click(22, 17);
-  await page.waitForTimeout(500);
-  const download = page.waitForEvent("download", { timeout: 30_000 });
-  await page.mouse.click(90, SAVE_THE_EVENTS);
-  assert.equal((await download).suggestedFilename(), "pull-events.csv");
+  const file = await fromMenu(page, SAVE_THE_EVENTS);
+  assert.equal(file.suggestedFilename(), "pull-events.csv");
   await drag(page, [83, 88, 92]);
   await drag(page, [92, 88, 83]);
   await says(page, words);

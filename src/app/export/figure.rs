@@ -4,25 +4,27 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
 use anyhow::{Result, anyhow};
+use serde::{Deserialize, Serialize};
 
 use crate::app::session::Session;
 use crate::app::session::editor::keep_start_inside;
 use crate::app::session::explore::{STARTS, WalkQuantity, longest_wait};
-use crate::app::session::map::{NO_FIELDS, ground, over};
+use crate::app::session::map::{LOAD_POWER, NO_FIELDS, ground, over};
 use crate::app::session::measured::{Overlay, file_name};
+use crate::app::task::{Each, Question, as_text};
 use crate::numeric::{elementary, short};
 use crate::output::{
     Argument, Cut, Figure, Format, RMS, RunPanel, Sheet, Sink, View, csv, picture_arguments, words_of,
 };
 use crate::scene::{FieldPath, Scene, Start, SweepAxis, arguments};
 use crate::study::Signal;
-use crate::system::files::canonical;
+use crate::system::files;
 
 use super::drawing::draw;
-use super::quoted;
+use super::{WriteResult, quoted};
 
 /// What a figure shows, with the options of its command.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Subject {
     /// Panels of a run, over a range of times in s or over all times.
     Run(Option<(f64, f64)>, Vec<RunPanel>),
@@ -33,7 +35,7 @@ pub enum Subject {
     /// A record over the run or over the force curve.
     Measured(Overlay),
     /// A quantity over two fields, or over one that is walked up and down.
-    Sweep(Vec<SweepAxis>, &'static str, View),
+    Sweep(Vec<SweepAxis>, String, View),
     /// Stroboscopic displacements over a field that is walked up and down.
     Diagram(SweepAxis),
     /// Stroboscopic states of one run.
@@ -44,20 +46,50 @@ pub enum Subject {
     Spectrum(Signal, Option<f64>),
 }
 
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FigureOrder {
     /// The scene's name on the command line.
     pub(super) origin: String,
     /// Changes of that scene, as values of `--set`.
     pub(super) settings: Vec<String>,
     /// The changed scene, with the first value of each swept field.
+    #[serde(with = "as_text")]
     pub(super) scene: Scene,
+    #[serde(with = "as_text")]
     pub(super) subject: Subject,
     pub(super) place: Place,
+    read: ReadFiles,
+}
+
+/// Files that are read for a figure; to a worker of a page they travel with their bytes.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(from = "Vec<(PathBuf, Vec<u8>)>", into = "Vec<(PathBuf, Vec<u8>)>")]
+struct ReadFiles(Vec<PathBuf>);
+
+impl From<ReadFiles> for Vec<(PathBuf, Vec<u8>)> {
+    fn from(ReadFiles(paths): ReadFiles) -> Self {
+        paths.into_iter().filter_map(|path| Some((path.clone(), files::bytes(&path).ok()?))).collect()
+    }
+}
+
+impl From<Vec<(PathBuf, Vec<u8>)>> for ReadFiles {
+    fn from(read: Vec<(PathBuf, Vec<u8>)>) -> Self {
+        read.iter().for_each(|(path, bytes)| files::keep_written(path, bytes));
+        Self(read.into_iter().map(|file| file.0).collect())
+    }
+}
+
+impl Question for FigureOrder {
+    const NAME: &'static str = "figure";
+    type Part = WriteResult;
+
+    fn answer(&self, cancel: &AtomicBool, _: Each<WriteResult>) -> Option<WriteResult> {
+        self.save(cancel).map_err(|error| error.to_string()).transpose()
+    }
 }
 
 /// Output files and layout of a figure, already checked.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Place {
     pub path: PathBuf,
     pub format: Format,
@@ -76,9 +108,11 @@ impl Subject {
         Ok(match walks.quantity {
             WalkQuantity::Strobes => Self::Diagram(axis),
             WalkQuantity::LoadPower if session.model().has_transducer() => {
-                Self::Sweep(vec![axis], "mean_load_power_w", View::Top)
+                Self::Sweep(vec![axis], LOAD_POWER.to_owned(), View::Top)
             }
-            WalkQuantity::RmsVelocity | WalkQuantity::LoadPower => Self::Sweep(vec![axis], RMS, View::Top),
+            WalkQuantity::RmsVelocity | WalkQuantity::LoadPower => {
+                Self::Sweep(vec![axis], RMS.to_owned(), View::Top)
+            }
         })
     }
 
@@ -95,7 +129,7 @@ impl Subject {
             }
             false => View::Top,
         };
-        Ok(Self::Sweep(axes, quantity, view))
+        Ok(Self::Sweep(axes, quantity.to_owned(), view))
     }
 
     /// The flexures with the mass at `x` in m.
@@ -162,7 +196,7 @@ impl Subject {
                 if over.is_force() { "curve" } else { "simulate" }
             }
             Self::Sweep(_, quantity, view) => {
-                options.push(Argument::of("quantity", *quantity));
+                options.push(Argument::of("quantity", quantity));
                 let of = |cut: &Cut| Argument::of("cut", format!("{}={}", cut.column, cut.value));
                 match view {
                     View::Top => {}
@@ -220,16 +254,18 @@ impl FigureOrder {
             return Err(fault.to_owned());
         }
         let mut read = session.editor.document().named_files();
+        read.extend(session.editor.path().map(Path::to_owned));
         if let Subject::Measured(over) = &subject {
             read.push(over.record.path.clone());
         }
-        let read: Vec<PathBuf> = read.iter().filter_map(|path| canonical(path)).collect();
-        let is_read = |path: &&PathBuf| canonical(path).is_some_and(|path| read.contains(&path));
+        let there: Vec<PathBuf> = read.iter().filter_map(|path| files::canonical(path)).collect();
+        let is_read = |path: &&PathBuf| files::canonical(path).is_some_and(|path| there.contains(&path));
         if let Some(path) = place.data.iter().chain([&place.path]).find(is_read) {
             return Err(format!("{} is read by this scene: give the figure another name.", path.display()));
         }
         let (from, scene) = subject.scenes(session);
-        Ok(Self { origin, settings: arguments(&from, &scene), scene, subject, place })
+        let (settings, read) = (arguments(&from, &scene), ReadFiles(read));
+        Ok(Self { origin, settings, scene, subject, place, read })
     }
 
     /// The command and all its arguments, in the order of `--help`.

@@ -1,19 +1,26 @@
 //! Results of the window as CSV, PNG, figures and command lines.
 
+#[cfg(any(test, target_arch = "wasm32"))]
+pub mod asked;
 mod drawing;
 pub mod figure;
 
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use anyhow::Result;
 use eframe::egui::ColorImage;
+use serde::{Deserialize, Serialize};
 
 use crate::app::session::Session;
 use crate::app::session::editor::keep_start_inside;
 use crate::app::session::map::over;
+use crate::app::session::measured::file_name;
 use crate::app::session::player::Player;
+use crate::app::session::prepared::SharedModel;
+use crate::app::task::{Each, Question};
 use crate::dynamics::Model;
-use crate::output::csv;
+use crate::output::{csv, write_file};
 use crate::scene::{FieldPath, Scene, arguments};
 use crate::study::{
     CURVE_POINTS, Keep, OutsideCurve, Sampling, continued_scene, curve, default_positions, events_table,
@@ -24,6 +31,32 @@ use crate::study::{
 pub fn motion_csv(player: &Player) -> String {
     let samples: Vec<_> = player.watch().samples().iter().copied().collect();
     csv(&samples_table(&samples, |sample| player.watch().model_at(sample.t).output(sample)))
+}
+
+/// The notice about a file that was written, or why it was not written.
+pub type WriteResult = Result<String, String>;
+
+/// The run of a scene from start to end, to be written to a file as `simulate` writes it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct RunQuestion {
+    #[serde(with = "crate::app::task::as_text")]
+    pub scene: Scene,
+    pub model: SharedModel,
+    pub path: PathBuf,
+}
+
+impl Question for RunQuestion {
+    const NAME: &'static str = "run";
+    type Part = WriteResult;
+
+    fn answer(&self, cancel: &AtomicBool, _: Each<WriteResult>) -> Option<WriteResult> {
+        let text = run_csv(&self.scene, &self.model, cancel).map_err(|error| error.to_string());
+        text.transpose().map(|text| write_text(&self.path, &text?))
+    }
+}
+
+pub fn write_text(path: &Path, text: &str) -> WriteResult {
+    write_file(path, text.as_bytes()).map(|()| format!("Saved {}", file_name(path)))
 }
 
 /// The run of a scene from start to end, as `simulate` writes it. Returns `None` if cancelled.

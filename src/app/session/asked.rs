@@ -1,4 +1,4 @@
-//! All questions by their names, as they travel to a worker as messages, and their answers as messages.
+//! The questions of a session by their names, as they travel to a worker as messages, and their answers as messages.
 
 use std::sync::atomic::AtomicBool;
 
@@ -32,7 +32,12 @@ pub fn answer(name: &str, question: &[u8], cancel: &AtomicBool, each: Each<Vec<u
     }
 }
 
-fn answered<Q: Question>(question: &[u8], cancel: &AtomicBool, each: Each<Vec<u8>>) -> Result<(), String> {
+/// Answers a question in a message likewise.
+pub fn answered<Q: Question>(
+    question: &[u8],
+    cancel: &AtomicBool,
+    each: Each<Vec<u8>>,
+) -> Result<(), String> {
     // a part that cannot be written is left out
     let send = |part: Q::Part| to_message(&part).map_or((), each);
     if let Some(last) = from_message::<Q>(question)?.answer(cancel, &send) {

@@ -15,8 +15,8 @@ use crate::dynamics::Model;
 use crate::output::{Chart, basins_chart, suited_unit};
 use crate::scene::{Axis, FieldPath, Scene, Start, SweepAxis};
 use crate::study::{
-    Answer, Basins, EvenRange, Family, NoBasins, Signal, Spectrum, SpectrumOptions, Starts, Task, Visit,
-    followed_until, spectrum, up_and_down,
+    Answer, Basins, Direction, EvenRange, Family, NoBasins, Signal, Spectrum, SpectrumOptions, Starts, Task,
+    Visit, followed_until, spectrum, up_and_down,
 };
 
 #[derive(Default)]
@@ -97,6 +97,8 @@ pub struct WalkQuestion {
     /// The scene, from rest, with the value of the field that it has.
     ground: Uncompared<Prepared>,
     values: Uncompared<Vec<f64>>,
+    /// The strides and directions of the walks, the coarse ones first.
+    walks: Uncompared<Vec<(usize, Direction)>>,
 }
 
 impl Question for WalkQuestion {
@@ -110,11 +112,23 @@ impl Question for WalkQuestion {
         let family = Family::new(of, &of.files, mechanism, &self.axis.field);
         for stride in [COARSE, 1] {
             let values: Vec<f64> = self.values.0.iter().step_by(stride).copied().collect();
-            if !up_and_down(&family, &values, &pool, &task, &|visit| each((stride, visit))) {
+            let walks = self.walks.0.iter().filter(|walk| walk.0 == stride);
+            let directions: Vec<Direction> = walks.map(|walk| walk.1).collect();
+            if !up_and_down(&family, &values, &directions, &pool, &task, &|visit| each((stride, visit))) {
                 break;
             }
         }
         None
+    }
+
+    #[cfg(any(test, target_arch = "wasm32"))]
+    fn divide(&self, count: usize) -> Vec<Self> {
+        let count = count.min(self.walks.0.len());
+        let part = |first: usize| {
+            let walks = self.walks.0.iter().skip(first).step_by(count).copied().collect();
+            Self { walks: Uncompared(walks), ..self.clone() }
+        };
+        (0..count).map(part).collect()
     }
 }
 
@@ -123,7 +137,7 @@ pub struct Walks {
     /// The axis that the user has chosen; `None` for an axis around the present value.
     pub chosen: Option<SweepAxis>,
     pub quantity: WalkQuantity,
-    /// The runs as they come, each with the stride of its walk; the coarse walks come first.
+    /// The runs as they come, each with the stride of its walk.
     pub found: Background<WalkQuestion, (usize, Visit)>,
     pub problem: Option<String>,
 }
@@ -165,7 +179,8 @@ impl Session {
         let is_set = FieldPath::new(&axis.field).set(&mut scene, axis.from);
         debug_assert!(is_set, "the axis is over a field of the scene");
         let (ground, values) = (Uncompared(self.prepared(ground)), Uncompared(values));
-        Ok(WalkQuestion { scene, axis, ground, values })
+        let walks = [COARSE, 1].into_iter().flat_map(|stride| Direction::ALL.map(|way| (stride, way)));
+        Ok(WalkQuestion { scene, axis, ground, values, walks: Uncompared(walks.collect()) })
     }
 
     /// Sets the field of the walks to a value, as part of a gesture.

@@ -16,7 +16,7 @@ pub mod map;
 pub mod measured;
 pub mod pins;
 pub mod player;
-mod prepared;
+pub mod prepared;
 pub mod sliders;
 
 use std::sync::Arc;
@@ -64,7 +64,7 @@ pub struct Card {
 pub struct Session {
     pub editor: Editor,
     /// The model that moves: that of the scene, or of its last version that could be run.
-    model: SharedModel,
+    pub(in crate::app) model: SharedModel,
     /// Why the present scene cannot be run.
     fault: Option<String>,
     pub player: Player,

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use eframe::egui::{self, Button, ComboBox, Grid, Key, RichText, TextEdit, Ui};
 
+use crate::app::export::WriteResult;
 use crate::app::export::figure::{FigureOrder, Place, Subject, round_times};
 use crate::app::session::Session;
 use crate::app::task::Background;
@@ -13,7 +14,6 @@ use crate::output::{Format, RunPanel, Sheet, SheetText};
 use crate::system::files;
 
 use super::Window;
-use super::messages::WriteResult;
 use super::wanted::{Wanted, path_fault};
 
 /// Share of the traces' time window below which the whole run is offered instead.
@@ -43,7 +43,7 @@ pub struct Figures {
     /// Where the mass was when the dialog was opened, in m.
     x: f64,
     had_focus: bool,
-    job: Background<(), WriteResult>,
+    job: Background<FigureOrder, WriteResult>,
 }
 
 impl Figures {
@@ -349,9 +349,7 @@ impl Window {
             }
             (Action::Save, Ok(order)) => {
                 self.figures.problem = None;
-                self.figures.job.ask_job((), &self.wake, move |(), cancel, _| {
-                    order.save(cancel).map_err(|error| error.to_string()).transpose()
-                });
+                self.figures.job.ask(order, &self.wake);
             }
         }
     }

@@ -2,6 +2,7 @@
 
 use eframe::egui::{self, Align2, Area, Id, Order, Ui, accesskit::Live, vec2};
 
+use crate::app::export::WriteResult;
 use crate::app::session::player::Reached;
 use crate::app::ui::widgets::{close_ui, dialog_ui, dialog_width, prose_ui};
 
@@ -11,9 +12,6 @@ pub(super) const CANNOT_OPEN: &str = "This scene cannot be opened";
 const SHOWN_FOR: f64 = 4.0;
 /// Distance in points of a notice from the lower edge of the window.
 const ABOVE: f32 = 72.0;
-
-/// The notice about a file that was written, or why it was not written.
-pub(super) type WriteResult = Result<String, String>;
 
 /// A notice, and the time in s since which it has been shown.
 #[derive(Debug)]

@@ -6,6 +6,7 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 
 use egui_tiles::Tree;
 
+use crate::app::export::{RunQuestion, WriteResult};
 use crate::app::panels::hint;
 use crate::app::panels::status_line::Announcer;
 use crate::app::session::editor::Editor;
@@ -24,7 +25,7 @@ use super::leave::Next;
 use super::lessons::CANNOT_OPEN_LESSON;
 use super::lessons::{self, Lessons};
 use super::measured_dialog::{MeasuredDialog, is_measured};
-use super::messages::{CANNOT_OPEN, Messages, WriteResult};
+use super::messages::{CANNOT_OPEN, Messages};
 use super::pace::Pace;
 use super::wanted::{Chosen, PathDialog};
 
@@ -61,7 +62,7 @@ pub struct Window {
     /// Results of the files that other threads write.
     pub(super) written: (Sender<WriteResult>, Receiver<WriteResult>),
     /// A whole run that is computed and written in the background.
-    pub(super) run: Background<(), WriteResult>,
+    pub(super) run: Background<RunQuestion, WriteResult>,
     pub(super) window_size: WindowSize,
     pub(super) shown_title: String,
     pub(super) file_dialog: Background<(), Chosen>,

@@ -5,13 +5,12 @@ use std::sync::Arc;
 
 use eframe::egui;
 
-use crate::app::export;
+use crate::app::export::{self, RunQuestion, write_text};
 use crate::app::session::measured::file_name;
 use crate::output::write_file;
 
 use super::Window;
 use super::leave::Next;
-use super::messages::WriteResult;
 
 impl Window {
     /// Writes the scene. Returns what was to be done once it is saved.
@@ -58,14 +57,11 @@ impl Window {
 
     /// Computes the run of the scene from its start and writes it as CSV, in the background.
     pub fn write_run(&mut self, path: PathBuf) {
-        let (scene, model) = (self.session.scene().clone(), self.session.model().clone());
         if let Some(fault) = self.session.fault() {
             return self.messages.alert("The run was not written", fault);
         }
-        self.run.ask_job((), &self.wake, move |(), cancel, _| {
-            let text = export::run_csv(&scene, &model, cancel).map_err(|error| error.to_string());
-            text.transpose().map(|text| text.and_then(|text| write_text(&path, &text)))
-        });
+        let (scene, model) = (self.session.scene().clone(), self.session.model.clone());
+        self.run.ask(RunQuestion { scene, model, path }, &self.wake);
         self.messages.notify("Computing the run");
     }
 
@@ -100,8 +96,4 @@ impl Window {
             wake();
         });
     }
-}
-
-fn write_text(path: &Path, text: &str) -> WriteResult {
-    write_file(path, text.as_bytes()).map(|()| format!("Saved {}", file_name(path)))
 }

@@ -180,11 +180,12 @@ pub struct Visit {
     pub strobes: Vec<f64>,
 }
 
-/// Walks a family over `values` (ascending) upwards and downwards at the same time, and passes on each run as
-/// soon as it has ended. Values without a model are skipped. False if cancelled.
+/// Walks a family over `values` (ascending) in each of these directions at the same time, and passes on each
+/// run as soon as it has ended. Values without a model are skipped. False if cancelled.
 pub fn up_and_down(
     family: &Family,
     values: &[f64],
+    directions: &[Direction],
     pool: &Pool,
     task: &Task,
     each: &(dyn Fn(Visit) + Sync),
@@ -192,7 +193,7 @@ pub fn up_and_down(
     let request =
         Request { section: Some(0.0), carry: true, cancel: Some(task.cancel), ..Request::default() };
     let walk = |_: &mut (), number: usize| {
-        let direction = [Direction::Up, Direction::Down][number];
+        let direction = directions[number];
         let mut values: Vec<f64> = values.to_vec();
         if direction == Direction::Down {
             values.reverse();
@@ -208,7 +209,7 @@ pub fn up_and_down(
         });
         if task.is_cancelled() { Err(()) } else { Ok(()) }
     };
-    pool.map(2, || (), walk).is_ok()
+    pool.map(directions.len(), || (), walk).is_ok()
 }
 
 /// Runs the family at one value after the other, each run from the final state of the one before, until

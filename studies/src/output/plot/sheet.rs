@@ -1,12 +1,14 @@
 //! Sheet of paper that a picture is laid out for: its width, and the size that its text has there.
 
+use serde::{Deserialize, Serialize};
+
 use super::style::{SIZE, TICK};
 
 /// Length of a typographic point in mm.
 const MM_A_POINT: f64 = 25.4 / 72.0;
 
 /// A picture of a given width on paper.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Sheet {
     /// Width in mm.
     pub width_mm: f64,

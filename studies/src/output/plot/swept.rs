@@ -1,5 +1,7 @@
 //! Rows of a sweep in the form that its pictures need.
 
+use serde::{Deserialize, Serialize};
+
 use super::axis::{PlotAxis, Ranges};
 use super::cells::{Cell, Cells, Colours};
 use super::drawn::{Drawn, as_numbers};
@@ -31,7 +33,7 @@ impl Overlay {
 }
 
 /// How a sweep over two fields is shown.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub enum View {
     /// As a map with the quantity as colour, or as one line per value of a field with few values.
     #[default]
@@ -43,7 +45,7 @@ pub enum View {
 }
 
 /// A cut through a map at a value of one of its fields.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Cut {
     /// Column of that field.
     pub column: String,
