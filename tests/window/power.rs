@@ -82,13 +82,13 @@ fn the_scene_about_power_speaks_of_power() {
     // the load is among the first controls, and the power in the card
     harness.get_by_role_and_label(Role::Slider, "load");
     assert!(harness.query_by_role_and_label(Role::Slider, "coupling").is_none());
-    harness.get_by_label("power into the load");
+    harness.get_by_label("load power");
     harness.get_by_label("0.326");
     assert_eq!(session.map.quantity().name, "mean_load_power_w");
     // nothing of this where there is no transducer
     let harness = window("paper", WIDE);
     assert!(harness.query_by_role_and_label(Role::Slider, "load").is_none());
-    assert!(harness.query_by_label("power into the load").is_none());
+    assert!(harness.query_by_label("load power").is_none());
     let session = &harness.state().session;
     assert_eq!(session.map.quantity().name, "rms_velocity_m_per_s");
     assert!(!session.sentence().text.contains("into the load"));

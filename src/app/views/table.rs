@@ -297,7 +297,7 @@ fn number_rows(columns: &[Column], now: usize, with_threshold: bool) -> Vec<Row>
         let all = columns.iter().filter_map(|column| watt(column.settled()?));
         let (factor, unit) = power_unit(all.fold(0.0, f64::max));
         let text = |_: &Card, run: &Summary| watt(run).map(|watt| three(watt * factor));
-        rows.push(row("power into the load", unit, &text, &|run| Some(watt(run)? * factor), &decimals_for));
+        rows.push(row("load power", unit, &text, &|run| Some(watt(run)? * factor), &decimals_for));
     }
     if with_threshold {
         let found = |column: &Column| {
