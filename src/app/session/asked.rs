@@ -1,4 +1,4 @@
-//! The questions of a session by their names, as they travel to a worker as messages, and their answers as messages.
+//! The questions of a session by their names, as they travel to a worker as messages, with their answers.
 
 use std::sync::atomic::AtomicBool;
 
