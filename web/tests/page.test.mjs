@@ -12,6 +12,9 @@ import { fileURLToPath } from "node:url";
 const { chromium, firefox } = await import(join(process.env.PLAYWRIGHT, "node_modules/playwright-core/index.mjs"));
 const executablePath = process.env.BROWSER ?? "/usr/bin/chromium";
 const inFirefox = executablePath.includes("firefox");
+// the driver of Firefox reports neither
+const noDownloads = inFirefox && "its driver reports no downloads";
+const noTouches = inFirefox && "its driver has no touches";
 const dist = fileURLToPath(new URL("../dist/", import.meta.url));
 const pictures = process.env.PICTURES;
 const types = { ".html": "text/html", ".js": "text/javascript", ".wasm": "application/wasm", ".png": "image/png" };
@@ -68,6 +71,9 @@ const says = (page, words) => page.waitForFunction(
   (words) => document.querySelector("#status").textContent.includes(words), words, { timeout: 60_000 });
 const addressHas = (page, words) => page.waitForFunction(
   (words) => location.href.includes(words), words, { timeout: 30_000 });
+
+// The address as the page has it: what a driver remembers of it can be old.
+const place = (page) => page.evaluate(() => location.href);
 
 // Drags the slider of the amplitude, at this height, over these places.
 async function drag(page, [from, ...to], y = 133) {
@@ -136,7 +142,7 @@ test("a dragged slider is in the address, and the address opens the same scene e
   await other.context.close();
 });
 
-test("a finger drags a slider", { skip: inFirefox && "its driver has no touches" }, async () => {
+test("a finger drags a slider", { skip: noTouches }, async () => {
   const { context, page } = await open("?scene=paper", { viewport: { width: 1024, height: 768 }, hasTouch: true });
   await says(page, "cross");
   const touch = await context.newCDPSession(page);
@@ -160,11 +166,13 @@ test("a dropped scene opens, and a key writes it as a download", async () => {
   await drop(page, [["dropped.ron", text]]);
   await page.waitForFunction(() => document.title.startsWith("Dropped here"), null, { timeout: 30_000 });
   await drag(page, [104, 98, 92]);
-  const download = page.waitForEvent("download", { timeout: 30_000 });
-  await page.keyboard.press("Control+s");
-  const saved = await download;
-  assert.equal(saved.suggestedFilename(), "dropped.ron");
-  assert.match(readFileSync(await saved.path(), "utf8"), /Dropped here/);
+  if (!noDownloads) {
+    const download = page.waitForEvent("download", { timeout: 30_000 });
+    await page.keyboard.press("Control+s");
+    const saved = await download;
+    assert.equal(saved.suggestedFilename(), "dropped.ron");
+    assert.match(readFileSync(await saved.path(), "utf8"), /Dropped here/);
+  }
   assert.deepEqual(problems, []);
   await context.close();
 });
@@ -197,12 +205,15 @@ test("a map is divided among workers, and frames go on beside it", async () => {
     const hired = page.workers().length;
     assert.ok(inFirefox || (least <= hired && hired <= most), `${hired} workers`);
     await picture(page, `map-${processors}`);
-    const file = await fromMenu(page, SAVE_THE_MAP);
-    assert.equal(file.suggestedFilename(), "scene-map.csv");
-    tables.push(readFileSync(await file.path(), "utf8"));
+    if (!noDownloads) {
+      const file = await fromMenu(page, SAVE_THE_MAP);
+      assert.equal(file.suggestedFilename(), "scene-map.csv");
+      tables.push(readFileSync(await file.path(), "utf8"));
+    }
     assert.deepEqual(problems, []);
     await context.close();
   }
+  if (noDownloads) return;
   assert.ok(tables[0].split("\n").length > 2000);
   assert.equal(tables[0], tables[1]);
 });
@@ -211,27 +222,27 @@ test("the back button undoes a change, and the button forward redoes it", async 
   const { context, page } = await open("?scene=paper");
   await says(page, "cross");
   await addressHas(page, "?scene=paper");
-  const first = page.url();
+  const first = await place(page);
   await drag(page, [83, 90, 96]);
   await addressHas(page, "?scene=paper#");
-  const second = page.url();
+  const second = await place(page);
   await drag(page, [96, 102, 108]);
   await page.waitForFunction((second) => location.href !== second, second);
-  const third = page.url();
-  await page.goBack();
+  const third = await place(page);
+  await page.evaluate(() => history.back());
   await page.waitForTimeout(1_500);
-  assert.equal(page.url(), second);
-  await page.goBack();
+  assert.equal(await place(page), second);
+  await page.evaluate(() => history.back());
   await page.waitForTimeout(1_500);
-  assert.equal(page.url(), first);
+  assert.equal(await place(page), first);
   // no question whether to save, and nothing is undone any more
   await page.keyboard.press("Control+z");
   await page.waitForTimeout(1_500);
-  assert.equal(page.url(), first);
-  await page.goForward();
-  await page.goForward();
+  assert.equal(await place(page), first);
+  await page.evaluate(() => history.forward());
+  await page.evaluate(() => history.forward());
   await page.waitForTimeout(1_500);
-  assert.equal(page.url(), third);
+  assert.equal(await place(page), third);
   await page.keyboard.press("Control+z");
   await page.waitForFunction((second) => location.href === second, second);
   await context.close();
@@ -246,7 +257,7 @@ test("the back button opens the scene before", async () => {
     dispatchEvent(new PopStateEvent("popstate"));
   });
   await page.waitForFunction(() => /^Power from/.test(document.title), null, { timeout: 30_000 });
-  await page.goBack();
+  await page.evaluate(() => history.back());
   await page.waitForFunction(() => /Prototype/.test(document.title), null, { timeout: 30_000 });
   await context.close();
 });
@@ -301,7 +312,7 @@ test("what others append to a link changes nothing", async () => {
   await context.close();
 });
 
-test("a worker computes the whole run and hands over its file", async () => {
+test("a worker computes the whole run and hands over its file", { skip: noDownloads }, async () => {
   const { context, page, problems } = await open("?scene=paper");
   await says(page, "cross");
   const file = await fromMenu(page, SAVE_THE_RUN);
@@ -314,7 +325,7 @@ test("a worker computes the whole run and hands over its file", async () => {
   await context.close();
 });
 
-test("a figure is saved as a download", async () => {
+test("a figure is saved as a download", { skip: noDownloads }, async () => {
   const { context, page, problems } = await open("?scene=paper");
   await says(page, "cross");
   await page.mouse.move(640, 450);
@@ -327,7 +338,7 @@ test("a figure is saved as a download", async () => {
   await context.close();
 });
 
-test("an export does not replace the table of the scene", async () => {
+test("an export does not replace the table of the scene", { skip: noDownloads }, async () => {
   const { context, page, problems } = await open();
   await says(page, "well");
   const table = "x_m,force_n\n" + [...Array(41).keys()].map((i) => {
