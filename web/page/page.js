@@ -34,8 +34,10 @@ async function load(address) {
 // Workers that answer questions, one question at a time each. A question that is cancelled ends its worker, which
 // cannot be told while it computes; another one takes its place.
 const workers = { module: null, idle: [], busy: new Map(), waiting: [], next: 1 };
-// at least two, so that a long study does not keep what the motion settles to waiting
-const most = Math.max(2, (navigator.hardwareConcurrency || 2) - 1);
+// Into how many questions a long one is divided: all processors but two. Two workers more are for the questions that
+// come meanwhile, such as what the motion settles to.
+const share = Math.max(1, (navigator.hardwareConcurrency || 2) - 2);
+const most = share + 2;
 
 function hire() {
   const worker = new Worker(new URL("worker.js", import.meta.url), { type: "module" });
@@ -84,8 +86,7 @@ globalThis.interwell = {
     workers.busy.delete(id);
     work();
   },
-  // Into how many questions a long one is divided: one worker is left for what comes meanwhile.
-  share: () => most - 1,
+  share: () => share,
   download(name, bytes) {
     const link = document.createElement("a");
     link.href = URL.createObjectURL(new Blob([bytes]));
@@ -96,7 +97,7 @@ globalThis.interwell = {
   // The address, the title and the status follow the scene; a change of it is a step of the history. An empty link
   // is that of a scene which has none, without a link the address stays.
   show(link, title, status, isStep) {
-    hasLink = link !== "";
+    if (link !== undefined) hasLink = link !== "";
     if (link !== undefined && link !== asked()) {
       history[isStep ? "pushState" : "replaceState"](null, "", link || location.pathname);
     }

@@ -76,8 +76,8 @@ impl Page {
         }
         self.looked_at = now;
         let (title, spoken) = (self.window.title(), self.window.spoken());
-        // the address that a message may be about stays
-        if self.window.message().is_some() {
+        // the address that a message or a question may be about stays
+        if self.window.waits_for_answer() {
             return show(None, title, spoken, false);
         }
         let link = match self.window.lesson() {

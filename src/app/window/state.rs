@@ -194,7 +194,7 @@ impl Window {
     }
 
     /// Whether a dialog is open, so that keys do not act on the window behind it.
-    pub(super) fn waits_for_answer(&self) -> bool {
+    pub fn waits_for_answer(&self) -> bool {
         self.message().is_some()
             || self.pending.is_some()
             || self.over_comments.is_some()

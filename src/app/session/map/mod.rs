@@ -93,7 +93,8 @@ impl Question for CellsQuestion {
             let missing = levels.map(|cells| cells.iter().skip(first).step_by(count).copied().collect());
             Self { missing: Uncompared(missing.collect()), ..self.clone() }
         };
-        (0..count).map(part).collect()
+        let has_cells = |part: &Self| part.missing.0.iter().any(|cells| !cells.is_empty());
+        (0..count).map(part).filter(has_cells).collect()
     }
 }
 
