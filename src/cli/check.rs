@@ -50,7 +50,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
 fn link(spec: &str, common: &Common) -> Result<String, Failure> {
     let (document, _) = load(spec, common)?;
     let link = document.link().map_err(|error| Failure::argument(format!("{}: {error}", document.name)))?;
-    Ok(page_address() + &link + "\n")
+    Ok(page_address().map_err(Failure::argument)? + &link + "\n")
 }
 
 fn report(spec: &str, common: &Common) -> Result<String, Failure> {

@@ -222,4 +222,19 @@ fn a_link_begins_with_the_address_of_a_page() {
         let again = headless("check --link").arg(link.trim()).env_remove("INTERWELL_PAGE").output().unwrap();
         assert!(link.ends_with(&*String::from_utf8(again.stdout).unwrap()), "{link}");
     }
+    for nonsense in ["nonsense", "http://a b", "javascript:alert(1)", "?scene=paper"] {
+        let output = headless("check paper --link").env("INTERWELL_PAGE", nonsense).output().unwrap();
+        let error = String::from_utf8(output.stderr).unwrap();
+        assert!(output.status.code() == Some(2) && output.stdout.is_empty(), "{nonsense}");
+        assert!(error.contains(&format!("INTERWELL_PAGE = {nonsense:?}")), "{error}");
+    }
+}
+
+#[test]
+fn a_link_keeps_its_scene_where_others_append_to_it() {
+    let of = |spec: &str| headless("check --link").arg(spec).output().unwrap().stdout;
+    let plain = of("?scene=paper");
+    assert!(!plain.is_empty());
+    assert_eq!(of("https://example.org/?scene=paper&from=mail"), plain);
+    assert_eq!(of("?from=mail&scene=paper"), plain);
 }

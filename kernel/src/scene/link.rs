@@ -85,8 +85,10 @@ pub fn linked_lesson(text: &str) -> Option<&str> {
 fn query(text: &str) -> Option<(&str, &str, &str)> {
     let (_, query) = text.trim().split_once('?')?;
     let (query, payload) = query.split_once('#').unwrap_or((query, ""));
-    let (kind, name) = query.split_once('=')?;
-    ["scene", "lesson"].contains(&kind).then_some((kind, name, payload))
+    // others may append parameters of their own
+    let mut parameters = query.split('&').filter_map(|parameter| parameter.split_once('='));
+    let (kind, name) = parameters.find(|(kind, _)| ["scene", "lesson"].contains(kind))?;
+    Some((kind, name, payload))
 }
 
 impl Document {

@@ -32,13 +32,22 @@ pub use part::{Opened, Part, PartError};
 pub use sink::{OpenError, Sink, is_regular, same_target, write_file};
 
 /// The address that stands before a link: in a web page that of the page, elsewhere what the environment
-/// variable `INTERWELL_PAGE` has, up to a `?` or `#`.
-pub fn page_address() -> String {
+/// variable `INTERWELL_PAGE` has, up to a `?` or `#`. The error is a sentence.
+pub fn page_address() -> Result<String, String> {
     #[cfg(target_arch = "wasm32")]
-    return page::address().to_owned();
+    return Ok(page::address().to_owned());
     #[cfg(not(target_arch = "wasm32"))]
     {
-        let address = std::env::var("INTERWELL_PAGE").unwrap_or_default();
-        address.split(['?', '#']).next().unwrap_or_default().to_owned()
+        let set = std::env::var_os("INTERWELL_PAGE").unwrap_or_default();
+        let set = set.to_string_lossy();
+        let address = set.split(['?', '#']).next().unwrap_or_default();
+        let starts = ["https://", "http://", "file:///"].iter().any(|start| address.starts_with(start));
+        if !set.is_empty() && (!starts || address.contains(|c: char| c.is_whitespace() || c.is_control())) {
+            return Err(format!(
+                "INTERWELL_PAGE = {set:?} is not the address of a page: give one such as \
+                 https://example.org/class/"
+            ));
+        }
+        Ok(address.to_owned())
     }
 }

@@ -85,8 +85,9 @@ impl Window {
                 end => self.messages.notify(format!("The run ends at {end:.2} s, which is behind")),
             },
             Command::Speed(index) => {
-                let speed = SPEEDS.get(index).map(|speed| speed.0);
-                self.session.player.speed = speed.unwrap_or(self.session.player.speed);
+                if let Some((speed, _)) = SPEEDS.get(index) {
+                    self.session.player.speed = *speed;
+                }
             }
             Command::Arrange(layout) => {
                 self.show_arrangement(Arrangement::Layout(layout));
@@ -149,11 +150,10 @@ impl Window {
     }
 
     fn copy_link(&mut self, ctx: &egui::Context) {
-        match self.session.editor.document().link() {
-            Ok(link) => {
-                self.messages.copy(ctx, page_address() + &link, "a link that opens this scene");
-            }
-            Err(error) => self.messages.alert("This scene has no link", error.to_string()),
+        let link = self.session.editor.document().link().map_err(|error| error.to_string());
+        match link.and_then(|link| Ok(page_address()? + &link)) {
+            Ok(link) => self.messages.copy(ctx, link, "a link that opens this scene"),
+            Err(error) => self.messages.alert("This scene has no link", error),
         }
     }
 
