@@ -246,16 +246,17 @@ def coil() -> iw.Scene:
 
 
 def test_a_sweep_with_a_coil_carries_its_state_up_and_down() -> None:
-    scene = coil().set(stops="None")
-    amplitudes = np.linspace(0.0, 2.0, 21)
+    scene = coil().set({"stops": "None", "excitation.frequency_hz": 12})
+    amplitudes = np.arange(0.2, 2.3, 0.2)
     up, down = (
         scene.sweep({"excitation.amplitude_g": amplitudes}, carry=direction)["rms_velocity_m_per_s"]
         for direction in ("up", "down")
     )
-    # Up to 1 g both directions end on the same motion. From 1.4 to 1.7 g the motion is irregular, so that the state
-    # that is carried shows in what a window of it has; at which of the amplitudes most depends on rounding.
-    np.testing.assert_allclose(up[:11], down[:11], rtol=1e-8, atol=1e-12)
-    assert np.max(np.abs(down[14:18] / up[14:18] - 1.0)) > 0.01
+    # All of these motions repeat. Up to 1.2 g and from 1.6 g on both directions end on the same one; at 1.4 g the way
+    # up is still intrawell, the way down still interwell.
+    same = np.arange(len(amplitudes)) != 6
+    np.testing.assert_allclose(up[same], down[same], rtol=1e-6)
+    assert down[6] > 2.5 * up[6]
 
 
 BAD = [
