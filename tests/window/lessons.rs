@@ -340,7 +340,7 @@ fn progress_is_kept_and_answers_are_text() {
     let records: Records = ron::from_str(&kept).unwrap();
     assert_eq!(records, harness.state().records());
     let text = answers_text(&records).unwrap();
-    for part in ["A stop that helps", "I expected: rattles", "It did: does not move", "Why: pressed"] {
+    for part in ["A stop that helps", "I expected: rattles", "What holds: does not move", "Why: pressed"] {
         assert!(text.contains(part), "{text}");
     }
     let mut again = window("first-look", WIDE);

@@ -6,7 +6,7 @@ use crate::app::session::Session;
 use crate::app::ui::style::{BODY, strong_family};
 use crate::app::ui::widgets::{fitting, tell};
 use crate::app::words::numbers::unbroken;
-use crate::app::words::status::as_set;
+use crate::app::words::status::{as_set, in_unit};
 use crate::dynamics::EventKind;
 
 /// Distance in mm by which the stops have to be moved before the trade-off counts as tried.
@@ -83,7 +83,8 @@ impl Hint {
     /// Heading and text of the line: what happened, and what to try. Statements about the motion concern what
     /// the present scene settles to; while that is not known, there are none.
     pub fn text(&self, session: &Session) -> (&'static str, String) {
-        let (opened, crosses) = (as_set(self.opened_g), session.crosses());
+        let opened = in_unit(session.scene(), as_set, self.opened_g);
+        let crosses = session.crosses();
         let (as_opened, fair) = (self.is_as_opened(session), self.is_fair_comparison(session));
         let wait = "Wait for it, or press X to go there.";
         let outward = "Then move the stops outward: how far does that help?";
@@ -99,14 +100,14 @@ impl Hint {
                     _ => ("Now with stops.", "Go"),
                 };
                 let then = "switch the stops on: what is gained, what does it cost?";
-                return (first, format!("{now} back to {opened} g and {then}"));
+                return (first, format!("{now} back to {opened} and {then}"));
             }
             (Stage::Compare | Stage::Move { .. }, false, true, _) => {
                 ("Now with stops.", "Switch them on at this shaking: does it cross, and what does it cost?")
             }
             (Stage::Compare | Stage::Move { .. }, true, false, _) => {
                 let still = if crosses == Some(true) { " still" } else { "" };
-                let then = format!("Go back to {opened} g and leave the stops on: does it{still} cross?");
+                let then = format!("Go back to {opened} and leave the stops on: does it{still} cross?");
                 return ("Now with less shaking.", then);
             }
             (Stage::Compare, true, true, Some(true)) => ("Between these stops it will cross.", wait),

@@ -98,10 +98,11 @@ impl Ranges {
     pub fn follow(&mut self, session: &Session) -> &Self {
         let changed_at = session.changed_at;
         let watch = session.player.watch();
-        if watch.time() < self.looked_to {
-            self.since_start = Extremes::default();
+        let begins_anew = watch.time() < self.looked_to;
+        if begins_anew {
+            (self.since_start, self.previous, self.seen) = Default::default();
         }
-        if self.since != Some(changed_at) || watch.time() < self.looked_to {
+        if self.since != Some(changed_at) || begins_anew {
             self.previous = self.previous.or(self.seen);
             self.seen = Extremes::default();
             self.since = Some(changed_at);

@@ -120,18 +120,18 @@ pub fn as_set(amplitude: f64) -> String {
     shown(amplitude, 2)
 }
 
-/// A threshold in g: three significant digits.
+/// A threshold: three significant digits.
 pub fn grams(g: f64) -> String {
     significant(g, 3)
 }
 
-/// A threshold in g, rounded up to three significant digits, so that the amplitude in the text is enough.
+/// A threshold, rounded up to three significant digits, so that the amplitude in the text is enough.
 pub fn grams_up(g: f64) -> String {
     let unit = elementary::powf(10.0, elementary::log10(g).floor() - 2.0);
     grams(((g / unit - 1e-6).ceil() * unit).max(g))
 }
 
-/// A difference of two thresholds in g: two significant digits.
+/// A difference of two thresholds: two significant digits.
 pub fn grams_apart(g: f64) -> String {
     significant(g, 2)
 }

@@ -81,7 +81,7 @@ pub fn answers_text(records: &Records) -> Option<String> {
             }
             let _ = writeln!(text, "  I expected: {}", answer.choice.as_deref().unwrap_or("nothing"));
             if let Some(outcome) = &answer.outcome {
-                let _ = writeln!(text, "  It did: {outcome}");
+                let _ = writeln!(text, "  What holds: {outcome}");
             }
             if !answer.why.trim().is_empty() {
                 let _ = writeln!(text, "  Why: {}", answer.why.trim());

@@ -15,7 +15,7 @@ pub use super::numbers::{as_set, mm_beside, seconds, speed};
 use super::numbers::{energy, length_beside, newtons};
 use super::wells::well_name;
 pub use driven::{DrivenMotion, driven};
-pub use remedy::{threshold, ways};
+pub use remedy::{in_unit, threshold, ways};
 
 /// What the status line says.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -19,7 +19,7 @@ fn unit(scene: &Scene) -> (f64, &'static str) {
 }
 
 /// An amplitude in g, written by `form` in the unit of the drive's field, with that unit.
-pub(super) fn in_unit(scene: &Scene, form: fn(f64) -> String, g: f64) -> String {
+pub fn in_unit(scene: &Scene, form: fn(f64) -> String, g: f64) -> String {
     let (per_g, unit) = unit(scene);
     format!("{} {unit}", form(g * per_g))
 }

@@ -109,11 +109,11 @@ fn source_row(basins: &Basins) -> impl Fn(usize) -> usize {
     }
 }
 
-/// The roles of the attractors, by what each is: the number of an attractor can change with every start that
-/// is added, its colour does not.
+/// The roles of the attractors, in the order of their words: a finer level of starts finds the same attractors
+/// in another order, and their colours stay.
 fn roles(answer: &Answer) -> Vec<Role> {
-    let words = answer.words();
-    let rank = |word: &String| words.iter().filter(|other| *other < word).count();
+    let words: Vec<(String, usize)> = answer.words().into_iter().zip(0..).collect();
+    let rank = |word: &(String, usize)| words.iter().filter(|other| *other < word).count();
     words.iter().map(|word| Role::Kind(rank(word))).collect()
 }
 
