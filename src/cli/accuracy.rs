@@ -113,11 +113,15 @@ fn verdict(report: &Report) -> Result<(), Failure> {
     let short = report.shortfalls();
     let named: Vec<String> =
         short.iter().map(|(case, variant, quantity)| format!("{case} ({variant}): {quantity}")).collect();
-    Err(Failure::failed(match &named[..] {
-        [] => return Ok(()),
-        [one] => format!("a hard case falls short: {one}"),
-        all => format!("{} of the hard cases' checks fall short: {}", all.len(), all.join("; ")),
-    }))
+    match &named[..] {
+        [] => Ok(()),
+        [one] => Err(Failure::failed(format!("a hard case falls short: {one}"))),
+        all => Err(Failure::failed(format!(
+            "{} of the hard cases' checks fall short: {}",
+            all.len(),
+            all.join("; ")
+        ))),
+    }
 }
 
 /// Describes the selected problems and cases, or all of them, one paragraph each.

@@ -54,7 +54,9 @@ pub struct Arguments {
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let picture = Picture::new(&options.plot, common)?;
     let starts = starts(options)?;
-    picture.map(|_| can_show_starts(&starts)).transpose()?;
+    if picture.is_some() {
+        can_show_starts(&starts)?;
+    }
     let (document, mechanism) = load_with_mechanism(&options.scene, common)?;
     let count = starts.count() as u64;
     let basins = Basins::new(&document.scene, mechanism, starts);

@@ -147,7 +147,9 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     if options.full {
         let rows = solved(&positions(CURVE_POINTS), "--full")?;
         let warning = mechanism.flexures.as_ref().and_then(|flexures| stress_warning(flexures, &rows));
-        warning.iter().for_each(|words| common.say(&format!("warning: {}: {words}", document.name)));
+        if let Some(words) = warning {
+            common.say(&format!("warning: {}: {words}", document.name));
+        }
         table = full_curve(&mechanism, &rows)?;
     }
     outputs.table(Output::DATA, &table)?;

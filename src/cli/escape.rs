@@ -52,7 +52,9 @@ pub struct Arguments {
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
     let (document, warnings, grid) = load_over(&options.scene, &options.over, common)?;
-    picture.map(|_| can_show_over_field(&grid, "escapes")).transpose()?;
+    if picture.is_some() {
+        can_show_over_field(&grid, "escapes")?;
+    }
     let within = options.within.as_deref();
     let within = within.map(|text| finite("--within", text, "give a time in s, such as 100")).transpose()?;
     let until = Until::named(&options.until).unwrap_or(Until::Well);

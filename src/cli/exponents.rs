@@ -55,7 +55,9 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     if !options.over.is_empty() {
         return over(options, common, picture);
     }
-    picture.map(|_| can_show_over_field(&Grid::of_one(), "exponents")).transpose()?;
+    if picture.is_some() {
+        can_show_over_field(&Grid::of_one(), "exponents")?;
+    }
     let (document, model) = load_model(&options.scene, common)?;
     if let Some(fault) = drive_fault(&model, &document.scene) {
         return Err(document.error_from(vec![fault]).into());
@@ -109,7 +111,9 @@ fn about(found: &Exponents, forced: bool) -> String {
 fn over(options: &Arguments, common: &Common, picture: Option<Picture>) -> Result<(), Failure> {
     let (document, warnings, grid) = load_over(&options.scene, &options.over, common)?;
     let circuits = may_have_circuit(&document, grid.axes());
-    picture.map(|_| can_show_over_field(&grid, "exponents")).transpose()?;
+    if picture.is_some() {
+        can_show_over_field(&grid, "exponents")?;
+    }
     let cells = ExponentCells::new(&document.scene, &document.files, grid);
     let task = interrupt::silent_task();
     let pool = pool(common)?;

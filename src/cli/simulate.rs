@@ -129,7 +129,9 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         measured.report(found);
     }
     let warning = yield_warning(&model, &simulation.summary);
-    warning.iter().for_each(|words| common.say(&format!("warning: {}: {words}", document.name)));
+    if let Some(words) = warning {
+        common.say(&format!("warning: {}: {words}", document.name));
+    }
     if let Some(reason) = remark(&model, simulation.summary.outcome) {
         let reason = format!("{}: {reason}", document.name);
         if options.strict {

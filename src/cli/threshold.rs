@@ -114,7 +114,9 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let onset = Onset::named(&options.of).unwrap_or(Onset::Crossing);
     let (mut scan, chance) = search(options, &document, &grid)?;
     refuse_searched(&grid, &scan)?;
-    picture.map(|_| can_show_thresholds(&grid)).transpose()?;
+    if picture.is_some() {
+        can_show_thresholds(&grid)?;
+    }
     let mechanism = mechanism_of_all(&document, &grid, common, &warnings)?;
     if let Some(text) = options.until_settled.as_deref() {
         let mut first = document.scene.clone();

@@ -61,7 +61,8 @@ pub struct FigureOrder {
     read: ReadFiles,
 }
 
-/// Files that are read for a figure; to a worker of a page they travel with their bytes.
+/// Files that are read for a figure. In a message they have their bytes, and a worker of a page, which has no
+/// files, keeps them.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(from = "Vec<(PathBuf, Vec<u8>)>", into = "Vec<(PathBuf, Vec<u8>)>")]
 struct ReadFiles(Vec<PathBuf>);

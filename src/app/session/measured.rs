@@ -56,11 +56,8 @@ impl MeasuredRecord {
             }
         }
         let read = text.channels(chosen).map_err(|problem| {
-            sentence(&format!("the file {problem}")).replacen("The file line", "Line", 1).replacen(
-                "The file column",
-                "Column",
-                1,
-            )
+            let text = sentence(&format!("the file {problem}"));
+            text.replacen("The file line", "Line", 1).replacen("The file column", "Column", 1)
         })?;
         let Measured { channels: [across, values], decimal_commas } = read;
         let timing = (across.quantity == Quantity::Time).then(|| Timing::of(&across.values));

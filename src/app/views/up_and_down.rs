@@ -85,7 +85,7 @@ fn tools_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axis: &SweepAxis) {
 
 /// The runs of both directions: fine ones as far as they are known, then coarse ones.
 fn branches(parts: &[(usize, Visit)]) -> Branches<'_> {
-    [Direction::Up, Direction::Down].map(|direction| {
+    Direction::ALL.map(|direction| {
         let runs = || parts.iter().filter(|part| part.1.direction == direction);
         let fine: Vec<&Visit> = runs().filter(|part| part.0 == 1).map(|part| &part.1).collect();
         let reached = fine.last().map(|last| last.value);

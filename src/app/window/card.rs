@@ -31,8 +31,13 @@ pub struct Title {
     pub id: egui::Id,
 }
 
-/// The title that was clicked, and whether the view is to fill the window or to give it back.
-type Answer = (Option<View>, bool);
+/// What was done in the row of a card.
+pub struct Answer {
+    /// The title that was clicked.
+    pub chosen: Option<View>,
+    /// Whether the view is to fill the window, or to give it back.
+    pub fills: bool,
+}
 
 /// Draws a view in a card, with the titles of all views that share it. One that is `filled` has the whole
 /// window, and a tool that gives it back.
@@ -86,7 +91,7 @@ pub fn card_ui(ui: &mut Ui, titles: &[Title], view: View, context: &mut ViewCont
     }
     let fills = tools_ui(ui, rect, row, view, context);
     ui.painter().rect_stroke(rect, CORNER, style.card_stroke(), egui::StrokeKind::Inside);
-    (chosen, fills)
+    Answer { chosen, fills }
 }
 
 /// The largest text size at which the titles fit side by side into `room`.

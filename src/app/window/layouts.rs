@@ -9,7 +9,7 @@ use crate::app::ui::style::{COMPACT_BELOW, GAP, LARGE_FROM, NARROW_BELOW};
 use crate::app::views::{View, ViewContext};
 use crate::scene::Layout;
 
-use super::card::{Title, card_ui};
+use super::card::{Answer, Title, card_ui};
 
 use trees::{compact_lesson_tree, compact_tree, lesson_tree, tabs_tree, views_of, wide_tree};
 
@@ -242,7 +242,7 @@ impl egui_tiles::Behavior<View> for Behavior<'_, '_> {
 
     fn pane_ui(&mut self, ui: &mut Ui, id: TileId, view: &mut View) -> UiResponse {
         let titles = self.titles.get(&id).map_or(&[][..], Vec::as_slice);
-        let (chosen, fills) = card_ui(ui, titles, *view, self.context);
+        let Answer { chosen, fills } = card_ui(ui, titles, *view, self.context);
         self.chosen = chosen.or(self.chosen);
         if fills {
             *self.fill = Some(*view);

@@ -46,12 +46,9 @@ fn choice_ui(ui: &Ui, id: &str, heading: &str, text: &str, second: &str) -> Opti
         ui.horizontal(|ui| {
             let save = ui.add(primary(ui, "Save"));
             focus_first(ui, &save);
-            let (other, cancel) = (ui.button(second).clicked(), ui.button("Cancel").clicked());
-            match (save.clicked(), other, cancel) {
-                (true, ..) => Some(Answer::Save),
-                (_, true, _) => Some(Answer::DontSave),
-                (.., cancel) => cancel.then_some(Answer::Cancel),
-            }
+            let other = ui.button(second).clicked().then_some(Answer::DontSave);
+            let cancel = ui.button("Cancel").clicked().then_some(Answer::Cancel);
+            save.clicked().then_some(Answer::Save).or(other).or(cancel)
         })
         .inner
     });

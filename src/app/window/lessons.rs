@@ -38,14 +38,21 @@ pub(super) struct Lessons {
     suspended: Option<Suspended>,
     pub records: Records,
     pub notes: Notes,
-    /// Title and goal of the lesson that was finished and the lesson that comes next, until that is read.
-    finished: Option<(String, String, Option<&'static str>)>,
+    /// The lesson that was finished, until its last words are closed.
+    finished: Option<Finished>,
     /// Whether the button that goes on is to have the keyboard focus.
     urged: bool,
     /// What the buttons beside the status line ask for in this frame.
     chosen: Option<LessonAction>,
     /// Rectangles of the controls in this frame.
     controls: Vec<(String, Rect)>,
+}
+
+/// What is said at the end of a lesson, and the lesson that comes next.
+struct Finished {
+    title: String,
+    goal: String,
+    next: Option<&'static str>,
 }
 
 impl Lessons {
@@ -271,13 +278,13 @@ impl Window {
     fn finish_lesson(&mut self) {
         let Some(open) = &self.lessons.open else { return };
         let (title, goal) = (open.lesson().title.clone(), open.lesson().goal.clone());
-        self.lessons.finished = Some((title, goal, open.following()));
+        self.lessons.finished = Some(Finished { title, goal, next: open.following() });
         self.leave_lesson();
     }
 
     /// The last words of a lesson, and the question whether one that was begun before begins anew.
     pub(super) fn lesson_dialogs_ui(&mut self, ui: &Ui) {
-        if let Some((title, goal, following)) = &self.lessons.finished {
+        if let Some(Finished { title, goal, next: following }) = &self.lessons.finished {
             let (mut next, heading) = (None, format!("{title}: done"));
             let (is_read, is_closed) = dialog_ui(ui, ("finished", 480.0), (heading, 6.0), |ui| {
                 ui.label(goal);

@@ -332,7 +332,7 @@ impl Window {
             return;
         };
         let title = Title { view, id: egui::Id::unique("title of the window") };
-        if card_ui(ui, &[title], view, &mut context).1 {
+        if card_ui(ui, &[title], view, &mut context).fills {
             self.filled = None;
         }
     }

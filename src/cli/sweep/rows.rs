@@ -160,8 +160,9 @@ impl Prepared<'_> {
 
     /// Whether the file has all rows of the sweep with this head, according to its manifest and checksum.
     fn is_whole(&self, head: &Value) -> bool {
-        let sum = |manifest: Value| manifest["sha256"].as_str() == file_checksum(&self.out).ok().as_deref();
-        self.existing_head().as_ref() == Some(head) && self.manifest().is_some_and(sum)
+        let is_intact =
+            |manifest: Value| manifest["sha256"].as_str() == file_checksum(&self.out).ok().as_deref();
+        self.existing_head().as_ref() == Some(head) && self.manifest().is_some_and(is_intact)
     }
 }
 

@@ -63,9 +63,13 @@ pub struct Rated {
     pub sensitivity: Option<(f64, String)>,
 }
 
-/// A part of the work: rating the scene with this index, or finding its crossing threshold with one size
-/// changed.
-type Part = (usize, Option<(String, f64)>);
+/// A part of the work: rating a scene, or finding its crossing threshold with one size changed.
+struct Part {
+    /// The index of the scene.
+    scene: usize,
+    /// The field that is changed, and by which share.
+    change: Option<(String, f64)>,
+}
 
 /// Number of parts of the work.
 pub fn comparison_parts(scenes: &[Alternative]) -> u64 {
@@ -73,11 +77,11 @@ pub fn comparison_parts(scenes: &[Alternative]) -> u64 {
 }
 
 fn parts(scenes: &[Alternative]) -> Vec<Part> {
-    let unchanged = (0..scenes.len()).map(|scene| (scene, None));
+    let unchanged = (0..scenes.len()).map(|scene| Part { scene, change: None });
     let changed = scenes.iter().enumerate().flat_map(|(scene, alternative)| {
         let change = |field: &String| [-1.0, 1.0].map(|way| Some((field.clone(), way * SIZE_CHANGE)));
         let changes: Vec<_> = sizes(&alternative.scene).iter().flat_map(change).collect();
-        changes.into_iter().map(move |change| (scene, change))
+        changes.into_iter().map(move |change| Part { scene, change })
     });
     unchanged.chain(changed).collect()
 }
@@ -102,7 +106,7 @@ pub fn alternatives(
     let silent = Task { tick: &|| (), cancel: task.cancel };
     let rating = Rating { until_settled, pool, task: &silent };
     let work = |_: &mut (), index: usize| {
-        let (scene, change) = &parts[index];
+        let Part { scene, change } = &parts[index];
         let done = match change {
             None => rating.rate(&scenes[*scene]).map(|rated| (Some(Box::new(rated)), None)),
             Some((field, by)) => rating.changed(&scenes[*scene], field, *by).map(|found| (None, found)),
@@ -112,7 +116,7 @@ pub fn alternatives(
     };
     let done = pool.map(parts.len(), || (), work).ok()?;
     let mut rated: Vec<Rated> = Vec::new();
-    for ((scene, change), (unchanged, threshold)) in parts.into_iter().zip(done) {
+    for (Part { scene, change }, (unchanged, threshold)) in parts.into_iter().zip(done) {
         rated.extend(unchanged.map(|unchanged| *unchanged));
         let Some((field, _)) = change else { continue };
         let Some(before) = rated[scene].crossing_g() else { continue };

@@ -122,7 +122,7 @@ pub use spectrum::{NoSpectrum, Signal, Spectrum, SpectrumOptions, spectrum};
 pub use sweep::{
     Cell, CellFaults, DIRECTION, STANDARD as STANDARD_COLUMNS, Sweep, SweepEnd, SweepOptions, Tally,
 };
-pub use table::{Column, Table, Values, label_and_unit};
+pub use table::{Column, Table, Values, label_and_unit, with_unit};
 pub use thresholds::{Found, NoThresholds, Onset, Scan, Verdict, threshold, threshold_table};
 pub use trace::{Trace, between, simulate_with_trace};
 pub use uncertain::{Draws, MAX_DRAWS, share_in_range};

@@ -113,8 +113,13 @@ impl Column {
     /// The name as plain text with the unit: `travel limit (mm)`.
     pub fn label(&self) -> String {
         let (words, unit) = label_and_unit(&self.name);
-        if unit.is_empty() { words } else { format!("{words} ({unit})") }
+        with_unit(words, unit)
     }
+}
+
+/// The words of a label with their unit, if there is one.
+pub fn with_unit(words: String, unit: &str) -> String {
+    if unit.is_empty() { words } else { format!("{words} ({unit})") }
 }
 
 /// Columns of one length: the answer of every study.

@@ -92,7 +92,7 @@ impl Carry {
         match self {
             Self::Up => &[Direction::Up],
             Self::Down => &[Direction::Down],
-            Self::Both => &[Direction::Up, Direction::Down],
+            Self::Both => &Direction::ALL,
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::app::words::numbers::{below, decimal, round_up};
 use crate::scene::{FieldPath, Scene, Start, Stops, SweepAxis, field_info, numeric_fields};
-use crate::study::label_and_unit;
+use crate::study::{label_and_unit, with_unit};
 
 /// Ends and step of the travel limit in mm on the prototype's map, for scenes of its size.
 const LIMITS_MM: (f64, f64, f64) = (0.5, 7.0, 0.125);
@@ -137,7 +137,7 @@ pub fn part(axis: &SweepAxis, from: f64, to: f64) -> SweepAxis {
 /// The label of an axis, such as `travel limit (mm)`. `column` is the name of the field in a table.
 pub fn label(column: &str) -> String {
     let (name, unit) = label_and_unit(column);
-    if unit.is_empty() { name } else { format!("{name} ({unit})") }
+    with_unit(name, unit)
 }
 
 pub fn over(axis: &SweepAxis) -> String {

@@ -49,7 +49,10 @@ pub fn steps_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     };
     let known = match known {
         Ok(known) => known.clone(),
-        Err(unfit) => return drop(ui.label(format!("Not for this scene: {unfit}."))),
+        Err(unfit) => {
+            ui.label(format!("Not for this scene: {unfit}."));
+            return;
+        }
     };
     let stops = <[_; 2]>::from(model.stop_positions()).map(|stop| stop.map_or(f64::NAN, |x| x * 1e3));
     ui.scope(|ui| {

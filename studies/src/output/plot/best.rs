@@ -5,10 +5,10 @@ use super::cells::{Cell, Cells, Colours};
 use super::chart::{Chart, Marks, Panel, Side};
 use super::drawn::Drawn;
 use super::figure::Point;
-use super::quantity::{suited_unit, with_unit};
+use super::quantity::suited_unit;
 use super::role::Role;
 use crate::study::{
-    BestDesign, BestQuestion, Edges, Optimum, Tried, label_and_unit, names, quantity, scan_places,
+    BestDesign, BestQuestion, Edges, Optimum, Tried, label_and_unit, names, quantity, scan_places, with_unit,
 };
 
 /// Words of the legend.

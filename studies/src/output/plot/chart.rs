@@ -230,7 +230,8 @@ impl Panel {
         self.layers.push(Layer { marks, role, name: name.into() });
     }
 
-    /// Adds a layer with its words in the legend, unless it has no marks.
+    /// Adds a layer with its words in the legend, unless it is a list of points, places, intervals or spans
+    /// without any.
     pub fn layer_if_any(&mut self, role: Role, name: impl Into<String>, marks: Marks) {
         let is_empty = match &marks {
             Marks::Path(points) | Marks::Points(points) | Marks::Cloud(points) => points.is_empty(),

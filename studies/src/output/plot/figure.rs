@@ -150,7 +150,7 @@ impl Text {
         Self { words: words.into(), at, size, ink, bold: false, align: Align::Left, upright: false }
     }
 
-    /// The same words with another point at their position.
+    /// The same words, of which the beginning, the middle or the end stands at their position.
     pub fn aligned(self, align: Align) -> Self {
         Self { align, ..self }
     }

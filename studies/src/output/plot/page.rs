@@ -11,8 +11,9 @@ use super::style::{self, Theme};
 
 /// Free space at the left and right edges of a narrow canvas and of a wide one.
 const EDGE: (f64, f64) = (24.0, 40.0);
-/// Line heights.
+/// Line height of the title.
 const TITLE_LINE: f64 = 46.0;
+/// Line height of the subtitle.
 const SUBTITLE_LINE: f64 = 36.0;
 /// Line height of the legend.
 const ROW: f64 = 38.0;

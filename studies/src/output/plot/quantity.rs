@@ -6,7 +6,7 @@ use super::mark::REGIMES;
 use super::role::Role;
 use super::sweep::distinct;
 use crate::numeric::extent;
-use crate::study::{Grid, RMS_VELOCITY, Read, SummaryField, Table, Values, label_and_unit};
+use crate::study::{Grid, RMS_VELOCITY, Read, SummaryField, Table, Values, label_and_unit, with_unit};
 
 /// The column that is shown by default.
 pub const RMS: &str = RMS_VELOCITY.name;
@@ -140,11 +140,6 @@ impl Quantity {
         let all = self.values.iter().chain(low).chain(high).copied();
         PlotAxis::around(all.chain([0.0]), margin, &self.label)
     }
-}
-
-/// The words of a label with their unit, if there is one.
-pub(super) fn with_unit(words: String, unit: &str) -> String {
-    if unit.is_empty() { words } else { format!("{words} ({unit})") }
 }
 
 /// Why a run that lasted to its end has no value in a column.

@@ -72,20 +72,21 @@ pub fn identified_chart(
         x.into_iter().enumerate().map(|(i, x)| (x, [0, 1, 2].map(|k| all[k][i]))).collect()
     };
     let first = found.summary.first().copied();
-    let series = |is_marks, role, name, series, points| Series { name, series, points, role, is_marks };
+    let line = |role, name, series, points| Series { name, series, points, role, is_marks: false };
+    let marks = |role, name, series, points| Series { name, series, points, role, is_marks: true };
     let (over, lower) = match of {
         "force" => (
-            vec![series(false, Role::Curve, "identified curve", "identified", pairs(&found.rows, scale))],
+            vec![line(Role::Curve, "identified curve", "identified", pairs(&found.rows, scale))],
             Lower::Rest("residual", "residual", fitted("x_m", "residual_n", 1e3)),
         ),
         "damping" => {
             let (from, to) = (column(&found.rows, "from_s"), column(&found.rows, "to_s"));
             let middle = from.iter().zip(&to).map(|(a, b)| 0.5 * (a + b)).collect();
-            let line = |name, of, end| series(false, Role::Envelope, name, of, fitted("t_s", end, 1.0));
-            let upper = line("identified envelope", "upper_envelope", "upper");
+            let envelope = |name, of, end| line(Role::Envelope, name, of, fitted("t_s", end, 1.0));
+            let upper = envelope("identified envelope", "upper_envelope", "upper");
             let rows = intervals(middle, "damping_ratio");
             (
-                vec![upper, line("", "lower_envelope", "lower")],
+                vec![upper, envelope("", "lower_envelope", "lower")],
                 Lower::Intervals("damping ratio", "damping_ratio", rows, first),
             )
         }
@@ -94,8 +95,8 @@ pub fn identified_chart(
             let rows = intervals(column(&found.rows, "t_s"), "restitution");
             (
                 vec![
-                    series(true, Role::Impact, "impact", "impact", impacts),
-                    series(true, Role::Rebound, "end of a rebound", "rebound", rebounds),
+                    marks(Role::Impact, "impact", "impact", impacts),
+                    marks(Role::Rebound, "end of a rebound", "rebound", rebounds),
                 ],
                 Lower::Intervals("restitution", "restitution", rows, first),
             )

@@ -171,7 +171,7 @@ impl Seen<'_> {
     }
 
     /// The times at rest that the picture shows in part.
-    fn rests(&self) -> impl Iterator<Item = (f64, f64)> {
+    fn rest_spans(&self) -> impl Iterator<Item = (f64, f64)> {
         let Self { trace, .. } = *self;
         let [from, to] = ["from_s", "to_s"].map(|name| trace.rests.numbers(name).unwrap_or_default());
         let spans = from.iter().copied().zip(to.iter().copied());
@@ -187,7 +187,7 @@ impl Seen<'_> {
             |side: &str| impacts.clone().filter(|impact| *impact.1 == side).map(|impact| *impact.0).collect();
         OverTime {
             time: PlotAxis::between(trace.shown_from, trace.shown_to, "time (s)"),
-            rests: (self.rests().collect(), self.rests),
+            rests: (self.rest_spans().collect(), self.rests),
             impacts: [on("left"), on("right")],
             stops: self.stops_mm(),
             wells: self.wells.iter().map(|well| well * 1e3).collect(),
@@ -315,7 +315,7 @@ impl Seen<'_> {
                 drawn.put("impact", &[*at, stop], &[side]);
             }
         }
-        for (from, to) in self.rests().filter(|_| self.is_over_time()) {
+        for (from, to) in self.rest_spans().filter(|_| self.is_over_time()) {
             drawn.put("rest_from", &[from.max(trace.shown_from)], &[]);
             drawn.put("rest_to", &[to.min(trace.shown_to)], &[]);
         }

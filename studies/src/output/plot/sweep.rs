@@ -319,8 +319,7 @@ fn walked_maps(picture: &SweepPicture, (x, y): (&str, &str)) -> Chart {
     let SweepPicture { rows, ranges, .. } = *picture;
     let quantity = Quantity::of(rows, picture.quantity);
     let ways = rows.words(DIRECTION);
-    let [up, down] = [Direction::Up, Direction::Down]
-        .map(|way| cells(rows, (x, y), &quantity, |row| ways[row] == way.name()));
+    let [up, down] = Direction::ALL.map(|way| cells(rows, (x, y), &quantity, |row| ways[row] == way.name()));
     let has_kinds = quantity.kinds.is_some();
     let more: Vec<Cell> =
         up.cells.iter().zip(&down.cells).map(|(up, down)| difference(*down, *up, has_kinds)).collect();

@@ -22,10 +22,7 @@ impl BestDesign {
             let side = |margin: Option<f64>, way: &str, end: f64| match margin {
                 Some(margin) => format!("{} {way}", quantity(margin, name)),
                 None => {
-                    format!(
-                        "nowhere {way}, as far as the range goes to {}",
-                        with_unit(&end.to_string(), name)
-                    )
+                    format!("nowhere {way}, as far as the range goes to {}", in_unit(&end.to_string(), name))
                 }
             };
             let [low, high] = self.margins[i];
@@ -72,7 +69,7 @@ impl BestDesign {
 /// A place as `field = value` with its unit, field by field.
 pub fn place(names: &[String], at: &[f64]) -> String {
     let each = names.iter().zip(at);
-    let each = each.map(|(name, value)| format!("{name} = {}", with_unit(&value.to_string(), name)));
+    let each = each.map(|(name, value)| format!("{name} = {}", in_unit(&value.to_string(), name)));
     each.collect::<Vec<_>>().join(", ")
 }
 
@@ -84,11 +81,11 @@ pub fn names(question: &BestQuestion) -> Vec<String> {
 
 /// A value with the unit that the name of its field or column ends with.
 pub fn quantity(value: f64, name: &str) -> String {
-    with_unit(&short(value), name)
+    in_unit(&short(value), name)
 }
 
 /// A number with the unit of a field or column, in letters that any terminal has.
-fn with_unit(number: &str, name: &str) -> String {
+fn in_unit(number: &str, name: &str) -> String {
     // a name such as `n_per_m` is a unit alone
     let (_, unit) = label_and_unit(&format!("_{}", name.rsplit('.').next().unwrap_or_default()));
     let unit = match unit {

@@ -214,16 +214,15 @@ fn waited(model: &Model, until: Until, cancel: &AtomicBool) -> Result<Waited, Ca
         Until::Well => model.crossing_level().and_then(|barrier| well_behind(model, barrier)),
     };
     let request = Request { until_crossing: true, cancel: Some(cancel), ..Request::default() };
-    let waited = |time: f64, happened: bool, ended_early: bool| {
-        Ok(Waited { waiting: Waiting { time, happened }, ended_early })
-    };
+    let stayed =
+        |time: f64, ended_early: bool| Waited { waiting: Waiting { time, happened: false }, ended_early };
     let within = model.duration();
-    let Some(level) = level else { return waited(within, false, false) };
+    let Some(level) = level else { return Ok(stayed(within, false)) };
     let summary = model.with_crossing_level(level).run(&request).summary;
     let first = summary.firsts.and_then(|firsts| firsts.crossing).map(|first| first.t);
     match (first, summary.outcome) {
-        (Some(time), _) => waited(time, true, false),
+        (Some(time), _) => Ok(Waited { waiting: Waiting { time, happened: true }, ended_early: false }),
         (None, Outcome::Cancelled { .. }) => Err(Cancelled),
-        (None, outcome) => waited(outcome.ended_at().unwrap_or(within), false, outcome != Outcome::Done),
+        (None, outcome) => Ok(stayed(outcome.ended_at().unwrap_or(within), outcome != Outcome::Done)),
     }
 }

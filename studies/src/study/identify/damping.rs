@@ -46,7 +46,7 @@ pub fn damping(times: &[f64], channel: &Channel) -> Result<Identified, Unidentif
     let all = turns(values, back);
     let few = |found: usize| match flat {
         None => Unidentified::FewSwings { found, noise: short(noise) },
-        Some(Clipped { tops, limit, .. }) => Unidentified::Clipped(tops, short(limit), found),
+        Some(Clipped { tops, limit, .. }) => Unidentified::Clipped { tops, limit: short(limit), found },
     };
     let swing = |k: usize| (values[all[k + 1].at] - values[all[k].at]).abs();
     let swings = all.len().saturating_sub(1);

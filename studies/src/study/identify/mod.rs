@@ -100,11 +100,18 @@ pub enum Unidentified {
     Moved(String),
     /// Too few swings are left beside those with flat tops.
     #[error(
-        "{0} swings have flat tops, at the limit {1} of the sensor or its converter, and after them \
-         {2} turning points stand out from the noise; the damping ratio needs {MIN_TURNS}: pluck \
+        "{tops} swings have flat tops, at the limit {limit} of the sensor or its converter, and after them \
+         {found} turning points stand out from the noise; the damping ratio needs {MIN_TURNS}: pluck \
          less, widen the range, or record longer"
     )]
-    Clipped(usize, String, usize),
+    Clipped {
+        /// Number of swings that are cut off.
+        tops: usize,
+        /// Where they are cut off, in SI.
+        limit: String,
+        /// Number of turning points that are left.
+        found: usize,
+    },
     /// So many swings that are cut off at displacements in mm hide the impacts.
     #[error(
         "no impact is left: {0} swings have flat tops at {1} mm, at the limit of the sensor or its \

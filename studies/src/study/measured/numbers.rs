@@ -105,8 +105,11 @@ fn crossing(scene: &Scene, model: &Model, times: &[f64], measured: &[f64], compu
     rows
 }
 
-/// A rebound: the time of the impact, and its height.
-type Rebound = (f64, f64);
+struct Rebound {
+    /// Time of the impact in s.
+    t: f64,
+    height: f64,
+}
 
 /// Heights of the first rebound from each stop after a motion from the other side of the barrier. Each
 /// measured one is compared with the computed one nearest in time.
@@ -130,7 +133,7 @@ fn rebounds(model: &Model, times: &[f64], measured: &[f64], computed: &[f64]) ->
             let arrives = barrier.is_none() || !beside(from);
             let strikes = three[1].maximum == right && (at - stop).abs() < AT_STOP * room;
             let counts = arrives && strikes && beside(to);
-            counts.then(|| (times[three[1].at], (at - to).abs()))
+            counts.then(|| Rebound { t: times[three[1].at], height: (at - to).abs() })
         };
         all.windows(3).filter_map(rebound).collect()
     };
@@ -157,11 +160,11 @@ fn rebounds(model: &Model, times: &[f64], measured: &[f64], computed: &[f64]) ->
 /// Pairs of heights of the rebounds nearest in time, if closer than half the shortest interval of measured
 /// ones.
 fn paired(measured: &[Rebound], computed: &[Rebound]) -> Vec<(f64, f64)> {
-    let apart = measured.windows(2).map(|pair| pair[1].0 - pair[0].0).fold(f64::INFINITY, f64::min);
-    let partner = |(t, height): &Rebound| {
-        let far = |other: &Rebound| (other.0 - t).abs();
+    let apart = measured.windows(2).map(|pair| pair[1].t - pair[0].t).fold(f64::INFINITY, f64::min);
+    let partner = |rebound: &Rebound| {
+        let far = |other: &Rebound| (other.t - rebound.t).abs();
         let nearest = computed.iter().min_by(|a, b| far(a).total_cmp(&far(b)))?;
-        (far(nearest) < 0.5 * apart).then_some((*height, nearest.1))
+        (far(nearest) < 0.5 * apart).then_some((rebound.height, nearest.height))
     };
     measured.iter().filter_map(partner).collect()
 }

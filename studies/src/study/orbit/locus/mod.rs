@@ -128,9 +128,7 @@ pub fn loci(
         found.push(match Curve::new(family, orbit, value, range, (of, second), options) {
             Some((curve, start)) => {
                 let ranges = [range, second.range];
-                let mut walk = Walk { curve, locus, at: start, ranges, options: *options };
-                walk.locus.end = walk.run_out(task)?;
-                walk.locus
+                Walk { curve, locus, at: start, ranges, options: *options }.run_out(task)?
             }
             None => Locus {
                 values: vec![[value, second.range.0]],

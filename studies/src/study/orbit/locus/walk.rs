@@ -40,7 +40,13 @@ pub(super) struct Walk<'a> {
 }
 
 impl Walk<'_> {
-    pub fn run_out(&mut self, task: &Task) -> Result<LocusEnd, NoOrbit> {
+    /// Walks until the locus ends, and returns it with its end.
+    pub fn run_out(mut self, task: &Task) -> Result<Locus, NoOrbit> {
+        self.locus.end = self.end(task)?;
+        Ok(self.locus)
+    }
+
+    fn end(&mut self, task: &Task) -> Result<LocusEnd, NoOrbit> {
         let units = [self.curve.corrector.units.range, self.curve.range];
         let ends = [0, 1].map(|place| {
             let ((from, to), unit) = (self.ranges[place], units[place]);
