@@ -109,8 +109,8 @@ fn source_row(basins: &Basins) -> impl Fn(usize) -> usize {
     }
 }
 
-/// The roles of the attractors, in the order of their words: a finer level of starts finds the same attractors
-/// in another order, and their colours stay.
+/// The roles of the attractors, in the order of their words: a finer level of starts finds the same
+/// attractors in another order, and their colours stay.
 fn roles(answer: &Answer) -> Vec<Role> {
     let words: Vec<(String, usize)> = answer.words().into_iter().zip(0..).collect();
     let rank = |word: &(String, usize)| words.iter().filter(|other| *other < word).count();
