@@ -125,7 +125,12 @@ impl Screen {
     fn open(&mut self, open: Open) {
         match open {
             Open::Layout(layout) => self.ask(Command::Arrange(layout)),
-            Open::All => View::ALL.into_iter().for_each(|view| self.ask(Command::Show(view, true))),
+            Open::All => {
+                // Beside others, the view Side by side would be given the whole window.
+                self.open(Open::Only(Some(View::SideBySide)));
+                let last = [View::Map];
+                View::ALL.into_iter().chain(last).for_each(|view| self.ask(Command::Show(view, true)));
+            }
             Open::Only(only) => {
                 View::ALL.into_iter().for_each(|view| self.ask(Command::Show(view, only == Some(view))));
             }
