@@ -12,6 +12,7 @@ use crate::app::session::pins::Pin;
 use crate::app::ui::style::{CONTROL, CORNER, Style, strong_family};
 use crate::app::ui::widgets::tell;
 use crate::dynamics::{Model, Sample};
+use crate::scene::Excitation;
 
 use super::memory::Memory;
 use super::span::Span;
@@ -57,6 +58,12 @@ impl Drawn {
     /// Its model at that time.
     pub(super) fn model(self, session: &Session) -> &Arc<Model> {
         self.pin(session).map_or(session.shown(), |pin| pin.watch.model_at(session.player.time()))
+    }
+
+    /// Whether a force on the mass drives it, while the base stands still.
+    pub(super) fn is_pushed(self, session: &Session) -> bool {
+        let scene = self.pin(session).map_or(session.scene(), |pin| &pin.scene);
+        matches!(scene.excitation, Excitation::Force { .. })
     }
 }
 

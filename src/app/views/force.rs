@@ -104,7 +104,7 @@ fn still(model: &Model, span: Span, axes: (PlotAxis, PlotAxis), measured: Option
     panel.layers.retain(|layer| layer.role != Role::Stop);
     // what is drawn is named before what is marked
     let named = |role, name: &str| Layer::new(role, name, Marks::Path(Vec::new()));
-    let push = model.is_shaken().then(|| named(Role::Push, "push of the base"));
+    let push = model.is_shaken().then(|| named(Role::Push, "push"));
     let first = [named(Role::Curve, "holds the mass there")].into_iter().chain(push).chain(measured);
     panel.layers.splice(0..0, first);
     Chart::stack(vec![panel], "", Table::new())

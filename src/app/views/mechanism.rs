@@ -222,23 +222,28 @@ impl Sketch {
     fn caption_ui(&self, ui: &Ui, context: &ViewContext<'_>, words: &str, base_accel: f64) {
         let Self { painter, rect, style, .. } = self;
         let model = context.drawn.model(context.session);
-        let mut all =
-            vec![("seen from the base".to_owned(), style.faint(), 0), (words.to_owned(), style.faint(), 1)];
+        let is_pushed = context.drawn.is_pushed(context.session);
+        let mut all = vec![(words.to_owned(), style.faint(), 1)];
+        if !is_pushed {
+            all.insert(0, ("seen from the base".to_owned(), style.faint(), 0));
+        }
         if let Some(ago) = ago(context.session) {
             all.insert(0, (ago, style.ink(), 2));
         }
         if model.is_shaken() {
-            // two decimals, or more for a push below 0.1 g
-            let largest = model.largest_base_acceleration() / STANDARD_GRAVITY;
+            let (factor, unit) = if is_pushed { (model.mass(), "N") } else { (1.0 / STANDARD_GRAVITY, "g") };
+            // two decimals, or more for a push below 0.1
+            let largest = model.largest_base_acceleration() * factor;
             let decimals = if largest < 0.1 { decimals_for(largest) } else { 2 };
-            let push = (base_accel / STANDARD_GRAVITY).abs();
-            all.push((format!("push {push:.decimals$} g"), style.base(), 3));
+            let push = base_accel.abs() * factor;
+            all.push((format!("push {push:.decimals$} {unit}"), style.base(), 3));
         }
         let width = |text: &str| painter.layout_no_wrap(text.to_owned(), style.small(), style.ink()).size().x;
         let needed = |all: &[Entry]| all.iter().map(|text| width(&text.0) + 14.0).sum::<f32>();
         let row = LegendRow::of(ui, *rect);
         // the motion of the base says from where it is seen
-        let inset_width = model.single_sine().map_or(0.0, |_| INSET);
+        let has_inset = !is_pushed && model.single_sine().is_some();
+        let inset_width = if has_inset { INSET } else { 0.0 };
         if needed(&all) + inset_width > row.right - row.left - 10.0 {
             all.retain(|text| text.2 > 0);
         }
@@ -253,7 +258,9 @@ impl Sketch {
             explain(ui, place, &text);
             at.x = place.right() + 14.0;
         }
-        self.inset(ui, context, rect.with_min_x(at.x).with_max_x(row.right), base_accel);
+        if has_inset {
+            self.inset(ui, context, rect.with_min_x(at.x).with_max_x(row.right), base_accel);
+        }
     }
 
     /// Draws the motion of the base at another scale, for a sine, whose displacement is -a/(2 pi f)^2.

@@ -38,8 +38,8 @@ const MEANINGS: &[(&str, &str)] = &[
     ("true scale", "Lengths along and across the flexures are drawn alike."),
     (
         "push",
-        "The force that the mass feels because the base accelerates, as in a bus that brakes; in \
-         multiples of its weight.",
+        "The force that the mass feels because the base accelerates, as in a bus that brakes, in multiples \
+         of its weight; or, in N, the force that acts on the mass while the base stands still.",
     ),
     ("base", "How far the base itself swings, at a scale of its own."),
     (
