@@ -10,7 +10,7 @@ use interwell::numeric::extent;
 use interwell::output::{contact_chart, curve_chart, landscape, measured_force_chart, shapes_chart};
 use interwell::scene::Document;
 use interwell::study::{
-    CURVE_PICTURE_POINTS, CURVE_POINTS, StatesError, Table, contact, curve, default_positions,
+    CURVE_PICTURE_POINTS, CURVE_POINTS, OutsideCurve, StatesError, Table, contact, curve, default_positions,
     even_positions, flexures_at, full_curve, metres, shapes, states, stop_positions, stress_warning,
 };
 
@@ -112,7 +112,11 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         Some(listed) => listed.clone(),
         None => even(options.points.unwrap_or(points) as usize),
     };
-    let mut table = curve(&mechanism, positions(CURVE_POINTS))?;
+    let at = options.at_mm.iter().map(|text| format!("--at-mm {text}: "));
+    let place: String =
+        at.chain(options.range_mm.iter().map(|text| format!("--range-mm {text}: "))).collect();
+    let outside = |error: OutsideCurve| Failure::argument(format!("{place}{error}"));
+    let mut table = curve(&mechanism, positions(CURVE_POINTS)).map_err(outside)?;
     let of_flexures = [
         options.full.then_some("--full"),
         options.shapes.is_some().then_some("--shapes"),

@@ -92,6 +92,9 @@ fn one(options: &Arguments, common: &Common, mut settings: SectionOptions) -> Re
     let chart = |ranges| Ok(section_chart(&table, None, phase(&settings), stops, ranges));
     outputs.draw(picture, &document, chart)?;
     outputs.finish_rows(&document, 1)?;
+    if table.rows() == 0 && settings.at == SectionAt::Impacts {
+        common.say(&format!("{}: no rows, since no impact counts in the settled window", document.name));
+    }
     if let Some(at) = summary.outcome.ended_at() {
         let name = summary.outcome.name();
         say(&format!("{}: the run ended early at t = {at} s ({name}): the rows end there", document.name));

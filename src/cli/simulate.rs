@@ -65,7 +65,8 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let sampling = match (&options.at, &options.dt) {
         (Some(text), _) => Sampling::At(numbers("--at", text, ',')?),
         (None, Some(text)) => {
-            Sampling::Every(number("--dt", text, |_| true, "not a number; give seconds, such as 0.01")?)
+            let remedy = "give a time in s above 0, such as 0.01";
+            Sampling::Every(number("--dt", text, |dt| *dt > 0.0 && dt.is_finite(), remedy)?)
         }
         (None, None) => Sampling::Default,
     };

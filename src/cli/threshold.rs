@@ -87,7 +87,12 @@ pub struct Arguments {
 }
 
 /// What is searched: its range and resolution, and what is asked of runs under noise.
-fn search(options: &Arguments, document: &Document, grid: &Grid) -> Result<(Scan, Option<Chance>), Failure> {
+fn search(
+    options: &Arguments,
+    of: Onset,
+    document: &Document,
+    grid: &Grid,
+) -> Result<(Scan, Option<Chance>), Failure> {
     let number = |option: &str, text: &Option<String>, remedy: &str| {
         text.as_deref().map(|text| finite(option, text, remedy)).transpose()
     };
@@ -97,7 +102,7 @@ fn search(options: &Arguments, document: &Document, grid: &Grid) -> Result<(Scan
     let within = number("--within", &options.within, "give a time in s, such as 100")?;
     let field = options.field.clone();
     let Some(probability) = probability else {
-        let scan = Threshold { field, resolution, ..Threshold::default() }.scan(document)?;
+        let scan = Threshold { field, of, resolution, ..Threshold::default() }.scan(document)?;
         if options.melnikov && !suits_melnikov(&document.scene, &scan.field) {
             refuse!("--melnikov with --field {}: {NO_MELNIKOV}", scan.field);
         }
@@ -112,7 +117,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
     let (document, warnings, grid) = load_over(&options.scene, &options.over, common)?;
     let onset = Onset::named(&options.of).unwrap_or(Onset::Crossing);
-    let (mut scan, chance) = search(options, &document, &grid)?;
+    let (mut scan, chance) = search(options, onset, &document, &grid)?;
     refuse_searched(&grid, &scan)?;
     if picture.is_some() {
         can_show_thresholds(&grid)?;
@@ -153,7 +158,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         Some(chance) => too_few(&table, &scan, &chance),
         None => missing(&table, &scan, onset, &grid, blocked),
     };
-    let remarks = [missing, undecided(&table)];
+    let remarks = [missing, undecided(&table), without_melnikov(&table)];
     remarks.iter().flatten().for_each(|words| common.say(&format!("{name}: {words}")));
     let chart = |ranges| Ok(threshold_chart(&table, &grid, scene, &scan.field, onset, ranges)?);
     outputs.draw(picture, &document, chart)?;
@@ -171,9 +176,24 @@ fn of_rows(count: usize, all: usize, verbs: [&str; 2]) -> Option<String> {
 
 /// The rows with an empty `value`, as a clause, if there are any.
 fn without_value(table: &Table) -> Option<String> {
-    let values = table.numbers("value")?;
-    let count = values.iter().filter(|value| value.is_nan()).count();
-    of_rows(count, values.len(), ["has no value", "have no value"])
+    without(table.numbers("value")?, "value")
+}
+
+/// The rows without one of these `numbers`, as a clause, if there are any.
+fn without(numbers: &[f64], name: &str) -> Option<String> {
+    let count = numbers.iter().filter(|number| number.is_nan()).count();
+    of_rows(count, numbers.len(), [&format!("has no {name}"), &format!("have no {name}")])
+}
+
+/// Explains an empty Melnikov's threshold, if a row has one.
+fn without_melnikov(table: &Table) -> Option<String> {
+    let name = &table.columns().iter().find(|column| column.name.starts_with("melnikov"))?.name;
+    let rows = without(table.numbers(name)?, name)?;
+    Some(format!(
+        "{rows}: it needs linear damping above 0, no current or voltage with an equation of its own, a \
+         barrier without a kink, and a well whose homoclinic orbit meets neither a stop nor the end of the \
+         force curve"
+    ))
 }
 
 /// Explains an empty `value` of a threshold in probability, if a row has one.

@@ -377,6 +377,7 @@ fn what_cannot_be_searched_is_refused_with_what_would_be_right() {
     );
     refused(of("--vary stops.bogus=+-1%"), &["--vary", "stops.restitution"]);
     refused(of("--vary start.x_mm=+-1%"), &["--vary"]);
+    refused(of("--vary stops.restitution=0.05"), &["--vary", "write FIELD=+-1% or FIELD=+-0.05"]);
     refused(of("--environment excitation.amplitude_g=1*0"), &["weight"]);
     refused(of("--environment nowhere"), &["--environment nowhere: ", "no built-in scene"]);
     refused(of("--environment nowhere.csv"), &["--environment nowhere.csv: no such file; give a record"]);

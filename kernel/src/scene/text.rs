@@ -92,7 +92,9 @@ pub(super) fn read<T: DeserializeOwned>(text: &str) -> Result<T, ParseError> {
 /// Reads a RON value whose numbers may be arithmetic.
 pub(super) fn value<T: DeserializeOwned>(text: &str) -> Result<T, ParseError> {
     let evaluated = Evaluated::of(text);
-    let read = options().from_str(&evaluated.text).map_err(|error| evaluated.parse_error(text, &error));
+    let read = options()
+        .from_str(&evaluated.text)
+        .map_err(|error| evaluated.parse_error(text, &error, choices_of::<T>));
     match (read, evaluated.wrong.first().cloned()) {
         // what comes before a broken expression may be why it is taken for one
         (Err(error), Some((place, _))) if error.place < place => Err(error),
@@ -141,22 +143,22 @@ impl<'t> Evaluated<'t> {
         Self { text, replaced, wrong }
     }
 
-    /// The error of RON with its place in the text `before`.
-    fn parse_error(&self, before: &str, error: &SpannedError) -> ParseError {
+    /// The error of RON with its place in the text `before` of a value with these `choices`.
+    fn parse_error(&self, before: &str, error: &SpannedError, choices: Choices) -> ParseError {
         let place = Place { line: error.span.start.line, column: error.span.start.col };
         if self.replaced.is_empty() {
-            return parse_error(before, place, error);
+            return parse_error(before, place, error, choices);
         }
         let at = place.byte(&self.text);
         let count = self.replaced.partition_point(|(value, _)| value.start <= at);
         let Some((value, written)) = count.checked_sub(1).map(|last| &self.replaced[last]) else {
-            return parse_error(before, Place::of_byte(before, at), error);
+            return parse_error(before, Place::of_byte(before, at), error, choices);
         };
         if at >= value.end {
             let at = written.end + (at - value.end);
-            return parse_error(before, Place::of_byte(before, at), error);
+            return parse_error(before, Place::of_byte(before, at), error, choices);
         }
-        let mut found = parse_error(before, Place::of_byte(before, written.start), error);
+        let mut found = parse_error(before, Place::of_byte(before, written.start), error, choices);
         found.problem += &format!("; `{}` is {}", clip(&before[written.clone()]), &self.text[value.clone()]);
         found
     }
@@ -177,7 +179,7 @@ pub(super) fn overflow(text: &str) -> Option<ParseError> {
     Some(ParseError::new(place, problem))
 }
 
-fn parse_error(text: &str, place: Place, error: &SpannedError) -> ParseError {
+fn parse_error(text: &str, place: Place, error: &SpannedError, choices: Choices) -> ParseError {
     let trailing = error.code == Ron::TrailingCharacters;
     let place = token_at(text, place, trailing);
     let named = matches!(
@@ -186,7 +188,12 @@ fn parse_error(text: &str, place: Place, error: &SpannedError) -> ParseError {
     );
     let places = Places::of(text);
     let field = if named || trailing { None } else { places.last_before(place) };
-    let problem = match (&error.code, field.as_deref().and_then(choices)) {
+    let known = match &field {
+        Some(field) => choices_at(field),
+        None if place.byte(text) == 0 => choices(),
+        None => None,
+    };
+    let problem = match (&error.code, known) {
         (Ron::ExpectedIdentifier | Ron::SuggestRawIdentifier(_), Some(known)) => {
             format!("expected one of {}", names(known))
         }
@@ -250,21 +257,25 @@ fn token_at(text: &str, place: Place, further_lines: bool) -> Place {
     }
 }
 
-fn choices(field: &str) -> Option<&'static [&'static str]> {
-    fn of<T: DeserializeOwned>() -> Option<&'static [&'static str]> {
-        match options().from_str::<T>("Unknown").err()?.code {
-            Ron::NoSuchEnumVariant { expected, .. } => Some(expected),
-            _ => None,
-        }
+/// The names of an enum's variants; `None` of anything else.
+type Choices = fn() -> Option<&'static [&'static str]>;
+
+fn choices_of<T: DeserializeOwned>() -> Option<&'static [&'static str]> {
+    match options().from_str::<T>("Unknown").err()?.code {
+        Ron::NoSuchEnumVariant { expected, .. } => Some(expected),
+        _ => None,
     }
+}
+
+fn choices_at(field: &str) -> Option<&'static [&'static str]> {
     match field.split('.').rfind(|part| part.parse::<usize>().is_err())? {
-        "mechanism" => of::<Mechanism>(),
-        "damping" => of::<Damping>(),
-        "stops" | "stops_when_on" => of::<Stops>(),
-        "excitation" => of::<Excitation>(),
-        "start" => of::<Start>(),
-        "transducer" => of::<Transducer>(),
-        "layout" => of::<Layout>(),
+        "mechanism" => choices_of::<Mechanism>(),
+        "damping" => choices_of::<Damping>(),
+        "stops" | "stops_when_on" => choices_of::<Stops>(),
+        "excitation" => choices_of::<Excitation>(),
+        "start" => choices_of::<Start>(),
+        "transducer" => choices_of::<Transducer>(),
+        "layout" => choices_of::<Layout>(),
         _ => None,
     }
 }
@@ -292,7 +303,8 @@ pub(super) fn explain(error: &SpannedError) -> String {
         Ron::TrailingCharacters => "nothing may follow the end of the value".to_owned(),
         Ron::Eof => "the text ends in the middle".to_owned(),
         Ron::SuggestRawIdentifier(found) | Ron::InvalidIdentifier(found) => {
-            format!("expected a name, found `{}` (a decimal is written with a point)", clip(found))
+            let hint = if found.contains('.') { "" } else { " (a decimal is written with a point)" };
+            format!("expected a name, found `{}`{hint}", clip(found))
         }
         Ron::ExpectedComma => "expected a comma before this".to_owned(),
         Ron::ExpectedFloat => "expected a number".to_owned(),

@@ -204,13 +204,16 @@ impl Blocks {
     }
 
     fn failed(&self, error: &std::io::Error) -> Failure {
-        Failure::failed(format!(
-            "cannot write {}: {error}; {} of {} rows are kept there: once there is room, the same command \
-             with --resume goes on",
-            self.part.path().display(),
-            self.part.kept(),
-            self.rows
-        ))
+        let (part, kept) = (self.part.path().display(), self.part.kept());
+        let remedy = match kept {
+            0 => "no rows are kept: once there is room, give the same command again".to_owned(),
+            _ => format!(
+                "{kept} of {} rows are kept there: once there is room, the same command with --resume goes \
+                 on",
+                self.rows
+            ),
+        };
+        Failure::failed(format!("cannot write {part}: {error}; {remedy}"))
     }
 
     /// Ends the file after an interruption. Returns the failure to report.

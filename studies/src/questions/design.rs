@@ -372,7 +372,9 @@ fn variation(text: &str, document: &Document) -> Result<Variation, Error> {
     let wrong = |problem: String| Error::argument("vary", text, problem);
     let form = "write FIELD=+-1% or FIELD=+-0.05, such as stops.travel_limit_mm=+-1%";
     let (field, by) = text.split_once('=').ok_or_else(|| wrong(form.to_owned()))?;
-    let by = by.trim().trim_start_matches("+-").trim_start_matches('\u{b1}');
+    let by = by.trim();
+    let by =
+        by.strip_prefix("+-").or_else(|| by.strip_prefix('\u{b1}')).ok_or_else(|| wrong(form.to_owned()))?;
     let found = sweep::variation(field.trim(), by, form, document).map_err(wrong)?;
     if found.relative && FieldPath::new(&found.field).get(&document.scene) == Some(0.0) {
         return Err(wrong("a share of 0 is nothing; give the tolerance in the unit of the field".to_owned()));

@@ -281,6 +281,11 @@ impl Threshold {
 
     /// The values of the scan, and the resolution of the threshold.
     pub fn scan(&self, document: &Document) -> Result<Scan, Error> {
+        if self.of == Onset::Release && document.scene.stops == Stops::None {
+            let remedy = "the scene has no stops to release the mass from; give it some, such as \
+                          stops=Rigid(travel_limit_mm: 1.5, restitution: 0.36)";
+            return Err(Error::argument("of", "release", remedy));
+        }
         let argument = self.field.trim();
         let default = if argument == DEFAULT_FIELD { " (the default; give another)" } else { "" };
         let wrong = |problem: String| Error::argument("field", format!("{argument}{default}"), problem);

@@ -136,6 +136,12 @@ fn edges_that_are_valid() {
     }
     // So long a run has too many default samples, and says what to do.
     refused(headless("simulate --set run.duration_s=1e9"), &["--dt"]);
+    refused(headless("simulate --dt 0"), &["--dt 0: give a time in s above 0"]);
+    refused(
+        headless("simulate --set damping=0.3"),
+        &["damping=0.3", "expected one of None, Ratio, Coefficient"],
+    );
+    refused(headless("simulate --set stops=Rigid(1.5)"), &["expected a name, found `1.5`"]);
 }
 
 #[test]

@@ -16,7 +16,8 @@ fn curve_rows_and_columns() {
     assert_eq!((x.len(), &x[0][..], &x[200][..], &x[201][..]), (401, "-8e-3", "0", "4e-5"));
     assert_eq!(column(&stdout("curve duffing"), "x_m").len(), 401);
     assert_eq!(column(&stdout("curve paper --points 5"), "x_m").len(), 5);
-    refused(headless("curve --at-mm 9"), &["9 mm", "-8.2559", " to 8.2559"]);
+    refused(headless("curve --at-mm 9"), &["--at-mm 9: 9 mm", "-8.2559", " to 8.2559"]);
+    refused(headless("curve --range-mm 0:9"), &["--range-mm 0:9: ", " mm is not on the force curve"]);
     for bad in ["--at-mm nan", "--at-mm x", "--at-mm ,", "--range-mm 3:-3", "--range-mm 3", "--points 1"] {
         refused(headless(&format!("curve {bad}")), &[]);
     }

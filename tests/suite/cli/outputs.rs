@@ -43,6 +43,9 @@ fn a_missing_folder_or_a_folder_is_refused_and_the_rest_not_written() {
     let mut command = headless("sweep nominal-cubic --over mechanism.cubic_n_per_m3=1e5,-1e5,1e6 --out");
     command.arg(&good);
     refused(command, &["cubic_n_per_m3"]);
+    // Nor is a report of some of the scenes.
+    let mut command = headless("check paper no-such-scene --out");
+    command.arg(&good).assert().code(2);
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
 }
 

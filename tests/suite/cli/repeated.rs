@@ -44,7 +44,7 @@ fn calls(command: &str) -> Vec<&'static str> {
         "threshold" => vec![
             "SCENE --of crossing --field excitation.amplitude_g=0:0.3:0.1 --until-settled 50 \
              --resolution 0.05",
-            "linear.ron --of release --over mass_g=900,1000 --plot p.svg",
+            "SCENE --of release --over mass_g=900,1000 --plot p.svg",
         ],
         "compare" => vec!["linear.ron l2.ron --environment SCENE --set run.tolerance=1e-7"],
         "best" => vec![
@@ -194,7 +194,8 @@ fn what_a_manifest_cannot_do_is_said() {
     // it is replaced as any other manifest
     run("identify r.csv --of damping --quiet --out ratio.csv").assert().success();
     refused(run("simulate ratio.csv.json"), &["ratio.csv.json", "`identify`", "without a scene", "repeat"]);
-    run("threshold linear.ron --of release --quiet --out t.csv").assert().success();
+    let line = "threshold linear.ron --field excitation.amplitude_g=0:0.3:0.1 --quiet --out t.csv";
+    run(line).assert().success();
     refused(run("sweep t.csv.json --over mass_g=1,2 --check"), &["--check", "manifest of a sweep"]);
     // a comparison stands for all its scenes, any other command takes the first
     run("compare linear.ron l2.ron --quiet --out c.csv").assert().success();

@@ -2,6 +2,8 @@
 
 use std::fs;
 
+use predicates::str::contains;
+
 use super::{column, headless, refused, stdout};
 
 const SHORT: &str = "--set run.duration_s=4 --set run.settle_s=2 --quiet";
@@ -95,6 +97,13 @@ fn a_diagram_has_a_manifest_and_pictures() {
          --carry both --out m.csv --plot m.svg");
     let text = fs::read_to_string(folder.path().join("m.svg")).unwrap();
     assert!(text.contains(">down \u{2212} up</text>"), "the difference of the two maps");
+}
+
+#[test]
+fn a_section_without_rows_says_why() {
+    let mut command = headless("section paper-unconstrained --at impacts");
+    command.assert().success().stderr(contains("no impact counts"));
+    headless("section paper --at impacts").assert().success().stderr("");
 }
 
 #[test]

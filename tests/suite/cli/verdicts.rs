@@ -1,5 +1,7 @@
 //! Columns, waiting for motions to settle, and thresholds, as the command line gives them.
 
+use predicates::str::contains;
+
 use super::{column, headless, refused, stdout};
 
 #[test]
@@ -214,6 +216,7 @@ fn a_threshold_that_cannot_be_searched_is_refused() {
             "threshold paper --plot a.png --over mass_g=1,2 --over damping.xi=0,1 --over run.settle_s=0,1",
             &["3"],
         ),
+        ("threshold paper-unconstrained --of release", &["--of release", "no stops", "stops=Rigid("]),
         ("threshold paper --of motion", &["release", "crossing", "interwell"]),
         ("threshold paper --resolution 0", &["--resolution 0", "above 0"]),
         ("threshold paper --until-settled 5", &["--until-settled 5", "already lasts 10 s"]),
@@ -231,6 +234,13 @@ fn a_threshold_that_cannot_be_searched_is_refused() {
     ] {
         refused(headless(line), words);
     }
+}
+
+#[test]
+fn where_melnikov_does_not_apply_a_remark_says_what_it_needs() {
+    let line = "threshold paper --field excitation.amplitude_g=0:1.5:0.5 --melnikov";
+    let words = contains("the row has no melnikov_g: it needs linear damping");
+    headless(line).assert().success().stderr(words);
 }
 
 #[test]
