@@ -132,7 +132,8 @@ fn diagram(options: &Arguments, common: &Common, settings: SectionOptions) -> Re
     let chart = |rows: &Table, ranges| Ok(section_chart(rows, over, phase(&settings), (None, None), ranges));
     let wall_s = job.finish(chart, |manifest| Ok(manifest.of_rows(grid, &tally, None)))?;
     if tally.cells == sections.rows() {
-        common.say(&format!("{count} rows of {} in {wall_s:.2} s", runs(&tally)));
+        let rows = counted(count as u64, "row");
+        common.say(&format!("{rows} of {} in {wall_s:.2} s", runs(&tally)));
     }
     Ok(())
 }

@@ -271,5 +271,6 @@ impl ColumnRequest {
 
 /// The clause for a record with this many rows, fewer than 2.
 pub(super) fn too_few(rows: usize) -> String {
-    format!("has {rows} rows of numbers; a record needs at least 2")
+    let count = if rows == 0 { "no row" } else { "one row" };
+    format!("has {count} of numbers; a record needs at least 2")
 }

@@ -12,6 +12,7 @@ use interwell::system::threads::{Pool, within};
 use super::super::Failure;
 use super::super::progress::duration;
 use super::super::shard::{command, value};
+use super::super::support::counted;
 use super::super::support::arguments;
 use super::prepared::Prepared;
 
@@ -66,7 +67,7 @@ pub fn print(prepared: &Prepared, pool: &Pool) -> Result<(), Failure> {
     let axes: Vec<String> = axes.map(|(axis, name)| format!("{} {name}", axis.values.len())).collect();
     let (shard, all) = (slice.shard(), sweep.rows());
     let of = if sharded { format!(" of the shard {shard}, of {all}") } else { String::new() };
-    println!("{count} rows{of}: {}; {} columns", axes.join(" x "), columns.len());
+    println!("{}{of}: {}; {} columns", counted(count, "row"), axes.join(" x "), columns.len());
     let about = duration(seconds);
     match run {
         0 if count == 0 => println!("nothing to compute"),
