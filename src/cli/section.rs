@@ -14,7 +14,7 @@ use super::{ChartOptions, Common, Failure, Output, Picture, interrupt, refuse, s
 
 const EXAMPLES: &str = "\
 Examples:
-  interwell --headless section paper --out section.csv --plot section.png
+  interwell --headless section duffing-chaos --out section.csv --plot section.png
   interwell --headless section paper --at impacts
   interwell --headless section paper-unconstrained --over excitation.amplitude_g=1:1.5:0.005 --carry both \\
       --skip 200 --keep 100 --out diagram.csv --plot diagram.png";

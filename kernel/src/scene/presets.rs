@@ -38,7 +38,7 @@ presets! {
     "first-look": "what the window opens on: the prototype without stops, shaken too weakly to cross";
     "paper": "the prototype: travel limits inside the wells, and the map over limit and shaking";
     "paper-table": "the prototype with its force from an independent three-dimensional model of the flexures";
-    "paper-unconstrained": "the prototype without stops: stays in its well at 1 g, crosses from 1.16 g";
+    "paper-unconstrained": "the prototype without stops: stays in its well at 1 g, crosses above 1.15 g";
     "paper-ramp": "the prototype, shaken from 0 to 2 g in five minutes: when it frees, when it crosses";
     "uneven-stops": "the prototype between unequal stops: two different rebounds, and two thresholds";
     "walking": "the prototype carried by a walking person: crosses in every step with stops at 0.6 mm";

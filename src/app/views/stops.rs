@@ -54,18 +54,29 @@ fn limit_number(session: &Session, mm: f64) -> String {
 pub(super) fn travel_limits(painter: &Painter, context: &ViewContext<'_>, rect: Rect, taken: &mut Taken) {
     let style = context.style;
     let (stops, _) = shown_stops(context.session, context.drawn);
-    for (mm, side) in stops.into_iter().zip([-1.0_f32, 1.0]) {
-        let Some(mm) = mm else { continue };
-        let line =
-            [rect.top(), rect.bottom()].map(|y| pos2(context.span.screen_from_world(mm / 1e3, rect), y));
+    let place = |mm: f64| context.span.screen_from_world(mm / 1e3, rect);
+    let limits = stops.into_iter().zip([-1.0_f32, 1.0]).filter_map(|(mm, side)| Some((mm?, side)));
+    for (mm, _) in limits.clone() {
+        let line = [rect.top(), rect.bottom()].map(|y| pos2(place(mm), y));
         painter.line_segment(line, Stroke::new(style.width(1.3), style.stop()));
         taken.lines.push(line.to_vec());
+    }
+    let width = |mm: f64| {
+        let text = limit_number(context.session, mm);
+        painter.layout_no_wrap(text, style.small(), style.ink()).size().x
+    };
+    // both beside their lines, or both outside of the walls
+    let fits = stops[0]
+        .zip(stops[1])
+        .is_none_or(|(left, right)| place(right) - place(left) > width(left) + width(right) + 20.0);
+    for (mm, side) in limits {
         let text = limit_number(context.session, mm);
         let [inner, outer] = [(-4.0, side), (BALL + WALL + 4.0, -side)].map(|(aside, towards)| {
             let align = if towards > 0.0 { Align2::RIGHT_TOP } else { Align2::LEFT_TOP };
-            (text.as_str(), line[0] + vec2(side * aside, 4.0), align)
+            (text.as_str(), pos2(place(mm) + side * aside, rect.top() + 4.0), align)
         });
-        taken.write(painter, rect, (style.small(), style.ink()), [outer, inner]);
+        let places = if fits { [inner, outer] } else { [outer, inner] };
+        taken.write(painter, rect, (style.small(), style.ink()), places);
     }
 }
 

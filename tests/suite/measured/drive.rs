@@ -29,7 +29,7 @@ fn what_is_no_record_is_refused_with_a_remedy() {
         ("t_ms,a_g,b_g\n0,1,1\n1,2,1\n", &["a_g, b_g", "acceleration", "leave the unit to one"]),
         ("t_ms,a_g\n0,1\n5,\n", &["line 3", "a_g", "``"]),
         ("t_ms,a_g\n0,1\n5,2\n4,2\n", &["line 4", "t_ms = 4", "after 5"]),
-        ("t_ms,a_g\n0,1\n", &["1 rows", "at least 2"]),
+        ("t_ms,a_g\n0,1\n", &["one row of numbers", "at least 2"]),
     ] {
         let message = Record::parse(text).unwrap_err().to_string();
         for word in words {

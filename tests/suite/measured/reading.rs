@@ -48,8 +48,8 @@ fn layouts_and_units_that_are_meant_are_read() {
 fn what_cannot_be_meant_is_refused_with_its_line_and_a_remedy() {
     for (text, words) in [
         ("", &["empty", "t_s,x_m"][..]),
-        ("t_s,x_m\n", &["0 rows", "at least 2"]),
-        ("t_s,x_m\n0,1\n", &["1 rows", "at least 2"]),
+        ("t_s,x_m\n", &["no row of numbers", "at least 2"]),
+        ("t_s,x_m\n0,1\n", &["one row of numbers", "at least 2"]),
         ("t_s,x_m\n0,1\n1,NaN\n2,1\n", &["line 3", "x_m", "`NaN`", "left out"]),
         ("t_s,x_m\n0,1\n1,\n2,1\n", &["line 3", "x_m", "``"]),
         ("t_s,x_m\n0,1\n# pause\n2,1\n1.5,1\n", &["line 5", "t_s = 1.5", "after 2", "sort"]),

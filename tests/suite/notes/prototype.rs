@@ -156,7 +156,7 @@ pub fn paper_unconstrained(text: &mut Text) {
         assert_eq!(settled(NAME, &[&change]).total_crossings, 0, "{change}");
     }
     text.says("nothing crosses up to 1.15 g");
-    text.says("stays in its well at 1 g, crosses from 1.16 g");
+    text.says("stays in its well at 1 g, crosses above 1.15 g");
     let mut others = 0;
     for hundredths in 116..=136 {
         let change = shaken(f64::from(hundredths) / 100.0);
