@@ -297,7 +297,7 @@ fn a_record_that_cannot_be_meant_is_refused_and_one_that_may_surprise_is_remarke
         ("t_s,accel_m_per_s2\n0,1\n1,NaN\n", "line 3: accel_m_per_s2 is `NaN`"),
         ("t_s,accel_m_per_s2\n0,1\n1,2\n1,3\n", "line 4: t_s = 1e0 does not come after 1e0"),
         ("t_s,accel_m_per_s2\n0,1\n1,2\n0.5,3\n", "line 4: t_s = 5e-1 does not come after 1e0"),
-        ("t_s,accel_m_per_s2\n0,1\n", "has 1 rows"),
+        ("t_s,accel_m_per_s2\n0,1\n", "has one row"),
         ("t,a\n0,1\n", "no column t_s"),
     ] {
         let found = check(text);
