@@ -27,8 +27,6 @@ const SWITCH_WIDTH: f32 = 90.0;
 /// Width in points of a slider's control apart from the slider and its name.
 const BESIDE_SLIDER: f32 = 136.0;
 const LEAST_SLIDER: f32 = 60.0;
-/// Width in points of the control of a load in a row, apart from its slider.
-const LOAD_NAME: f32 = 160.0;
 const WIDEST_SLIDER: f32 = 280.0;
 
 const MORE_HOVER: &str = "Restitution, preload, damping and mass; spring, magnets and transducer, where \
@@ -120,12 +118,7 @@ pub fn row_ui(ui: &mut Ui, session: &mut Session, more: &mut bool) {
             // a narrow row has no room for headings
             let is_narrow = ui.available_width() < NARROW;
             let names = if is_narrow { 340.0 } else { 405.0 } + 120.0 * sides as f32;
-            let room = ui.available_width() - names;
-            // what the scene is about comes before the search
-            let with_load = (room - LOAD_NAME) / (2 + sides) as f32;
-            let has_load = session.scene().transducer != Transducer::None && with_load >= LEAST_SLIDER;
-            let (room, sliders) = if has_load { (room - LOAD_NAME, 2 + sides) } else { (room, 1 + sides) };
-            let slider_width = |button: f32| (room - button) / sliders as f32;
+            let slider_width = |button: f32| (ui.available_width() - names - button) / (1 + sides) as f32;
             let has_search = !is_narrow && slider_width(SEARCH) >= LEAST_BESIDE;
             let width = slider_width(if has_search { SEARCH } else { 0.0 }).clamp(30.0, 260.0);
             if !is_narrow {
@@ -135,10 +128,6 @@ pub fn row_ui(ui: &mut Ui, session: &mut Session, more: &mut bool) {
             ui.separator();
             stops_switch_ui(ui, session);
             fields_ui(ui, session, &LIMITS, width);
-            if has_load {
-                ui.separator();
-                fields_ui(ui, session, &LOAD, width);
-            }
             if has_search {
                 best_stops_ui(ui, session, "Best stops");
             }
