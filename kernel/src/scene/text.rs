@@ -92,9 +92,16 @@ pub(super) fn read<T: DeserializeOwned>(text: &str) -> Result<T, ParseError> {
 /// Reads a RON value whose numbers may be arithmetic.
 pub(super) fn value<T: DeserializeOwned>(text: &str) -> Result<T, ParseError> {
     let evaluated = Evaluated::of(text);
-    let read = options()
-        .from_str(&evaluated.text)
-        .map_err(|error| evaluated.parse_error(text, &error, choices_of::<T>));
+    let read = options().from_str(&evaluated.text).map_err(|error| {
+        let found = evaluated.parse_error(text, &error);
+        // a value that stands alone has no field before it, by which its choices are known
+        match choices_of::<T>() {
+            Some(known) if found.place.byte(text) == 0 && is_no_choice(&error.code) => {
+                ParseError { problem: expected_one_of(known), ..found }
+            }
+            _ => found,
+        }
+    });
     match (read, evaluated.wrong.first().cloned()) {
         // what comes before a broken expression may be why it is taken for one
         (Err(error), Some((place, _))) if error.place < place => Err(error),
@@ -143,22 +150,22 @@ impl<'t> Evaluated<'t> {
         Self { text, replaced, wrong }
     }
 
-    /// The error of RON with its place in the text `before` of a value with these `choices`.
-    fn parse_error(&self, before: &str, error: &SpannedError, choices: Choices) -> ParseError {
+    /// The error of RON with its place in the text `before`.
+    fn parse_error(&self, before: &str, error: &SpannedError) -> ParseError {
         let place = Place { line: error.span.start.line, column: error.span.start.col };
         if self.replaced.is_empty() {
-            return parse_error(before, place, error, choices);
+            return parse_error(before, place, error);
         }
         let at = place.byte(&self.text);
         let count = self.replaced.partition_point(|(value, _)| value.start <= at);
         let Some((value, written)) = count.checked_sub(1).map(|last| &self.replaced[last]) else {
-            return parse_error(before, Place::of_byte(before, at), error, choices);
+            return parse_error(before, Place::of_byte(before, at), error);
         };
         if at >= value.end {
             let at = written.end + (at - value.end);
-            return parse_error(before, Place::of_byte(before, at), error, choices);
+            return parse_error(before, Place::of_byte(before, at), error);
         }
-        let mut found = parse_error(before, Place::of_byte(before, written.start), error, choices);
+        let mut found = parse_error(before, Place::of_byte(before, written.start), error);
         found.problem += &format!("; `{}` is {}", clip(&before[written.clone()]), &self.text[value.clone()]);
         found
     }
@@ -179,7 +186,7 @@ pub(super) fn overflow(text: &str) -> Option<ParseError> {
     Some(ParseError::new(place, problem))
 }
 
-fn parse_error(text: &str, place: Place, error: &SpannedError, choices: Choices) -> ParseError {
+fn parse_error(text: &str, place: Place, error: &SpannedError) -> ParseError {
     let trailing = error.code == Ron::TrailingCharacters;
     let place = token_at(text, place, trailing);
     let named = matches!(
@@ -188,15 +195,8 @@ fn parse_error(text: &str, place: Place, error: &SpannedError, choices: Choices)
     );
     let places = Places::of(text);
     let field = if named || trailing { None } else { places.last_before(place) };
-    let known = match &field {
-        Some(field) => choices_at(field),
-        None if place.byte(text) == 0 => choices(),
-        None => None,
-    };
-    let problem = match (&error.code, known) {
-        (Ron::ExpectedIdentifier | Ron::SuggestRawIdentifier(_), Some(known)) => {
-            format!("expected one of {}", names(known))
-        }
+    let problem = match (&error.code, field.as_deref().and_then(choices)) {
+        (code, Some(known)) if is_no_choice(code) => expected_one_of(known),
         (Ron::ExpectedComma, _) if is_unit(text, place) => {
             format!("{}; a unit stands in the name of its field, not behind the number", explain(error))
         }
@@ -257,9 +257,16 @@ fn token_at(text: &str, place: Place, further_lines: bool) -> Place {
     }
 }
 
-/// The names of an enum's variants; `None` of anything else.
-type Choices = fn() -> Option<&'static [&'static str]>;
+/// Whether the parser found something else where the name of a choice should stand.
+fn is_no_choice(code: &Ron) -> bool {
+    matches!(code, Ron::ExpectedIdentifier | Ron::SuggestRawIdentifier(_))
+}
 
+fn expected_one_of(known: &[&str]) -> String {
+    format!("expected one of {}", names(known))
+}
+
+/// The names of the choices of a `T`, if it has such.
 fn choices_of<T: DeserializeOwned>() -> Option<&'static [&'static str]> {
     match options().from_str::<T>("Unknown").err()?.code {
         Ron::NoSuchEnumVariant { expected, .. } => Some(expected),
@@ -267,7 +274,7 @@ fn choices_of<T: DeserializeOwned>() -> Option<&'static [&'static str]> {
     }
 }
 
-fn choices_at(field: &str) -> Option<&'static [&'static str]> {
+fn choices(field: &str) -> Option<&'static [&'static str]> {
     match field.split('.').rfind(|part| part.parse::<usize>().is_err())? {
         "mechanism" => choices_of::<Mechanism>(),
         "damping" => choices_of::<Damping>(),
