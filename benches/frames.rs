@@ -81,10 +81,12 @@ impl Screen {
         let mut screen = Self { ctx, window, frame: 0, drawn: (0, 0) };
         first(&mut screen.window);
         screen.window.session.player.speed = 1.0;
-        screen.open(open);
         if matches!(open, Open::All | Open::Only(Some(View::Map)) | Open::Layout(Layout::Map)) {
+            // among other views it may lie behind them, and is not computed then
+            screen.open(Open::Only(Some(View::Map)));
             screen.fill_map();
         }
+        screen.open(open);
         for _ in 0..SETTLING {
             screen.step();
         }
@@ -126,10 +128,11 @@ impl Screen {
         match open {
             Open::Layout(layout) => self.ask(Command::Arrange(layout)),
             Open::All => {
-                // Beside others, the view Side by side would be given the whole window.
-                self.open(Open::Only(Some(View::SideBySide)));
-                let last = [View::Map];
-                View::ALL.into_iter().chain(last).for_each(|view| self.ask(Command::Show(view, true)));
+                // beside others, the view Side by side would be given the whole window
+                self.open(Open::Only(None));
+                let others = View::ALL.into_iter().filter(|view| *view != View::SideBySide);
+                let all = [View::SideBySide].into_iter().chain(others);
+                all.for_each(|view| self.ask(Command::Show(view, true)));
             }
             Open::Only(only) => {
                 View::ALL.into_iter().for_each(|view| self.ask(Command::Show(view, only == Some(view))));
