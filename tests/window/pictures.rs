@@ -1,9 +1,12 @@
 //! What pictures over the displacement show: axes that fit, labels clear of lines, contact without overlap.
 
+use std::f64::consts::TAU;
+
 use eframe::egui::{Color32, Pos2, Rect, Shape, Stroke, epaint::ColorMode, vec2};
 use egui_kittest::Harness;
 use interwell::app::views::View;
 use interwell::app::window::{Command, Window};
+use interwell::scene::Excitation;
 
 use crate::support::{PROJECTED, WIDE, command, is_painted, painted, window};
 
@@ -427,4 +430,52 @@ fn a_live_picture_is_few_shapes() {
         // the hatching of two walls among them
         assert!(count < 250, "{view:?}: {count}");
     }
+}
+
+#[test]
+fn a_force_on_the_mass_is_drawn_in_newtons_and_moves_no_base() {
+    let push = |harness: &Harness<'static, Window>| {
+        let texts = painted(harness).into_iter().map(|text| text.0);
+        texts.filter(|text| text.starts_with("push ")).collect::<Vec<_>>()
+    };
+    let mut harness = showing("paper", WIDE, &[View::Mechanism]);
+    assert!(is_painted(&harness, "base: \u{b1}27.6 mm"));
+    assert!(matches!(&push(&harness)[..], [text] if text.ends_with(" g")), "{:?}", push(&harness));
+    harness.state_mut().session.edit_once(|scene| {
+        scene.excitation =
+            Excitation::Force { amplitude_n: 0.149, frequency_rad_per_s: TAU * 3.0, phase_deg: 0.0 };
+    });
+    harness.run_steps(8);
+    let [text] = &push(&harness)[..] else { panic!("{:?}", push(&harness)) };
+    let newtons: f64 = text.strip_prefix("push ").unwrap().strip_suffix(" N").unwrap().parse().unwrap();
+    let session = &harness.state().session;
+    let expected = session.shown().mass() * session.player.state().base_accel.abs();
+    assert!((newtons - expected).abs() <= 0.005 + 1e-9, "{newtons}, not {expected}");
+    assert!(!is_painted(&harness, "base"), "nothing is said of a base that stands still");
+}
+
+/// Both numbers stand beside the lines of the travel limits, or both outside of the walls.
+#[test]
+fn numbers_of_travel_limits_stand_alike() {
+    let mut harness = showing("paper", WIDE, &[View::Well]);
+    let mut outside = 0;
+    for limit in [0.1, 0.3, 0.6, 1.0, 1.5, 2.5, 4.0] {
+        set(&mut harness, "stops.travel_limit_mm", limit);
+        let all = painted(&harness);
+        let written = format!("{limit:.2}");
+        let [_, below] = axes(&harness, "energy (mJ)");
+        // the field of the slider stands to the left of the picture
+        let inside = |x: &f32| *x > below[0].1;
+        let at = |text: &str| {
+            all.iter().filter(|found| found.0 == text).map(|found| found.1.center().x).find(inside).unwrap()
+        };
+        let (left, right) = (at(&format!("\u{2212}{written}")), at(&written));
+        let scale = (below[1].1 - below[0].1) / (below[1].0 - below[0].0) as f32;
+        let middle = below[0].1 - below[0].0 as f32 * scale;
+        let lines = [-limit, limit].map(|mm| middle + mm as f32 * scale);
+        let inside = [left > lines[0], right < lines[1]];
+        assert_eq!(inside[0], inside[1], "{limit}: {left} and {right} about {lines:?}");
+        outside += u32::from(!inside[0]);
+    }
+    assert!((1..7).contains(&outside), "narrow ones outside, wide ones inside: {outside}");
 }

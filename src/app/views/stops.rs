@@ -52,31 +52,30 @@ fn limit_number(session: &Session, mm: f64) -> String {
 /// Draws the travel limits over `rect` as lines with their numbers, where the faces of the stops stand the
 /// half width of the mass farther out; what is drawn is `taken`.
 pub(super) fn travel_limits(painter: &Painter, context: &ViewContext<'_>, rect: Rect, taken: &mut Taken) {
-    let style = context.style;
+    let (style, text_style) = (context.style, (context.style.small(), context.style.ink()));
     let (stops, _) = shown_stops(context.session, context.drawn);
-    let place = |mm: f64| context.span.screen_from_world(mm / 1e3, rect);
-    let limits = stops.into_iter().zip([-1.0_f32, 1.0]).filter_map(|(mm, side)| Some((mm?, side)));
-    for (mm, _) in limits.clone() {
-        let line = [rect.top(), rect.bottom()].map(|y| pos2(place(mm), y));
+    let limits = stops.into_iter().zip([-1.0_f32, 1.0]).filter_map(|(mm, side)| {
+        let place = context.span.screen_from_world(mm? / 1e3, rect);
+        Some((place, side, limit_number(context.session, mm?)))
+    });
+    let limits: Vec<(f32, f32, String)> = limits.collect();
+    for (x, ..) in &limits {
+        let line = [pos2(*x, rect.top()), pos2(*x, rect.bottom())];
         painter.line_segment(line, Stroke::new(style.width(1.3), style.stop()));
         taken.lines.push(line.to_vec());
     }
-    let width = |mm: f64| {
-        let text = limit_number(context.session, mm);
-        painter.layout_no_wrap(text, style.small(), style.ink()).size().x
+    let width = |text: &str| painter.layout_no_wrap(text.to_owned(), style.small(), style.ink()).size().x;
+    // both numbers at their lines, or both outside of the walls
+    let fit = match &limits[..] {
+        [left, right] => right.0 - left.0 > width(&left.2) + width(&right.2) + 20.0,
+        _ => true,
     };
-    // both beside their lines, or both outside of the walls
-    let fits = stops[0]
-        .zip(stops[1])
-        .is_none_or(|(left, right)| place(right) - place(left) > width(left) + width(right) + 20.0);
-    for (mm, side) in limits {
-        let text = limit_number(context.session, mm);
-        let [inner, outer] = [(-4.0, side), (BALL + WALL + 4.0, -side)].map(|(aside, towards)| {
+    for (x, side, text) in &limits {
+        let [inner, outer] = [(-4.0, *side), (BALL + WALL + 4.0, -side)].map(|(aside, towards)| {
             let align = if towards > 0.0 { Align2::RIGHT_TOP } else { Align2::LEFT_TOP };
-            (text.as_str(), pos2(place(mm) + side * aside, rect.top() + 4.0), align)
+            (text.as_str(), pos2(x + side * aside, rect.top() + 4.0), align)
         });
-        let places = if fits { [inner, outer] } else { [outer, inner] };
-        taken.write(painter, rect, (style.small(), style.ink()), places);
+        taken.write(painter, rect, text_style.clone(), if fit { [inner, outer] } else { [outer, inner] });
     }
 }
 

@@ -47,8 +47,8 @@ macro_rules! views {
 
 views! {
     Mechanism "Mechanism" (60.0, 60.0) super::mechanism::mechanism_ui,
-        "The mass between its stops, seen from the base that shakes, with its flexures or a spring in \
-         their place, and a spring, magnets or a transducer beside them. The arrow is the push that the mass \
+        "The mass between its stops, seen from the base, with its flexures or a spring in their \
+         place, and a spring, magnets or a transducer beside them. The arrow is the push that the mass \
          feels. Drag the mass or a stop.";
     Well "Well" (60.0, 60.0) super::well::well_ui,
         "The mass rides on the potential like a ball on a tray that the push tips. Drag the ball or a \

@@ -109,7 +109,7 @@ const MEANINGS: &[(&str, &str)] = &[
     ("stops", "Where the stops stand: the travel limit on either side."),
     (
         "potential with the push",
-        "The mechanism's potential, tipped by the push of the base: the mass moves as a ball on it.",
+        "The mechanism's potential, tipped by the push: the mass moves as a ball on it.",
     ),
     (
         "potential",
