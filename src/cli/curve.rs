@@ -112,10 +112,11 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         Some(listed) => listed.clone(),
         None => even(options.points.unwrap_or(points) as usize),
     };
-    let at = options.at_mm.iter().map(|text| format!("--at-mm {text}: "));
-    let place: String =
-        at.chain(options.range_mm.iter().map(|text| format!("--range-mm {text}: "))).collect();
-    let outside = |error: OutsideCurve| Failure::argument(format!("{place}{error}"));
+    let outside = |error: OutsideCurve| match (&options.at_mm, &options.range_mm) {
+        (Some(text), _) => Failure::argument(format!("--at-mm {text}: {error}")),
+        (_, Some(text)) => Failure::argument(format!("--range-mm {text}: {error}")),
+        _ => error.into(),
+    };
     let mut table = curve(&mechanism, positions(CURVE_POINTS)).map_err(outside)?;
     let of_flexures = [
         options.full.then_some("--full"),

@@ -190,9 +190,9 @@ fn without_melnikov(table: &Table) -> Option<String> {
     let name = &table.columns().iter().find(|column| column.name.starts_with("melnikov"))?.name;
     let rows = without(table.numbers(name)?, name)?;
     Some(format!(
-        "{rows}: it needs linear damping above 0, no current or voltage with an equation of its own, a \
-         barrier without a kink, and a well whose homoclinic orbit meets neither a stop nor the end of the \
-         force curve"
+        "{rows}: it needs linear damping above 0, no current or voltage as a third state, a barrier without \
+         a kink, a well whose homoclinic orbit meets neither a stop nor the end of the force curve, and a \
+         drive that is not far faster than motions at the barrier"
     ))
 }
 

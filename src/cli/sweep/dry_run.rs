@@ -12,8 +12,7 @@ use interwell::system::threads::{Pool, within};
 use super::super::Failure;
 use super::super::progress::duration;
 use super::super::shard::{command, value};
-use super::super::support::arguments;
-use super::super::support::counted;
+use super::super::support::{arguments, counted};
 use super::prepared::Prepared;
 
 /// Cells of the first sample for each thread.
