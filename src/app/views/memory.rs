@@ -73,6 +73,11 @@ impl Memory {
         Span { low, high }
     }
 
+    /// The state that remains from one step of a lesson to the next: axes that hold while they suit.
+    pub fn for_another_step(&self) -> Self {
+        Self { frozen: self.frozen, ..Self::default() }
+    }
+
     /// The state that remains when another scene is opened.
     pub fn for_another_scene(&self) -> Self {
         Self { axes: self.axes.held(), ..Self::default() }

@@ -149,6 +149,11 @@ impl Tiling {
         self.tree.make_active(|_, tile| matches!(tile, Tile::Pane(pane) if *pane == view));
     }
 
+    /// Brings a view that is shown to the front of its tabs.
+    pub fn show_in_front(&mut self, view: View) {
+        self.bring_to_front(self.tree.tiles.find_pane(&view));
+    }
+
     pub fn has_tabs(&self) -> bool {
         self.tab_after(None).is_some()
     }

@@ -258,7 +258,15 @@ impl Window {
                     (false, None) => "The last step: Enter finishes the lesson".to_owned(),
                 });
             }
-            LessonAction::Next => lesson.go_on(),
+            LessonAction::Next => {
+                let turn = lesson.go_on();
+                // where nothing shakes the mass, a step speaks of the motion from its start
+                if matches!(turn, Turn::Same) && !self.session.model().is_shaken() {
+                    self.session.restart();
+                    self.session.player.set_playing(true);
+                }
+                turn
+            }
             LessonAction::Reveal => lesson.reveal(),
             LessonAction::Finish => return self.finish_lesson(),
             LessonAction::Vote(option, more) => {
@@ -325,10 +333,18 @@ impl Window {
         turn.into_iter().for_each(|turn| self.take_turn(turn));
     }
 
+    /// Brings the views to the front that are bold words in the text of the step, the first of them last.
+    pub(super) fn show_named_views(&mut self) {
+        let Some(lesson) = &self.lessons.open else { return };
+        let named = bold_words(lesson.step().text()).filter_map(|word| view_named(&word));
+        named.collect::<Vec<View>>().into_iter().rev().for_each(|view| self.tiling.show_in_front(view));
+    }
+
     fn take_turn(&mut self, turn: Turn) {
+        self.show_named_views();
         let (Some(lesson), Turn::Show(scene, plays)) = (&self.lessons.open, turn) else { return };
         match self.session_on(lesson, *scene, plays) {
-            Ok(session) => (self.session, self.memory) = (session, Memory::default()),
+            Ok(session) => (self.session, self.memory) = (session, self.memory.for_another_step()),
             Err(error) => {
                 self.messages.alert("This step of the lesson cannot be shown", error.to_string());
                 self.leave_lesson();

@@ -211,7 +211,7 @@ impl Window {
         if let Some(lesson) = &self.lessons.open {
             let views: Vec<View> = lesson.lesson().views.iter().map(|view| View::from(*view)).collect();
             self.tiling = Tiling::of_lesson(&views, room);
-            return;
+            return self.show_named_views();
         }
         self.tiling = match (self.arrangement, &self.custom) {
             (Arrangement::Custom, Some(saved)) => Tiling::custom(saved, room),
