@@ -1,7 +1,7 @@
 //! Choice of the two axes of a map, and of their ranges.
 
 use crate::app::words::numbers::{below, decimal, round_up};
-use crate::scene::{FieldPath, Scene, Start, Stops, SweepAxis, field_info, numeric_fields};
+use crate::scene::{Excitation, FieldPath, Scene, Start, Stops, SweepAxis, field_info, numeric_fields};
 use crate::study::{label_and_unit, with_unit};
 
 /// Ends and step of the travel limit in mm on the prototype's map, for scenes of its size.
@@ -12,11 +12,12 @@ const AMPLITUDES_G: (f64, f64, f64) = (0.0, 2.0, 0.02);
 /// Number of steps of an axis whose range is derived from the present value.
 const STEPS: f64 = 40.0;
 
-/// The scene that a map is made of, which has the fields of the axes: from rest, and with the stops `when_on`
-/// if it has none and an axis is over a field of the stops.
+/// The scene that a map is made of, which has the fields of the axes: from rest, or from its start where
+/// nothing shakes it, and with the stops `when_on` if it has none and an axis is over a field of the stops.
 pub fn ground(scene: &Scene, when_on: Stops, axes: &[SweepAxis]) -> Scene {
+    let is_still = scene.excitation == Excitation::None;
     let mut ground = Scene {
-        start: Start::Rest,
+        start: if is_still { scene.start } else { Start::Rest },
         title: String::new(),
         notes: String::new(),
         sweep: Vec::new(),

@@ -8,7 +8,7 @@ use crate::app::ui::knob::refuse;
 use crate::app::ui::widgets::{choices_ui, tell};
 use crate::app::words::columns::{COLUMNS, title};
 use crate::output::words_of;
-use crate::scene::SweepAxis;
+use crate::scene::{Excitation, Start, SweepAxis};
 use crate::study::SummaryField;
 
 use super::super::axes::{field_ui, range_id, range_row_ui};
@@ -44,8 +44,8 @@ pub fn tools_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     egui::Frame::new().inner_margin(egui::Margin::symmetric(8, 0)).show(ui, |ui| {
         ui.horizontal_wrapped(|ui| {
             quantity_ui(ui, &mut context.session.map);
-            ui.label(RichText::new("from rest").heading())
-                .on_hover_text("Every cell is a run of its own from rest.");
+            let start = start_in_words(context);
+            ui.label(RichText::new(start).heading()).on_hover_text(cells_in_words(start));
             if !narrow {
                 axes_ui(ui, context);
             }
@@ -58,6 +58,19 @@ pub fn tools_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     });
 }
 
+/// From where the runs of the map start.
+fn start_in_words(context: &ViewContext<'_>) -> &'static str {
+    let scene = context.session.scene();
+    match scene.excitation == Excitation::None && scene.start != Start::Rest {
+        true => "from its start",
+        false => "from rest",
+    }
+}
+
+fn cells_in_words(start: &str) -> String {
+    format!("Every cell is a run of its own {start}.")
+}
+
 /// The quantity, the axes where they have room, a menu of all other choices, and the progress.
 fn row_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     (ui.spacing_mut().interact_size.y, ui.spacing_mut().button_padding.y) = (LegendRow::HEIGHT, 0.0);
@@ -67,7 +80,7 @@ fn row_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         fields_ui(ui, context);
     }
     choices_ui(ui, "Options", |ui| {
-        ui.label("Every cell is a run of its own from rest.");
+        ui.label(cells_in_words(start_in_words(context)));
         ui.horizontal(|ui| look_ui(ui, &mut context.memory.map_look, context.session.map.quantity()));
         trail_items_ui(ui, context);
         ui.separator();
