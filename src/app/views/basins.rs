@@ -16,6 +16,14 @@ use super::view::Axis;
 use super::{View, ViewContext, empty_ui};
 
 pub fn basins_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
+    // as in the phase portrait, the stops bound the axis
+    let reach = context.memory.reach(context.session, Some(Axis::Reach));
+    let shared = std::mem::replace(&mut context.span, reach);
+    plane_ui(ui, context);
+    context.span = shared;
+}
+
+fn plane_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let (area, style) = (ui.max_rect(), context.style);
     let speed = context.memory.ranges.follow(context.session).speed();
     let span = context.span;

@@ -155,6 +155,7 @@ fn chart(branches: &Branches<'_>, shown: Shown, axes: (PlotAxis, PlotAxis), here
 
 fn picture_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axis: &SweepAxis, area: Rect) {
     let style = context.style;
+    let span = context.memory.reach(context.session, None);
     let session = &mut *context.session;
     let walks = &session.explore.walks;
     let quantity = match walks.quantity {
@@ -174,7 +175,7 @@ fn picture_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axis: &SweepAxis, area
         WalkQuantity::LoadPower => format!("mean power into the load ({unit})"),
     };
     let across = label(&column_names(&[axis.field.as_str()]).pop().unwrap_or_default());
-    let (low, high) = vertical_ends(&branches, shown, &context.span);
+    let (low, high) = vertical_ends(&branches, shown, &span);
     let axes =
         (PlotAxis::around([axis.from, axis.to], 0.01, &across), PlotAxis::between(low, high, &vertical));
     let here = FieldPath::new(&axis.field).get(session.scene());
@@ -243,14 +244,20 @@ fn differing([up, down]: &Branches<'_>, height: f64) -> Vec<(f64, f64)> {
 }
 
 /// Whether two runs at one value are different motions: one is interwell and the other never crosses the
-/// barrier, or both are periodic and their RMS velocities differ. Mirror images count as the same motion.
+/// barrier, one is periodic and the other irregular with steady averages, or both are periodic and their RMS
+/// velocities differ. Mirror images count as the same motion.
 fn differ(a: &Visit, b: &Visit, height: f64) -> bool {
     let (x, y) = (rms(a), rms(b));
     let rms_differs = (x - y).abs() > SAME * x.max(y).max(1e-6 * height);
     let repeats = |visit: &Visit| visit.summary.period.is_some();
     let crosses = |visit: &Visit| visit.summary.regime == Regime::Interwell;
     let stays = |visit: &Visit| visit.summary.crossings == 0;
-    crosses(a) && stays(b) || stays(a) && crosses(b) || repeats(a) && repeats(b) && rms_differs
+    let is_irregular = |visit: &Visit| visit.summary.settled == Some(false) && !visit.summary.is_transient();
+    let one_of_each =
+        |is: &dyn Fn(&Visit) -> bool, other: &dyn Fn(&Visit) -> bool| is(a) && other(b) || other(a) && is(b);
+    one_of_each(&crosses, &stays)
+        || one_of_each(&repeats, &is_irregular)
+        || repeats(a) && repeats(b) && rms_differs
 }
 
 /// The stroboscopic displacements of a run that are drawn: those of one period if it repeats.
@@ -274,5 +281,27 @@ fn reading([up, down]: &Branches<'_>, value: f64, quantity: WalkQuantity) -> Str
     match (nearest(up, "up"), nearest(down, "down")) {
         (Some(up), Some(down)) if up.0 == down.0 => format!("{}   {}   {}", short(up.0), up.1, down.1),
         _ => three(value),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Simulation;
+    use crate::dynamics::Request;
+
+    fn visit(preset: &str) -> Visit {
+        let summary = Simulation::preset(preset).unwrap().run(&Request::default()).summary;
+        Visit { direction: Direction::Up, value: 1.0, summary, strobes: Vec::new() }
+    }
+
+    #[test]
+    fn a_chaotic_motion_differs_from_a_periodic_one() {
+        let (periodic, chaotic) = (visit("paper"), visit("duffing-chaos"));
+        assert!(periodic.summary.period.is_some(), "{:?}", periodic.summary);
+        assert!(chaotic.summary.settled == Some(false), "{:?}", chaotic.summary);
+        assert!(!chaotic.summary.is_transient(), "{:?}", chaotic.summary);
+        assert!(differ(&periodic, &chaotic, 1.0) && differ(&chaotic, &periodic, 1.0));
+        assert!(!differ(&periodic, &periodic, 1.0) && !differ(&chaotic, &chaotic, 1.0));
     }
 }

@@ -181,8 +181,8 @@ impl View {
     pub(super) fn axes(self) -> Option<[Axis; 2]> {
         let across = match self {
             Self::Displacement | Self::Velocity | Self::BaseAcceleration | Self::Power => Axis::Time,
-            Self::Well | Self::ForceCurve | Self::Basins => Axis::Place,
-            Self::PhasePortrait | Self::Section => Axis::Reach,
+            Self::Well | Self::ForceCurve => Axis::Place,
+            Self::PhasePortrait | Self::Section | Self::Basins => Axis::Reach,
             Self::Distance | Self::UpAndDown | Self::Spectrum | Self::Accuracy => Axis::Across(self),
             Self::SideBySide => return Self::Well.axes(),
             _ => return None,
