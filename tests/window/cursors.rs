@@ -148,7 +148,7 @@ fn a_period_is_read_off_between_them() {
     }
     assert_eq!(harness.state().memory.cursors.at, [next, later]);
     harness.run_steps(2);
-    let text = "2 - 1: 0.3333 s = 1 / 3.00 Hz = 1.00 periods";
+    let text = "2 \u{2212} 1: 0.3333 s = 1 / 3.00 Hz = 1.00 periods";
     harness.get_by_label_contains(text);
     let phase = 360.0 * watch.model_at(next).drive_phase(next).unwrap();
     let x = watch.state_at(next).x * 1e3;
@@ -312,7 +312,7 @@ fn cursors_have_room_where_it_is_short() {
     let mut harness = played(PROJECTED);
     command(&mut harness, Command::Cursors);
     command(&mut harness, Command::Show(View::Displacement, true));
-    assert!(is_painted(&harness, "2 - 1: "));
-    let part = harness.get_by_label_contains("2 - 1: ").rect();
+    assert!(is_painted(&harness, "2 \u{2212} 1: "));
+    let part = harness.get_by_label_contains("2 \u{2212} 1: ").rect();
     assert!(place(&harness, View::Displacement).contains_rect(part), "{part:?}");
 }

@@ -454,11 +454,10 @@ fn a_force_on_the_mass_is_drawn_in_newtons_and_moves_no_base() {
     assert!(!is_painted(&harness, "base"), "nothing is said of a base that stands still");
 }
 
-/// Both numbers stand beside the lines of the travel limits, or both outside of the walls.
+/// The numbers of the travel limits stand outside of the walls, where the mass does not cover them.
 #[test]
-fn numbers_of_travel_limits_stand_alike() {
+fn numbers_of_travel_limits_stand_outside() {
     let mut harness = showing("paper", WIDE, &[View::Well]);
-    let mut outside = 0;
     for limit in [0.1, 0.3, 0.6, 1.0, 1.5, 2.5, 4.0] {
         set(&mut harness, "stops.travel_limit_mm", limit);
         let all = painted(&harness);
@@ -473,9 +472,6 @@ fn numbers_of_travel_limits_stand_alike() {
         let scale = (below[1].1 - below[0].1) / (below[1].0 - below[0].0) as f32;
         let middle = below[0].1 - below[0].0 as f32 * scale;
         let lines = [-limit, limit].map(|mm| middle + mm as f32 * scale);
-        let inside = [left > lines[0], right < lines[1]];
-        assert_eq!(inside[0], inside[1], "{limit}: {left} and {right} about {lines:?}");
-        outside += u32::from(!inside[0]);
+        assert!(left < lines[0] && right > lines[1], "{limit}: {left} and {right} about {lines:?}");
     }
-    assert!((1..7).contains(&outside), "narrow ones outside, wide ones inside: {outside}");
 }

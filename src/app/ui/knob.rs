@@ -9,7 +9,7 @@ use eframe::egui::layers::ShapeIdx;
 use eframe::egui::{self, Color32, DragValue, Key, Response, RichText, Shape, Slider, Ui, pos2};
 
 use crate::app::words::fields::Reach;
-use crate::app::words::numbers::{decimal, decimals, exact, rounded, shown};
+use crate::app::words::numbers::{decimal, decimals, exact, rounded, shown, with_minus};
 use crate::scene::read_number;
 
 use super::style::{COMPACT_BELOW, CONTROL, NUMBER, Style};
@@ -141,7 +141,7 @@ impl Knob<'_> {
         let editing = ui.memory(|memory| memory.has_focus(ui.next_auto_id()));
         let write = |number: f64| match editing {
             true => exact(number, decimals),
-            false => shown(number, decimals).replace('-', "\u{2212}"),
+            false => with_minus(&shown(number, decimals)),
         };
         let entered = RefCell::new(None);
         let mut edited = present;
@@ -202,7 +202,8 @@ impl Knob<'_> {
         // the present value is always allowed
         let (low, high) = (self.typed.0.min(present), self.typed.1.max(present));
         if !(low..=high).contains(&value) {
-            let ([value, low, high], name) = ([value, low, high].map(|number| shown(number, 0)), self.name);
+            let ([value, low, high], name) =
+                ([value, low, high].map(|number| with_minus(&shown(number, 0))), self.name);
             return Err(format!("{value}{unit} was not taken: {name} may be {low} to {high}{unit}."));
         }
         Ok(value)

@@ -8,12 +8,12 @@ use eframe::egui::{
 use crate::app::session::Session;
 use crate::app::ui::style::GRAB;
 use crate::app::ui::widgets::{arrows, keep_arrows};
-use crate::app::words::numbers::{below, decimals_for, three};
+use crate::app::words::numbers::{below, decimals_for, three, with_minus};
 
+use super::ViewContext;
 use super::labels::plated;
 use super::view::Axis;
 use super::zoom::Ends;
-use super::{LegendRow, ViewContext};
 
 /// Initial positions of the cursors, as shares of the time range shown.
 const INITIAL: [f64; 2] = [0.5, 0.75];
@@ -23,6 +23,12 @@ const STEPS: f64 = 500.0;
 
 /// Decimals of a cursor's time beyond the three significant digits of the range shown.
 const EXTRA_DECIMALS: usize = 2;
+
+/// Distance in points from the numbers of the cursors to the frame below them.
+const ABOVE_FRAME: f32 = 3.0;
+
+/// Where the height of these numbers is kept from frame to frame.
+const READOUT: &str = "height of the cursors' numbers";
 
 /// The two time cursors.
 #[derive(Debug, Clone, Copy, Default)]
@@ -84,17 +90,22 @@ fn event(session: &Session, t: f64, later: Option<bool>) -> Option<f64> {
     }
 }
 
-/// Writes time, phase and value `at_each` cursor, and the differences `between` the two, below the legend.
-/// Returns their height in points.
+/// Height in points of what [`readout_ui`] writes, as it was last in this view.
+pub(super) fn readout_height(ui: &Ui, context: &ViewContext<'_>) -> f32 {
+    let height = ui.data(|data| data.get_temp(ui.scope_id().with(READOUT)));
+    height.filter(|_| context.memory.cursors.on).unwrap_or(0.0)
+}
+
+/// Writes time, phase and value `at_each` cursor, and the differences `between` the two, above `frame`.
 pub(super) fn readout_ui(
     ui: &mut Ui,
     context: &ViewContext<'_>,
-    (area, window): (Rect, f64),
+    (frame, window): (Rect, f64),
     at_each: impl Fn(f64) -> String,
     between: impl Fn(f64, f64) -> String,
-) -> f32 {
+) {
     if !context.memory.cursors.on {
-        return 0.0;
+        return;
     }
     let (session, at, style) = (&context.session, context.memory.cursors.at, context.style);
     let (begin, end) = recorded_range(session);
@@ -109,23 +120,32 @@ pub(super) fn readout_ui(
     };
     let span = at[1] - at[0];
     let rate = if span == 0.0 { String::new() } else { format!(" = 1 / {} Hz", three(1.0 / span.abs())) };
-    let mut last = format!("2 - 1: {span:.decimals$} s{rate}");
+    let mut last = format!("2 \u{2212} 1: {span:.decimals$} s{rate}");
     if let Some(period) = model_at(at[1]).forcing_period() {
         last += &format!(" = {} periods", three(span / period));
     }
     if at.into_iter().all(is_known) {
         last += &format!(", {}", between(at[0], at[1]));
     }
-    let place = area.with_min_y(area.top() + LegendRow::HEIGHT).shrink2(vec2(8.0, 0.0));
+    let known = readout_height(ui, context);
+    let area = ui.max_rect().with_min_y(frame.top() - known - ABOVE_FRAME).with_max_y(frame.top());
+    let place = area.shrink2(vec2(8.0, 0.0));
     let inner = ui.scope_builder(UiBuilder::new().max_rect(place), |ui| {
         ui.horizontal_wrapped(|ui| {
             (ui.spacing_mut().item_spacing, ui.spacing_mut().interact_size.y) = (vec2(14.0, 0.0), 0.0);
             for part in [each(0), each(1), last] {
-                ui.add(Label::new(RichText::new(part).font(style.small()).color(style.ink())).extend());
+                ui.add(
+                    Label::new(RichText::new(with_minus(&part)).font(style.small()).color(style.ink()))
+                        .extend(),
+                );
             }
         });
     });
-    inner.response.rect.height()
+    let height = inner.response.rect.height();
+    if height != known {
+        ui.data_mut(|data| data.insert_temp(ui.scope_id().with(READOUT), height));
+        ui.ctx().request_discard("the cursors' numbers have another height");
+    }
 }
 
 /// Draws the cursors over `frame`, which shows the times `ends`. A click or a drag moves the nearer one, with

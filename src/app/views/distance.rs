@@ -1,20 +1,20 @@
 //! View of the distance between the pinned motions and the present one over time, on a logarithmic scale.
 
-use eframe::egui::{self, Align2, RichText, Sense, Ui, UiBuilder, vec2};
+use eframe::egui::{self, Align2, Sense, Ui, vec2};
 
 use crate::app::session::pins::{Pin, PinKind};
 use crate::app::ui::widgets::tell;
-use crate::app::words::numbers::three;
+use crate::app::words::numbers::{UNKNOWN, three};
 use crate::numeric::elementary;
 use crate::output::{Chart, Marks, Panel, PlotAxis, Role};
 use crate::study::{Table, distances};
 
-use super::cursors::{cursors_ui, readout_ui};
+use super::cursors::{cursors_ui, readout_height, readout_ui};
 use super::hand::axes_input;
 use super::labels::haloed;
 use super::pane::{Place, fresh_pane_ui};
 use super::view::Axis;
-use super::{View, ViewContext};
+use super::{View, ViewContext, offer_ui};
 
 const MAX_POINTS: usize = 2000;
 
@@ -29,13 +29,10 @@ const PRESENT: f64 = 0.94;
 pub fn distance_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let (area, style) = (ui.max_rect(), context.style);
     if context.session.pins.all().is_empty() {
-        ui.scope_builder(UiBuilder::new().max_rect(area.shrink(10.0)), |ui| {
-            let text = "Nothing is pinned. A twin begins a micrometre beside the mass, from the start.";
-            ui.label(RichText::new(text).color(style.faint()));
-            if ui.button("Twin start").clicked() {
-                context.memory.pin = Some(PinKind::Twin);
-            }
-        });
+        let text = "Nothing is pinned. A twin begins a micrometre beside the mass, from the start.";
+        if offer_ui(ui, &style, area, text, "Twin start") {
+            context.memory.pin = Some(PinKind::Twin);
+        }
         return;
     }
     let (session, now) = (&context.session, context.session.player.time());
@@ -62,10 +59,11 @@ pub fn distance_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let at_each = |t: f64| of_all(&|pin| millimetres(distance(pin, t)));
     let between = |a: f64, b: f64| {
         let rate = |pin: &Pin| elementary::ln(distance(pin, b) / distance(pin, a)) / (b - a);
-        let text = |rate: f64| if rate.is_finite() { format!("{} /s", three(rate)) } else { "-".to_owned() };
+        let text =
+            |rate: f64| if rate.is_finite() { format!("{} /s", three(rate)) } else { UNKNOWN.to_owned() };
         format!("exponential rate {}", of_all(&|pin| text(rate(pin))))
     };
-    let readout = readout_ui(ui, context, (area, to - from), at_each, between);
+    let readout = readout_height(ui, context);
     let (x, y) = (PlotAxis::between(from, to, "time (s)"), PlotAxis::powers(low, high, "distance (mm)"));
     let mut panel = Panel::new(x, y);
     panel.draw(Role::Reference, Marks::Verticals(vec![now]));
@@ -77,6 +75,7 @@ pub fn distance_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let place = Place::in_line(ui, area, Sense::click_and_drag(), (0.0, readout));
     let pane = fresh_pane_ui(ui, &style, place, Chart::stack(vec![panel], "", Table::new()));
     let Some(frame) = pane.frame(0) else { return };
+    readout_ui(ui, context, (frame, to - from), at_each, between);
     let painter = ui.painter().with_clip_rect(area);
     for (letter, path) in &lines {
         let end = path.last().and_then(|(t, metres)| pane.place(0, (*t, height(*metres))));

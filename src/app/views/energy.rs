@@ -6,6 +6,7 @@
 use eframe::egui::{self, Align, Align2, Color32, Layout, Rect, RichText, Sense, Stroke, Ui, pos2, vec2};
 
 use crate::app::ui::style::Style;
+use crate::app::words::numbers::{UNKNOWN, with_minus};
 use crate::dynamics::LiveLedger;
 use crate::numeric::{self, elementary};
 use crate::study::Watch;
@@ -98,7 +99,7 @@ pub fn written(joule: f64, unit: f64, decimals: usize) -> String {
     let value = joule / unit;
     match is_nothing(joule, unit, decimals) {
         true => format!("{:.decimals$}", 0.0),
-        false => format!("{value:+.decimals$}").replace('-', "\u{2212}"),
+        false => with_minus(&format!("{value:+.decimals$}")),
     }
 }
 
@@ -155,7 +156,7 @@ pub fn energy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
             let rect = cell(area.left() + NAMES + column * i as f32, y, column, row);
             let Some(ledger) = ledger else {
                 let hover = "Not kept: a whole period has to pass while this view is open.";
-                let nothing = RichText::new("-").color(style.faint());
+                let nothing = RichText::new(UNKNOWN).color(style.faint());
                 put_ui(ui, rect.with_min_x(rect.right() - NUMBERS), nothing, Align::Max, hover);
                 continue;
             };

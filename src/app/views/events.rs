@@ -4,7 +4,7 @@ use eframe::egui::{self, Align2, Rect, RichText, Role, ScrollArea, Sense, Ui, Wi
 
 use crate::app::export::events_seen_csv;
 use crate::app::ui::style::Style;
-use crate::app::words::numbers::three;
+use crate::app::words::numbers::{UNKNOWN, three, with_minus};
 use crate::study::{Table, Values, watched_events};
 
 use super::energy::unit_of;
@@ -145,24 +145,24 @@ fn write(ui: &Ui, style: &Style, place: Rect, column: &str, text: &str, strong: 
 fn cell(table: &Table, column: &str, row: usize, unit: (f64, &str)) -> String {
     match table.column(column).map(|column| &column.values) {
         Some(Values::Words(words)) => words[row].to_owned(),
-        Some(Values::Numbers(numbers)) if numbers[row].is_nan() => "-".to_owned(),
+        Some(Values::Numbers(numbers)) if numbers[row].is_nan() => UNKNOWN.to_owned(),
         Some(Values::Numbers(numbers)) => match column {
             "t_s" => format!("{:.5}", numbers[row]),
             "phase_deg" => format!("{:.1}", numbers[row]),
-            "lost_j" => brief(numbers[row] / unit.0),
-            _ => brief(numbers[row] * 1e3),
+            "lost_j" => with_minus(&brief(numbers[row] / unit.0)),
+            _ => with_minus(&brief(numbers[row] * 1e3)),
         },
         _ => String::new(),
     }
 }
 
-/// A number with three digits; a small one in scientific notation.
+/// A number with three digits; a very small one in scientific notation.
 fn brief(value: f64) -> String {
-    if value != 0.0 && value.abs() < 0.01 { format!("{value:.1e}") } else { three(value) }
+    if value != 0.0 && value.abs() < 1e-4 { format!("{value:.1e}") } else { three(value) }
 }
 
 /// A row as a sentence for screen readers.
 fn spoken([t, phase, kind, side, before, after, lost]: &[String; COLUMNS.len()], unit: &str) -> String {
-    let energy = if lost == "0" || lost == "-" { String::new() } else { format!(", {lost} {unit} lost") };
+    let energy = if lost == "0" || lost == UNKNOWN { String::new() } else { format!(", {lost} {unit} lost") };
     format!("{kind}, {side}, at {t} s, phase {phase}°, {before} to {after} mm/s{energy}")
 }

@@ -151,7 +151,8 @@ fn releases(painter: &Painter, context: &ViewContext<'_>, pane: &Pane, rect: Rec
         let face = place(x, 0.0).x;
         Rect::from_two_pos(pos2(face, rect.top()), pos2(face + side * WALL, rect.bottom()))
     };
-    let mut taken = Taken { lines: lines(pane), places: sides.clone().map(wall).collect() };
+    let places = sides.clone().map(wall).collect();
+    let mut taken = Taken { lines: lines(pane), places, plate: Some(style.ground()) };
     let zero = place(0.0, 0.0).y;
     taken.lines.push(vec![pos2(rect.left(), zero), pos2(rect.right(), zero)]);
     for (x, side) in sides {

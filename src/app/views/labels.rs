@@ -59,6 +59,8 @@ pub fn free_place(middle: f32, width: f32, room: Rangef, taken: &[Rangef]) -> Op
 pub struct Taken {
     pub lines: Vec<Vec<Pos2>>,
     pub places: Vec<Rect>,
+    /// Behind the texts, where a line moves under them.
+    pub plate: Option<Color32>,
 }
 
 impl Taken {
@@ -87,6 +89,9 @@ impl Taken {
         });
         let (place, galley) =
             galleys.find(|(place, _)| room.contains_rect(*place) && self.is_free(*place))?;
+        if let Some(plate) = self.plate {
+            painter.rect_filled(place.expand2(vec2(CLEAR, 0.0)), 0.0, plate);
+        }
         painter.galley(place.min, galley, colour);
         self.places.push(place);
         Some(place)
@@ -114,12 +119,12 @@ mod tests {
         let label = Rect::from_min_size(Pos2::new(10.0, 10.0), vec2(40.0, 12.0));
         let line = |from: (f32, f32), to: (f32, f32)| Taken {
             lines: vec![vec![Pos2::new(from.0, from.1), Pos2::new(to.0, to.1)]],
-            places: Vec::new(),
+            ..Taken::default()
         };
         assert!(!line((0.0, 0.0), (60.0, 30.0)).is_free(label));
         // its bounding box covers the label, and it does not
         assert!(line((0.0, 20.0), (60.0, 200.0)).is_free(label));
-        let other = Taken { lines: Vec::new(), places: vec![label.translate(vec2(39.0, 0.0))] };
+        let other = Taken { places: vec![label.translate(vec2(39.0, 0.0))], ..Taken::default() };
         assert!(!other.is_free(label) && Taken::default().is_free(label));
     }
 

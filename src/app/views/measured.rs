@@ -7,7 +7,7 @@ use crate::app::session::measured::{Differences, MeasuredData, Overlay, sentence
 use crate::app::ui::knob::{How, Knob};
 use crate::app::ui::style::Style;
 use crate::app::words::fields::Reach;
-use crate::app::words::numbers::{below, decimals_for, three};
+use crate::app::words::numbers::{UNKNOWN, below, decimals_for, three};
 use crate::dynamics::STANDARD_GRAVITY;
 use crate::numeric::short;
 use crate::scene::{Quantity, Start};
@@ -197,7 +197,7 @@ fn table_ui(ui: &mut Ui, style: &Style, table: &Table, current: bool) {
             let both = |value: f64| match value.is_finite() {
                 true => format!("{:.decimals$}", value * scale),
                 false if difference.is_finite() => String::new(),
-                false => "-".to_owned(),
+                false => UNKNOWN.to_owned(),
             };
             let mut third = match difference.is_finite() && *name != "largest_difference_at" {
                 true if unit.is_empty() => format!("{difference:.0}"),

@@ -5,11 +5,13 @@ use std::sync::Arc;
 
 use eframe::egui::epaint::{TessellationOptions, Tessellator, TextShape};
 use eframe::egui::{
-    Align2, FontFamily, FontId, Id, Mesh, Painter, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, pos2, vec2,
+    Align2, Color32, FontFamily, FontId, Id, Mesh, Painter, Pos2, Rect, Response, Sense, Shape, Stroke, Ui,
+    pos2, vec2,
 };
 
 use crate::app::ui::style::{BODY, SMALL, STATUS, Style, colour, strong_family};
 use crate::app::words::meanings::explained;
+use crate::app::words::numbers::with_minus;
 use crate::output::{
     Area, Chart, Figure, Frame, Layer, PlotAxis, Room, Shape as Drawn, SurfaceFrame, TICK, Text, is_fine,
 };
@@ -88,7 +90,7 @@ impl Pane {
     pub fn reading(&self, ui: &Ui, style: &Style, beside: f32, text: &str) {
         let area = self.response.rect;
         let painter = ui.painter().with_clip_rect(area);
-        let galley = painter.layout_no_wrap(text.replace('-', "\u{2212}"), style.small(), style.ink());
+        let galley = painter.layout_no_wrap(with_minus(text), style.small(), style.ink());
         let right = LegendRow::of(ui, area).right - beside;
         let row = Rect::from_min_max(area.min, pos2(right, area.top() + LEGEND));
         let at = Align2::RIGHT_CENTER.anchor_size(row.right_center() - vec2(6.0, 0.0), galley.size());
@@ -186,7 +188,12 @@ impl Painting {
                     add(Shape::line(places(&points), Stroke::new(width, colour(ink))));
                 }
                 Drawn::Polygon(points, ink) => {
-                    add(Shape::convex_polygon(places(&points), colour(ink), Stroke::NONE));
+                    let corners: Vec<Pos2> = places(&points);
+                    if has_sharp_corner(&corners) {
+                        add_hard_edged(&mut mesh, &corners, colour(ink));
+                    } else {
+                        add(Shape::convex_polygon(corners, colour(ink), Stroke::NONE));
+                    }
                 }
                 Drawn::Disc(centre, radius, ink) => {
                     let larger = if style.projector { 1.4 } else { 1.0 };
@@ -211,6 +218,26 @@ impl Painting {
 
     fn rect(&self, Area { left, top, right, bottom }: Area) -> Rect {
         Rect::from_min_max(self.place((left, top)), self.place((right, bottom)))
+    }
+}
+
+/// Whether the soft edge of a polygon, which has no limit at its corners, would stand out by more than three
+/// times its width.
+fn has_sharp_corner(corners: &[Pos2]) -> bool {
+    let before = corners.iter().cycle().skip(corners.len().saturating_sub(1));
+    let after = corners.iter().cycle().skip(1);
+    before.zip(corners).zip(after).any(|((before, at), after)| {
+        let cosine = (*at - *before).normalized().dot((*after - *at).normalized());
+        0.5 * (1.0 + cosine) < 1.0 / 9.0
+    })
+}
+
+/// Adds a convex polygon without a soft edge.
+fn add_hard_edged(mesh: &mut Mesh, corners: &[Pos2], ink: Color32) {
+    let first = mesh.vertices.len() as u32;
+    corners.iter().for_each(|corner| mesh.colored_vertex(*corner, ink));
+    for last in 2..corners.len() as u32 {
+        mesh.add_triangle(first, first + last - 1, first + last);
     }
 }
 
@@ -301,11 +328,8 @@ mod tests {
     use super::*;
     use crate::output::BLACK;
 
-    /// The joins of a line neither cut its peaks nor lengthen them: all of one height end within a pixel.
-    #[test]
-    fn peaks_of_one_height_are_drawn_as_high() {
-        let style = Style { dark: false, projector: false };
-        let canvas = Painting {
+    fn canvas() -> (Painting, Style) {
+        let painting = Painting {
             origin: Pos2::ZERO,
             frames: Vec::new(),
             surface: None,
@@ -313,6 +337,27 @@ mod tests {
             mesh: Arc::default(),
             texts: Vec::new(),
         };
+        (painting, Style { dark: false, projector: false })
+    }
+
+    /// The soft edges of thin triangles, such as those of a surface, do not stand out of them.
+    #[test]
+    fn a_thin_triangle_has_no_needles() {
+        let (canvas, style) = canvas();
+        for tenth in 0..200 {
+            let thin = vec![(100.0, 100.0), (300.0, 100.0 + 0.1 * f64::from(tenth)), (120.0, 101.0)];
+            let (mesh, _) = canvas.mesh(1.0, &style, vec![Drawn::Polygon(thin.clone(), BLACK)]);
+            let places = thin.into_iter().map(|corner| canvas.place(corner));
+            let bounds = Rect::from_points(&places.collect::<Vec<Pos2>>()).expand(2.0);
+            assert!(mesh.vertices.len() >= 3);
+            assert!(mesh.vertices.iter().all(|vertex| bounds.contains(vertex.pos)), "{tenth}");
+        }
+    }
+
+    /// The joins of a line neither cut its peaks nor lengthen them: all of one height end within a pixel.
+    #[test]
+    fn peaks_of_one_height_are_drawn_as_high() {
+        let (canvas, style) = canvas();
         let top = |half: f64| {
             let peak = vec![(100.0 - half, 400.0), (100.0, 100.0), (100.0 + half, 400.0)];
             let (mesh, _) = canvas.mesh(1.0, &style, vec![Drawn::Line(peak, 2.4, BLACK)]);

@@ -4,10 +4,10 @@ use eframe::egui::{self, Align2, CursorIcon, Painter, Rect, Sense, Shape, Stroke
 
 use crate::app::session::Session;
 use crate::app::session::sliders::reach;
-use crate::app::ui::style::{BALL, GRAB};
+use crate::app::ui::style::GRAB;
 use crate::app::ui::widgets::arrows;
 use crate::app::words::fields::info;
-use crate::app::words::numbers::{decimal, decimals, shown};
+use crate::app::words::numbers::{decimal, decimals, shown, with_minus};
 use crate::scene::Stops;
 
 use super::ViewContext;
@@ -46,13 +46,12 @@ fn shown_stops(session: &Session, drawn: Drawn) -> ([Option<f64>; 2], bool) {
 
 /// The displacement of a stop in mm, to the resolution of a drag.
 fn limit_number(session: &Session, mm: f64) -> String {
-    shown(mm, decimals(FINE * key_step(session))).replace('-', "\u{2212}")
+    with_minus(&shown(mm, decimals(FINE * key_step(session))))
 }
 
-/// Draws the travel limits over `rect` as lines with their numbers, where the faces of the stops stand the
-/// half width of the mass farther out; what is drawn is `taken`.
+/// Writes the travel limits over `rect` beside the faces of the stops; what is drawn is `taken`.
 pub(super) fn travel_limits(painter: &Painter, context: &ViewContext<'_>, rect: Rect, taken: &mut Taken) {
-    let (style, text_style) = (context.style, (context.style.small(), context.style.ink()));
+    let look = (context.style.small(), context.style.ink());
     let (stops, _) = shown_stops(context.session, context.drawn);
     let limits = stops.into_iter().zip([-1.0_f32, 1.0]).filter_map(|(mm, side)| {
         let place = context.span.screen_from_world(mm? / 1e3, rect);
@@ -60,22 +59,15 @@ pub(super) fn travel_limits(painter: &Painter, context: &ViewContext<'_>, rect: 
     });
     let limits: Vec<(f32, f32, String)> = limits.collect();
     for (x, ..) in &limits {
-        let line = [pos2(*x, rect.top()), pos2(*x, rect.bottom())];
-        painter.line_segment(line, Stroke::new(style.width(1.3), style.stop()));
-        taken.lines.push(line.to_vec());
+        taken.lines.push(vec![pos2(*x, rect.top()), pos2(*x, rect.bottom())]);
     }
-    let width = |text: &str| painter.layout_no_wrap(text.to_owned(), style.small(), style.ink()).size().x;
-    // both numbers at their lines, or both outside of the walls
-    let fit = match &limits[..] {
-        [left, right] => right.0 - left.0 > width(&left.2) + width(&right.2) + 20.0,
-        _ => true,
-    };
     for (x, side, text) in &limits {
-        let [inner, outer] = [(-4.0, *side), (BALL + WALL + 4.0, -side)].map(|(aside, towards)| {
+        // outside of the wall, where the mass does not come
+        let places = [(WALL + 4.0, -side), (-4.0, *side)].map(|(aside, towards)| {
             let align = if towards > 0.0 { Align2::RIGHT_TOP } else { Align2::LEFT_TOP };
             (text.as_str(), pos2(x + side * aside, rect.top() + 4.0), align)
         });
-        taken.write(painter, rect, text_style.clone(), if fit { [inner, outer] } else { [outer, inner] });
+        taken.write(painter, rect, look.clone(), places);
     }
 }
 
@@ -137,9 +129,12 @@ pub fn stops_ui(
         }
         if response.drag_started() {
             context.session.end_presses();
+            ui.data_mut(|data| data.insert_temp(id, mm));
         }
         if let Some(pointer) = response.interact_pointer_pos().filter(|_| response.dragged()) {
-            let place = context.span.world_from_screen(pointer.x - side * (radius + 0.5 * WALL), rect) * 1e3;
+            let begin = ui.input(|input| input.pointer.press_origin()).unwrap_or(pointer);
+            let [from, to] = [begin, pointer].map(|at| context.span.world_from_screen(at.x, rect) * 1e3);
+            let place = ui.data(|data| data.get_temp(id)).unwrap_or(mm) + to - from;
             // 0.01 mm for the prototype, which is finer than a hand
             let distance = decimal((f64::from(side) * place / fine).round() * fine).max(nearest) + 0.0;
             context.session.edit(|scene| scene.stops.set_limit(side > 0.0, distance));

@@ -9,7 +9,9 @@ use crate::app::ui::style::{SMALL, strong_family};
 use crate::app::ui::widgets::kind_shapes;
 use crate::app::words::fields::{mechanism_name, name_and_unit};
 use crate::app::words::meanings::{explained, meaning};
-use crate::app::words::numbers::{decimals_for, exact, length_unit, power_unit, shown, three};
+use crate::app::words::numbers::{
+    UNKNOWN, decimals_for, exact, length_unit, power_unit, shown, three, unbroken, with_minus,
+};
 use crate::app::words::status::{Kind, mm_beside, seconds, speed, threshold};
 use crate::dynamics::{Outcome, Summary};
 use crate::scene::{Damping, Excitation, FieldPath, Scene, Start, Transducer, numeric_fields};
@@ -31,9 +33,6 @@ pub(super) const WIDE_COLUMN: f32 = 96.0;
 
 const RMS: &str = "RMS velocity";
 const CROSSES: &str = "crosses from";
-
-/// Text of a value that is not known.
-const UNKNOWN: &str = "-";
 
 /// A column of the table.
 pub(super) struct Column {
@@ -122,7 +121,7 @@ pub(super) fn table_ui(
             }
         });
         for (i, (text, apart)) in row.texts.iter().zip(&row.apart).enumerate() {
-            let written = RichText::new(text);
+            let written = RichText::new(unbroken(text));
             let written = match columns[i].differs && *text == row.texts[now] {
                 _ if i == now => written.heading(),
                 true => written.color(style.faint()),
@@ -319,7 +318,7 @@ fn number_rows(columns: &[Column], now: usize, with_threshold: bool) -> Vec<Row>
 
 fn difference(value: f64, present: f64, decimals: &dyn Fn(f64) -> usize) -> String {
     let decimals = decimals(value.abs().max(present.abs()));
-    let text = format!("{:+.decimals$}", value - present).replace('-', "\u{2212}");
+    let text = with_minus(&format!("{:+.decimals$}", value - present));
     // a difference that rounds to zero has no sign
     let is_zero = text.trim_start_matches(['+', '\u{2212}', '0', '.']).is_empty();
     if is_zero { "same".to_owned() } else { text }
@@ -378,7 +377,7 @@ fn start(scene: &Scene) -> String {
     match scene.start {
         Start::Rest => "at rest".to_owned(),
         Start::At { x_mm, v_m_per_s, .. } => {
-            format!("{} mm, {} m/s", shown(x_mm, 1), shown(v_m_per_s, 0)).replace('-', "\u{2212}")
+            with_minus(&format!("{} mm, {} m/s", shown(x_mm, 1), shown(v_m_per_s, 0)))
         }
     }
 }

@@ -14,7 +14,7 @@ use crate::output::{Chart, Layer, Marks, OverTime, PlotAxis, Role, RunPanel};
 use crate::scene::Quantity;
 use crate::study::{Table, Watch};
 
-use super::cursors::{cursors_ui, readout_ui};
+use super::cursors::{cursors_ui, readout_height, readout_ui};
 use super::hand::axes_input;
 use super::overlay::{Measurable, measured_trace, with_room};
 use super::pane::{Place, fresh_pane_ui};
@@ -142,11 +142,12 @@ pub fn trace_ui(ui: &mut Ui, quantity: TraceQuantity, context: &mut ViewContext<
     let read = |t: f64| quantity.value_in(watch, &watch.state_at(t));
     let at_each = |t: f64| format!("{:.digits$} {unit}", read(t));
     let between = |a: f64, b: f64| format!("{:+.digits$} {unit}", read(b) - read(a));
-    let readout = readout_ui(ui, context, (area, window), at_each, between);
+    let readout = readout_height(ui, context);
     let chart = chart(context.session, quantity, (from, to), (low, high));
     let place = Place::in_line(ui, area, Sense::click_and_drag(), (0.0, readout));
     let pane = fresh_pane_ui(ui, &style, place, chart);
     let Some(frame) = pane.frame(0) else { return };
+    readout_ui(ui, context, (frame, window), at_each, between);
     axes_input(ui, context.memory, view, &pane.response, (area, frame));
     let painter = ui.painter().with_clip_rect(area);
     // each pin has its letter at the end of its line, beside those of the others

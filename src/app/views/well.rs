@@ -12,7 +12,7 @@ use eframe::egui::{self, Align2, Pos2, Rangef, Rect, Sense, Shape, Stroke, Ui, p
 
 use crate::app::task::Identity;
 use crate::app::ui::style::BALL;
-use crate::app::words::numbers::energy;
+use crate::app::words::numbers::{energy, three};
 use crate::app::words::wells::well_name;
 use crate::dynamics::Model;
 use crate::mechanics::Barrier;
@@ -55,6 +55,7 @@ struct Potential<'a> {
     model: &'a Model,
     tilt: f64,
     per_joule: f64,
+    unit: &'static str,
 }
 
 impl Potential<'_> {
@@ -63,6 +64,13 @@ impl Potential<'_> {
         let (low, high) = curve.domain();
         let (x, zero) = (mm * 1e-3, bottom(self.model));
         (curve.potential(x.clamp(low, high)) - zero + self.tilt * x) * self.per_joule
+    }
+
+    /// An energy in J as text, in the unit of the axis if its usual unit is another one.
+    fn written(&self, joule: f64) -> String {
+        let text = energy(joule);
+        let has_unit = text.split_once(' ').is_some_and(|(_, unit)| unit == self.unit);
+        if has_unit { text } else { format!("{} {}", three(joule * self.per_joule), self.unit) }
     }
 
     /// Its points where the force is known.
@@ -80,7 +88,7 @@ pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let (per_joule, unit) = suited_unit("J", std::iter::once(high - low));
     let (span, state) = (context.span, context.drawn.state(context.session));
     let model = Arc::clone(context.drawn.model(context.session));
-    let potential = |model, tilt| Potential { model, tilt, per_joule };
+    let potential = |model, tilt| Potential { model, tilt, per_joule, unit };
     let (level, tipped) = (potential(&model, 0.0), potential(&model, model.mass() * state.base_accel));
     let points = tipped.points(span);
     // the potential of a pinned motion, where it differs from the present one
@@ -120,12 +128,12 @@ pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     };
     let balls: Vec<(Pos2, &Ghost)> =
         all.iter().zip(&of_ghosts).map(|(ghost, curve)| (on_curve(ghost.state.x, curve), ghost)).collect();
-    all.iter().for_each(|ghost| ghost.stops(&painter, context, frame, BALL));
+    all.iter().for_each(|ghost| ghost.stops(&painter, context, frame, 0.0));
     let mut taken = Taken::default();
     landmarks(&painter, context, (&pane, frame), &level, &mut taken);
     travel_limits(&painter, context, frame, &mut taken);
     let at = on_curve(state.x, &tipped);
-    stops_ui(ui, context, frame, (frame.top() + 4.0, frame.bottom()), BALL);
+    stops_ui(ui, context, frame, (frame.top() + 4.0, frame.bottom()), 0.0);
     mass_ui(ui, context, at, frame);
     // drawn after the stops, since their letters may overlap one; whole at an end of an axis
     let over = ui.painter().with_clip_rect(frame.expand(BALL + 1.0).intersect(area));
@@ -187,7 +195,7 @@ fn landmarks(
     let (left, right) = model.stop_positions();
     let wall = |(stop, side): (f64, f32)| {
         let limit = screen(stop);
-        Rect::from_two_pos(pos2(limit, rect.top()), pos2(limit + side * (BALL + WALL), rect.bottom()))
+        Rect::from_two_pos(pos2(limit, rect.top()), pos2(limit + side * WALL, rect.bottom()))
     };
     let stops = [left.map(|x| (x, -1.0)), right.map(|x| (x, 1.0))].into_iter().flatten();
     taken.places.extend(stops.map(wall));
@@ -219,17 +227,17 @@ fn landmarks(
     taken.lines.extend((0..=count).map(|i| swept(rect.left() + STEP * i as f32)));
     let (line, lines) = match feet {
         None => {
-            let line = format!("barrier {}", energy(joule));
+            let line = format!("barrier {}", level.written(joule));
             let lines = line.replacen(' ', "\n", 1);
             (line, lines)
         }
         Some(_) if (heights[0] - heights[1]).abs() < 5e-3 * joule => {
-            let (climb, whole) = (energy(heights[0]), energy(joule));
+            let (climb, whole) = (level.written(heights[0]), level.written(joule));
             let line = format!("barrier {whole}, {climb} from a stop");
             (line, format!("barrier\n{whole},\n{climb}\nfrom a stop"))
         }
         Some(_) => {
-            let [left, right] = heights.map(energy);
+            let [left, right] = heights.map(|height| level.written(height));
             (format!("{left} from the left, {right} from the right"), format!("left {left},\nright {right}"))
         }
     };

@@ -185,8 +185,8 @@ pub(super) static MENUS: [(&str, &[Part]); 6] = [
     ]),
     ("Edit", &[
         Item("Undo", Some(UNDO), C::Undo, As("Scene", "undo, redo")),
-        Item("Redo", control_shift(Key::Z), C::Redo, No),
-        Hidden(control(Key::Y), C::Redo, Joined),
+        Item("Redo", control_shift(Key::Z), C::Redo, Joined),
+        Hidden(control(Key::Y), C::Redo, No),
         Item(DISCARD, plain(Key::Home), C::BackToStart,
             As("Time", "discard your changes: scene, view and time as opened")),
         Item("Find the best stops", plain(Key::B), C::BestStops,

@@ -32,7 +32,7 @@ impl Window {
             C::LeaveLesson | C::LessonAnew | C::LecturerNotes => (!in_lesson, "No lesson is open"),
             C::ArrangeOwn => (
                 is_compact && self.custom.is_none(),
-                "You have no arrangement yet: a wider window has room to make one",
+                "You have no arrangement yet: a wider window, or smaller letters, has room to make one",
             ),
             C::KeepOwn => (is_compact, "A window of this size shows its views as tabs: widen it first"),
             C::NextTab if self.filled.is_some() => (true, "One view fills the window: Z shows all of them"),

@@ -233,7 +233,7 @@ impl Window {
                     PinKind::OtherStops => "this motion from here on with its stops switched",
                     PinKind::Twin => "a twin that begins a micrometre beside the mass",
                 };
-                self.messages.notify(format!("Pinned as {letter}, dashed: {what}"));
+                self.messages.notify(format!("Pinned as {letter}: {what}"));
                 self.tiling.show_beside(self.view_of_pins(), View::BeforeNow);
             }
             Err(why) => self.messages.notify(why),

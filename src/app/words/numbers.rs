@@ -52,9 +52,9 @@ pub fn exact(value: f64, least: usize) -> String {
 }
 
 /// Units that follow a number after a space.
-const UNITS: [&str; 26] = [
-    "g", "mm", "m", "um", "mm/s", "um/s", "m/s", "s", "ms", "Hz", "N", "mN", "N/m", "J", "mJ", "uJ", "W",
-    "mW", "uW", "V", "ohm", "kohm", "%", "min", "points", "N s/m",
+const UNITS: [&str; 30] = [
+    "g", "grams", "m/s²", "µJ", "µW", "mm", "m", "um", "mm/s", "um/s", "m/s", "s", "ms", "Hz", "N", "mN",
+    "N/m", "J", "mJ", "uJ", "W", "mW", "uW", "V", "ohm", "kohm", "%", "min", "points", "N s/m",
 ];
 
 /// A text for the screen: its lines are not broken between a number and its unit.
@@ -71,6 +71,14 @@ pub fn unbroken(text: &str) -> String {
     }
     whole + rest
 }
+
+/// A text of numbers with minus signs in place of hyphens.
+pub fn with_minus(text: &str) -> String {
+    text.replace('-', "\u{2212}")
+}
+
+/// What stands in place of a number that is not known.
+pub const UNKNOWN: &str = "\u{2013}";
 
 /// A number with at least three significant digits, and no more decimals than these take.
 pub fn three(value: f64) -> String {

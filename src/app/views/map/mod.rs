@@ -12,7 +12,7 @@ use crate::app::ui::style::Style;
 use crate::app::ui::widgets::tell;
 use crate::app::words::columns::said;
 use crate::app::words::kind::Kind;
-use crate::app::words::numbers::three;
+use crate::app::words::numbers::{UNKNOWN, three};
 use crate::app::words::status::speed;
 use crate::dynamics::{Regime, Summary};
 use crate::output::{Cell as DrawnCell, Marks, PlotAxis, RMS, View as MapShape, suited_unit, words_of};
@@ -278,7 +278,7 @@ fn reading(map: &Map, quantity: &SummaryField, (column, row): (usize, usize)) ->
     }
     lines.extend(cell.settled().map(|settled| Kind::from(settled.regime).name().to_owned()));
     if let Some(settled) = cell.settled().filter(|settled| settled.regime != Regime::Rest) {
-        let rms = settled.rms_velocity.map_or("-".to_owned(), speed);
+        let rms = settled.rms_velocity.map_or(UNKNOWN.to_owned(), speed);
         lines.push(format!("RMS velocity {rms} mm/s"));
         lines.extend(settled.max_abs_x.map(|reach| format!("reach {:.2} mm", reach * 1e3)));
         let (impacts, crossings) = (settled.impacts, settled.crossings);

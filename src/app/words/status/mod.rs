@@ -12,7 +12,7 @@ use crate::study::{Standing, ended_remedy, standing};
 
 pub use super::kind::Kind;
 pub use super::numbers::{as_set, mm_beside, seconds, speed};
-use super::numbers::{energy, length_beside, newtons};
+use super::numbers::{energy, length_beside, newtons, with_minus};
 use super::wells::well_name;
 pub use driven::{DrivenMotion, driven};
 pub use remedy::{in_unit, threshold, ways};
@@ -65,7 +65,7 @@ pub fn held(model: &Model, state: &Sample) -> Sentence {
     let outward = (state.x - middle) * force < 0.0;
     let largest =
         model.mechanism().landscape.extrema.iter().map(|extremum| extremum.force.abs()).fold(0.0, f64::max);
-    let (place, size) = (length_beside(state.x, model.stop_positions()), force.abs());
+    let (place, size) = (with_minus(&length_beside(state.x, model.stop_positions())), force.abs());
     let text = if size <= NO_PULL * largest || size == 0.0 {
         format!("Held at {place}: nothing pulls.")
     } else {
