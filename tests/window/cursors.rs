@@ -154,7 +154,8 @@ fn a_period_is_read_off_between_them() {
     let x = watch.state_at(next).x * 1e3;
     let first = harness.query_all_by_label_contains("1: ").next().unwrap();
     let first = first.accesskit_node().value().unwrap();
-    assert!(first.contains(&format!("{next:.4} s, {phase:.1}°, {x:.2}")), "{first}");
+    let shown = format!("{next:.4} s, {phase:.1}°, {x:.2}").replace('-', "\u{2212}");
+    assert!(first.contains(&shown), "{first}");
 }
 
 #[test]
@@ -199,9 +200,11 @@ fn distances_are_read_off_with_their_rate() {
     let rate = (second / first).ln() / (at[1] - at[0]);
     let parts = harness.query_all_by_label_contains("exponential rate A ");
     let text = parts.last().unwrap().accesskit_node().value().unwrap();
-    let said: f64 = text.split("rate A ").nth(1).unwrap().trim_end_matches(" /s").parse().unwrap();
+    let said = text.split("rate A ").nth(1).unwrap().trim_end_matches(" /s").replace('\u{2212}', "-");
+    let said: f64 = said.parse().unwrap();
     assert!((said - rate).abs() < 6e-3 * rate.abs(), "{said} {rate}");
-    harness.get_by_label_contains(&format!("A {:.1e} mm", 1e3 * first));
+    let apart = format!("A {:.1e} mm", 1e3 * first).replace('-', "\u{2212}");
+    harness.get_by_label_contains(&apart);
 }
 
 #[test]

@@ -85,7 +85,7 @@ fn what_is_no_number_is_refused_in_words() {
     for (name, text, words) in [
         ("amplitude", "abc", "“abc” is no number: amplitude stays 1 g"),
         ("amplitude", "1e9", "amplitude may be 0 to 10000 g"),
-        ("amplitude", "-3", "-3 g was not taken: amplitude may be 0 to 10000 g"),
+        ("amplitude", "-3", "\u{2212}3 g was not taken: amplitude may be 0 to 10000 g"),
         ("travel limit ±", "0", "travel limit ± may be 0.001 to 1000000 mm"),
         ("travel limit ±", "-2", "travel limit ± may be 0.001 to 1000000 mm"),
         ("frequency", "0", "frequency may be 0.01 to 100000 Hz"),
@@ -226,7 +226,7 @@ fn the_card_shows_whatever_was_changed() {
         ("restitution", "0.45", "0.45"),
         ("mass", "18.25", "18.25"),
         ("damping ratio", "0.0312", "0.0312"),
-        ("frequency", "3.05", "1.00 g, 3.05 Hz"),
+        ("frequency", "3.05", "1.00\u{a0}g, 3.05\u{a0}Hz"),
         ("preload", "2.65", "2.65"),
         ("run length", "12", "12"),
     ] {

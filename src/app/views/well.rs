@@ -138,6 +138,8 @@ pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     // drawn after the stops, since their letters may overlap one; whole at an end of an axis
     let over = ui.painter().with_clip_rect(frame.expand(BALL + 1.0).intersect(area));
     balls.iter().for_each(|(at, ghost)| ghost.ball(&over, &style, *at, BALL));
+    // set off from a wall, over which it stands as a mark
+    over.circle_stroke(at, BALL + 2.0, Stroke::new(2.5, style.ground()));
     over.circle(at, BALL, style.mass(), Stroke::new(1.5, style.mass_edge()));
     // its displacement is that of its middle
     over.circle_filled(at, MIDDLE, style.mass_edge());
