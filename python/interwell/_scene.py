@@ -1527,8 +1527,8 @@ def identify(
     left_mm, right_mm : float, optional
         Of restitution: about where the stops are.
     points : int, optional
-        Of force: points of the curve, 4 to 100000; by default 101. More follow the samples more closely and
-        average fewer of them.
+        Of force: points of the curve, 4 to 100000; by default 101, or as many as the samples allow. More
+        follow the samples more closely and average fewer of them.
 
     Returns
     -------

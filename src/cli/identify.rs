@@ -63,7 +63,7 @@ pub struct Arguments {
     #[arg(long, value_name = "MM", allow_hyphen_values = true)]
     pub right_mm: Option<f64>,
 
-    /// Of force: points of the curve, 4 to 100000 [default: 101]
+    /// Of force: points of the curve, 4 to 100000 [default: 101, or as many as the samples allow]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(4..=100_000))]
     pub points: Option<u32>,
 

@@ -5,9 +5,7 @@ use std::path::Path;
 
 use super::Error;
 use crate::scene::{Channel, ColumnRequest, Measured, Quantity, Timing, read_measured};
-use crate::study::{
-    FORCE_POINTS, Identified, Table, Unidentified, damping, force, restitution, restitution_of_times,
-};
+use crate::study::{Identified, Table, Unidentified, damping, force, restitution, restitution_of_times};
 
 words! {
     /// What is identified from a record.
@@ -76,7 +74,8 @@ pub struct Identify {
     pub impact_times: bool,
     /// For restitution: approximate positions of the left and the right stop in mm.
     pub stops_mm: [Option<f64>; 2],
-    /// For a force: number of points of the curve, 4 to 100000; by default 101.
+    /// For a force: number of points of the curve, 4 to 100000; by default 101, or as many as the
+    /// samples allow.
     pub points: Option<u32>,
 }
 
@@ -210,7 +209,7 @@ impl Identify {
                 let positions = request(&[Quantity::Displacement], &self.position, names);
                 let (record, columns) = read(path, &[positions, values_request(&[Quantity::Force])])?;
                 let [x, values] = record.channels;
-                let points = self.points.map_or(FORCE_POINTS, |points| points as usize);
+                let points = self.points.map(|points| points as usize);
                 let found = force(&x.values, &values.values, points);
                 answer(found, None, x.values, values, columns)
             }
