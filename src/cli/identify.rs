@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use interwell::output::{Caption, identified, identified_chart};
-use interwell::questions::{Identify, IdentifyAnswer, WhatToIdentify};
+use interwell::questions::{Identify, IdentifyAnswer, Progress, WhatToIdentify};
 use interwell::scene::Timing;
 use interwell::study::Identity;
 
@@ -97,7 +97,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         .reading(&record)?
         .with(Output::SUMMARY, options.summary.as_deref())?
         .with_picture(picture)?;
-    let IdentifyAnswer { timing, found, across, values, columns } = question.run(file)?;
+    let IdentifyAnswer { timing, found, across, values, columns } = question.run(file, &Progress::none())?;
     common.say(&format!("{}: {columns}", file.display()));
     outputs.table(Output::DATA, &found.rows)?;
     outputs.write(Output::SUMMARY, identified(of, &found, timing.as_ref(), &watch.origin(1)))?;
