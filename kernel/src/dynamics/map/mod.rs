@@ -150,7 +150,10 @@ impl StroboscopicMap<'_> {
         let start = [x, v * by_v, electrical * by_electrical];
         let Kernel { equation, clock, drive } = &self.plain;
         let span = self.span(clock, span);
-        with_drive!(drive, drive => passage::trace(&self.model, equation, *clock, drive, start, span, self.cancel)).passage
+        let traced = with_drive!(drive, drive => {
+            passage::trace(&self.model, equation, *clock, drive, start, span, self.cancel)
+        });
+        traced.passage
     }
 
     /// The same with the derivatives of the state at the end with respect to that at the start. Without a
