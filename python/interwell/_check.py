@@ -51,6 +51,16 @@ def _entries(name: str, value: Any, form: str, *lengths: int) -> list[float]:
     return numbers
 
 
+def _number(name: str, value: Any) -> float:
+    """Return a number that is no text."""
+    try:
+        if not isinstance(value, (str, bytes)):
+            return float(value)
+    except (TypeError, ValueError):
+        pass
+    raise _wrong(name, _shown(value), "give a number")
+
+
 def _count(name: str, value: int | None, below: int = 2**32) -> int | None:
     """Return a whole number that is not negative."""
     if value is None:

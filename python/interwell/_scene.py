@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _interwell
-from ._check import _count, _entries, _mapping, _names, _near, _numbers, _shown, _without, _wrong
+from ._check import _count, _entries, _mapping, _names, _near, _number, _numbers, _shown, _without, _wrong
 from ._errors import SceneError
 from ._table import Array, Basins, Grid, Identified, Run, Table, _write
 
@@ -396,8 +396,9 @@ class Scene(Mapping[str, Any]):
         """
         if callable(force):
             first, last = _entries("range", range, "(first, last) in m", 2)
-            places = [float(place) for place in breaks]
-            relative = 1e-8 if tolerance is None else float(tolerance)
+            listed = isinstance(breaks, Iterable) and not isinstance(breaks, str)
+            places = _numbers("breaks", list(breaks) if listed else breaks).tolist()  # type: ignore[arg-type]
+            relative = 1e-8 if tolerance is None else _number("tolerance", tolerance)
             simulation, _ = self._simulation.with_force(force, (first, last), relative, places)
             return self._of(simulation, self)
         if range is not None:
@@ -411,7 +412,7 @@ class Scene(Mapping[str, Any]):
             problem = "give a function, a pair (x_m, force_n), or a table with these columns"
             raise _wrong("force", _shown(force), problem)
         x, values = _numbers("force", force[0]).tolist(), _numbers("force", force[1]).tolist()
-        relative = 1e-3 if tolerance is None else float(tolerance)
+        relative = 1e-3 if tolerance is None else _number("tolerance", tolerance)
         return self._of(self._simulation.with_force_samples(x, values, relative), self)
 
     def with_drive(
@@ -428,27 +429,39 @@ class Scene(Mapping[str, Any]):
 
         Parameters
         ----------
-        acceleration
+        acceleration : callable or array_like of float, shape (n,)
             Acceleration of the base in m/s²: a function of the time in s, of which the period from 0 on is
             used, or 1 to 4096 evenly spaced samples of one period, the first at time 0, without the period's
             end.
-        frequency_hz
+        frequency_hz : float
             One over the period, in Hz, with at most 11 digits.
-        tolerance
+        tolerance : float
             Largest difference from a function, relative to its largest value, 1e-12 to 0.1. It holds at all
             places that were compared, four in each interval between samples.
+
+        Returns
+        -------
+        Scene
+            Its excitation is a ``Sum`` of sines.
 
         Raises
         ------
         SceneError
             If a value is not finite, or if 2048 harmonics do not follow the function: it jumps.
+
+        Examples
+        --------
+        >>> shaken = scene.with_drive(lambda t: 8 * np.sin(6 * np.pi * t) ** 3, 3.0)
+        >>> shaken["excitation"]
+        'Sum'
         """
         given: Callable[[float], float] | list[float]
         if callable(acceleration):
             given = acceleration
         else:
             given = _numbers("acceleration", acceleration).tolist()
-        return self._of(self._simulation.with_drive(given, float(frequency_hz), float(tolerance)), self)
+        frequency, relative = _number("frequency_hz", frequency_hz), _number("tolerance", tolerance)
+        return self._of(self._simulation.with_drive(given, frequency, relative), self)
 
     def __getitem__(self, field: str) -> Any:
         """Return the value of a field.
@@ -613,7 +626,7 @@ class Scene(Mapping[str, Any]):
         """
         times = None if at is None else _numbers("at", at).tolist()
         run = self._simulation.run(dt, times, until_settled)
-        return Run(run, 1e-3 * self["mass_g"], self)
+        return Run(run, 1e-3 * self["mass_g"])
 
     def curve(self, positions: npt.ArrayLike | None = None) -> Table:
         """Return force, potential and stiffness of the mechanism.
@@ -892,8 +905,12 @@ class Scene(Mapping[str, Any]):
         True
         """
         axes, _ = _over(over)
-        ends = ":".join(_value(end) for end in _entries("range", range, "(first, last)", 2))
-        searched = f"{field}={ends}" + ("" if step is None else f":{_value(float(step))}")
+        low, high = _entries("range", range, "(first, last)", 2)
+        if not low < high:
+            raise _wrong("range", _shown(range), "give the lower end first, and a higher one")
+        searched = f"{field}={_value(low)}:{_value(high)}"
+        if step is not None:
+            searched += f":{_value(_number('step', step))}"
         if probability is None:
             _without("leave it out, or give `probability` too", runs=(runs, None), within=(within, None))
             with _Told(progress, "values") as told:
@@ -1527,8 +1544,8 @@ def identify(
     left_mm, right_mm : float, optional
         Of restitution: about where the stops are.
     points : int, optional
-        Of force: points of the curve, 4 to 100000; by default 101. More follow the samples more closely and
-        average fewer of them.
+        Of force: points of the curve, 4 to 100000; by default 101, or as many as the samples allow. More
+        follow the samples more closely and average fewer of them.
 
     Returns
     -------

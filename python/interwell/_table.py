@@ -487,10 +487,10 @@ class Run:
     'interwell'
     """
 
-    def __init__(self, run: _interwell.Run, mass_kg: float, scene: Any) -> None:
+    def __init__(self, run: _interwell.Run, mass_kg: float) -> None:
         self._run = run
         self._mass_kg = mass_kg
-        self._scene = scene
+        self._energy: Array | None = None
         self._summary: dict[str, Any] | None = None
         self._events: Array | None = None
         self.samples = Table(run.samples)
@@ -526,14 +526,15 @@ class Run:
 
     @property
     def energy(self) -> Array:
-        """Kinetic and potential energy relative to the base in J, float64 of shape (n,).
+        """Kinetic and potential energy relative to the base in J, float64 of shape (n,), read-only.
 
         The potential is that of the mechanism, 0 at x = 0; what a compliant stop or a transducer stores is
         left out.
         """
-        potential = self._scene.curve(self.x)["potential_j"]
-        energy: Array = 0.5 * self._mass_kg * self.v**2 + potential
-        return energy
+        if self._energy is None:
+            self._energy = 0.5 * self._mass_kg * self.v**2 + self._run.potential()
+            self._energy.flags.writeable = False
+        return self._energy
 
     @property
     def summary(self) -> dict[str, Any]:

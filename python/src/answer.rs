@@ -1,6 +1,10 @@
 //! Tables of answers, with their pictures.
 
-use interwell_studies::output::{Caption, Chart, Format, Ranges, Sheet, SheetText, Theme, header, rows};
+use std::sync::atomic::AtomicBool;
+
+use interwell_studies::output::{
+    Caption, Chart, Format, Ranges, Sheet, SheetError, SheetText, Theme, header, rows,
+};
 use interwell_studies::questions::Error;
 use interwell_studies::study::{Table, Values, label_and_unit};
 use numpy::{PyArray1, PyArrayMethods};
@@ -9,13 +13,16 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyList};
 
 use crate::errors::raised;
+use crate::work::{Way, work};
 
 /// What a picture shows.
-pub struct Asked {
+pub struct Asked<'a> {
     /// A column, or the panels of a run.
     pub quantity: Option<String>,
     /// Ranges of the axes.
     pub ranges: Ranges,
+    /// Ends a run that is made for the picture.
+    pub cancel: &'a AtomicBool,
 }
 
 /// Makes the chart of a table.
@@ -62,6 +69,15 @@ impl Answer {
     /// The same with sentences about it.
     pub fn told(self, words: Vec<String>) -> Self {
         Self { words, ..self }
+    }
+
+    /// A copy of a column of numbers.
+    pub fn numbers(&self, py: Python<'_>, name: &str) -> PyResult<Vec<f64>> {
+        let found = self.columns.iter().find(|(column, _)| column == name);
+        match found {
+            Some((_, Held::Numbers(array))) => Ok(array.bind(py).to_vec()?),
+            _ => Err(PyKeyError::new_err(format!("no column {name:?} of numbers"))),
+        }
     }
 
     /// The table, with copies of the arrays.
@@ -116,7 +132,7 @@ impl Answer {
     /// The table as CSV, as the command line writes it.
     fn csv(&self, py: Python<'_>) -> PyResult<String> {
         let table = self.table(py)?;
-        Ok(header(&table) + &rows(&table, 0..usize::MAX))
+        work(py, &Way::default(), |_| Ok(header(&table) + &rows(&table, 0..usize::MAX)))
     }
 
     /// The picture as a file of this kind: png, svg or pdf.
@@ -133,12 +149,12 @@ impl Answer {
         width_mm: Option<f64>,
         height_mm: Option<f64>,
     ) -> PyResult<Bound<'py, PyBytes>> {
-        let wrong =
-            |name: &str, value: &str, problem: String| raised(py, &Error::argument(name, value, problem));
+        let wrong = |name: &str, value: &str, problem: String| Error::argument(name, value, problem);
         let format = Format::of(format!("picture.{kind}").as_ref());
-        let format = format.map_err(|problem| wrong("kind", kind, problem.to_string()))?;
+        let format = format.map_err(|problem| raised(py, &wrong("kind", kind, problem.to_string())))?;
         let chart = self.chart.as_ref().ok_or_else(|| {
-            wrong("plot", "", "this table has no picture; draw its columns with matplotlib".to_owned())
+            let problem = "this table has no picture; draw its columns with matplotlib";
+            raised(py, &wrong("plot", "", problem.to_owned()))
         })?;
         let sheet = width_mm.map(|width_mm| {
             let (width, height) = (width_mm.to_string(), height_mm.map(|height| height.to_string()));
@@ -147,12 +163,18 @@ impl Answer {
             Sheet::read(&text, format == Format::Png)
         });
         let sheet = sheet.transpose();
-        let sheet = sheet.map_err(|problem| wrong("width_mm", "", problem.to_string()))?;
-        let shown = quantity.clone().unwrap_or_default();
-        let asked = Asked { quantity, ranges: Ranges { x, y } };
-        let chart = chart(&self.table(py)?, &asked).map_err(|problem| wrong("quantity", &shown, problem))?;
-        let figure = chart.figure(&self.caption, &Theme::of(dark, sheet));
-        let bytes = format.bytes(&figure).map_err(|problem| wrong("kind", kind, problem.to_string()))?;
+        let sheet = sheet.map_err(|SheetError { option, value, problem }| {
+            let name = if option == "plot-height-mm" { "height_mm" } else { "width_mm" };
+            raised(py, &wrong(name, &value, problem))
+        })?;
+        let table = self.table(py)?;
+        let bytes = work(py, &Way::default(), |progress| {
+            let shown = quantity.clone().unwrap_or_default();
+            let asked = Asked { quantity, ranges: Ranges { x, y }, cancel: progress.stop() };
+            let chart = chart(&table, &asked).map_err(|problem| wrong("quantity", &shown, problem))?;
+            let figure = chart.figure(&self.caption, &Theme::of(dark, sheet));
+            format.bytes(&figure).map_err(|problem| wrong("kind", kind, problem.to_string()))
+        })?;
         Ok(PyBytes::new(py, &bytes))
     }
 }

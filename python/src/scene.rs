@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use interwell_kernel::dynamics::Summary;
 use interwell_kernel::mechanics::{FitReport, ForceCurve};
 use interwell_kernel::numeric::Taper;
-use interwell_kernel::scene::{Excitation, FieldPath, PRESETS, all_fields, write};
+use interwell_kernel::scene::{Document, Excitation, FieldPath, Files, PRESETS, all_fields, write};
 use interwell_studies::output::{
     Caption, Overlay, Provenance, Ranges, RunPanel, SpectrumQuantity, SweepPicture, View, basins_chart,
     branch_chart, comparison_chart, curve_chart, escape_chart, exponents_chart, identified, identified_chart,
@@ -14,14 +14,15 @@ use interwell_studies::output::{
 };
 use interwell_studies::questions::{
     self, Basins, Best, Branch, Compare, Curve, Error, Escape, Exponents, Identify, Locus, Orbit,
-    ProbableThreshold, Section, Spectrum, Sweep, Threshold, Uncertain, WhatToIdentify, branches_remarks,
-    needs_a_sine,
+    ProbableThreshold, Progress, Section, Spectrum, Sweep, Threshold, Uncertain, WhatToIdentify,
+    branches_remarks, needs_a_sine,
 };
 use interwell_studies::study::{
     BranchEvent, Carry, ExponentOptions, FieldRange, Identity, Keep, Onset, Sampling, SectionAt,
     SectionOptions, Signal, Table, Until, branches_table, loci_table, sample_times, simulate_with_trace,
     stop_positions,
 };
+use numpy::PyArray1;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
@@ -110,25 +111,28 @@ impl Simulation {
     /// A scene file or a built-in scene of that name.
     #[staticmethod]
     fn load(py: Python<'_>, spec: &str) -> PyResult<Self> {
-        let read = interwell_kernel::scene::Document::load(spec);
-        let document = checked(py, read.map_err(Error::from))?;
-        work(py, &Way::default(), |_| questions::Simulation::new(&document)).map(Self::new)
+        let build = |progress: &Progress| questions::Simulation::build(Document::load(spec)?, progress);
+        work(py, &Way::default(), build).map(Self::new)
     }
 
     #[staticmethod]
     fn preset(py: Python<'_>, name: &str) -> PyResult<Self> {
-        work(py, &Way::default(), |_| questions::Simulation::preset(name)).map(Self::new)
+        let build = |progress: &Progress| questions::Simulation::build(Document::preset(name)?, progress);
+        work(py, &Way::default(), build).map(Self::new)
     }
 
     #[staticmethod]
     fn from_text(py: Python<'_>, name: &str, text: &str) -> PyResult<Self> {
-        work(py, &Way::default(), |_| questions::Simulation::from_text(name, text)).map(Self::new)
+        let build = |progress: &Progress| {
+            questions::Simulation::build(Document::from_text(name, text, Files::default())?, progress)
+        };
+        work(py, &Way::default(), build).map(Self::new)
     }
 
     fn with_all(&self, py: Python<'_>, changes: Vec<(String, String)>) -> PyResult<Self> {
         let of_mechanism = changes.iter().any(|(field, _)| field.starts_with("mechanism"));
         match of_mechanism {
-            true => work(py, &Way::default(), |_| self.inner.with_all(&changes)),
+            true => work(py, &Way::default(), |progress| self.inner.with_changes(&changes, progress)),
             false => work_here(py, |_| self.inner.with_all(&changes)),
         }
         .map(Self::new)
@@ -148,7 +152,7 @@ impl Simulation {
         if let Some(error) = failed.into_inner() {
             return Err(error);
         }
-        let curve = curve.map_err(|problem| raised(py, &Error::argument("force", "", problem)))?;
+        let curve = checked(py, curve.map_err(Error::from))?;
         let error = curve.fit().map_or(0.0, |FitReport { worst_n, .. }| *worst_n);
         let inner = work(py, &Way::default(), |_| self.inner.with_force(&curve))?;
         Ok((Self::new(inner), error))
@@ -162,9 +166,9 @@ impl Simulation {
         force_n: Vec<f64>,
         tolerance: f64,
     ) -> PyResult<Self> {
-        let curve = ForceCurve::from_samples(&x_m, &force_n, tolerance);
-        let curve = curve.map_err(|problem| raised(py, &Error::argument("force", "", problem)))?;
-        work(py, &Way::default(), |_| self.inner.with_force(&curve)).map(Self::new)
+        let with_samples =
+            |_: &Progress| self.inner.with_force(&ForceCurve::from_samples(&x_m, &force_n, tolerance)?);
+        work(py, &Way::default(), with_samples).map(Self::new)
     }
 
     /// The scene with the drive of a function of the time, or of samples of one period.
@@ -175,16 +179,20 @@ impl Simulation {
         frequency_hz: f64,
         tolerance: f64,
     ) -> PyResult<Self> {
+        if !acceleration.is_callable() {
+            let samples = acceleration.extract::<Vec<f64>>()?;
+            let with_samples = |_: &Progress| {
+                self.inner.with_drive(&Excitation::from_samples(&samples, frequency_hz)?.excitation)
+            };
+            return work(py, &Way::default(), with_samples).map(Self::new);
+        }
         let failed = RefCell::new(None);
-        let drive = if acceleration.is_callable() {
-            Excitation::from_fn(values_of(acceleration, "acceleration", &failed), frequency_hz, tolerance)
-        } else {
-            Excitation::from_samples(&acceleration.extract::<Vec<f64>>()?, frequency_hz)
-        };
+        let values = values_of(acceleration, "acceleration", &failed);
+        let drive = Excitation::from_fn(values, frequency_hz, tolerance);
         if let Some(error) = failed.into_inner() {
             return Err(error);
         }
-        let drive = drive.map_err(|problem| raised(py, &Error::argument("acceleration", "", problem)))?;
+        let drive = checked(py, drive.map_err(Error::from))?;
         work(py, &Way::default(), |_| self.inner.with_drive(&drive.excitation)).map(Self::new)
     }
 
@@ -249,15 +257,15 @@ impl Simulation {
         until_settled: Option<f64>,
     ) -> PyResult<Run> {
         let sampling = match (dt, at) {
-            (Some(_), Some(_)) => {
-                let error = Error::argument("dt", "", "give a step dt or the times at, not both");
+            (Some(step), Some(_)) => {
+                let error = Error::number("dt", step, "give a step dt or the times at, not both");
                 return Err(raised(py, &error));
             }
             (None, Some(times)) => Sampling::At(times),
             (Some(step), None) => Sampling::Every(step),
             (None, None) => Sampling::Default,
         };
-        let question = |progress: &questions::Progress| self.inner.record(&sampling, until_settled, progress);
+        let question = |progress: &Progress| self.inner.record(&sampling, until_settled, progress);
         let found = match self.is_short(until_settled) {
             true => work_here(py, question),
             false => work(py, &Way::default(), question),
@@ -279,7 +287,7 @@ impl Simulation {
             let model = shown.model();
             let times = sample_times(shown.scene(), model, &Sampling::At(Vec::new()), until_settled);
             let keep = Keep { times: times.unwrap_or_default(), events: false, until_settled };
-            let (run, trace) = simulate_with_trace(model, &keep, asked.ranges.x, None);
+            let (run, trace) = simulate_with_trace(model, &keep, asked.ranges.x, Some(asked.cancel));
             let ranges = Ranges { x: None, y: asked.ranges.y };
             Ok(run_chart(&trace, &run.summary, (model.mechanism(), model.mass()), &panels, ranges))
         };
@@ -293,7 +301,8 @@ impl Simulation {
 
     #[pyo3(signature = (positions=None))]
     fn curve(&self, py: Python<'_>, positions: Option<Vec<f64>>) -> PyResult<Answer> {
-        let table = checked(py, Curve { positions }.run(&self.inner))?;
+        let question = Curve { positions };
+        let table = work(py, &Way::default(), |_| question.run(&self.inner))?;
         let shown = self.inner.clone();
         Ok(Answer::new(py, table, self.caption()).drawn(move |rows, asked| {
             Ok(curve_chart(rows, shown.mechanism(), stop_positions(shown.scene()), asked.ranges))
@@ -319,11 +328,13 @@ impl Simulation {
         let carry = carry.map(|word| named(py, "carry", word, &Carry::ALL, Carry::name)).transpose()?;
         let uncertain = Uncertain { fields: uncertain, draws, seed };
         let question = Sweep { over, columns, until_settled, carry, uncertain };
-        let shown = checked(py, question.nominal(&self.inner))?;
-        let grid = checked(py, shown.grid(&question.over))?;
-        let about = checked(py, question.draws(&shown, &grid))?.about();
-        let way = Way { threads, progress };
-        let table = work(py, &way, |progress| question.run(&self.inner, progress))?;
+        let (shown, grid, about, table) = work(py, &Way { threads, progress }, |progress| {
+            let shown = question.nominal(&self.inner, progress)?;
+            let grid = shown.grid(&question.over)?;
+            let about = question.draws(&shown, &grid)?.about();
+            let table = question.run(&shown, progress)?;
+            Ok((shown, grid, about, table))
+        })?;
         Ok(Answer::new(py, table, self.caption()).drawn(move |rows, asked| {
             let (scene, mechanism) = (shown.scene(), shown.mechanism());
             let mechanism = (!grid.changes_mechanism()).then_some(&**mechanism);
@@ -364,15 +375,19 @@ impl Simulation {
         threads: Option<usize>,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Answer> {
-        let wrong = |name: &str, problem: &str| Err(raised(py, &Error::argument(name, "", problem)));
-        if skip.is_some() != keep.is_some() {
-            return wrong("skip", "skip and keep belong together: give both, in forcing periods");
+        let wrong =
+            |name: &str, value: &str, problem: &str| Err(raised(py, &Error::argument(name, value, problem)));
+        let together = "skip and keep belong together: give both, in forcing periods";
+        match (skip, keep) {
+            (Some(periods), None) => return wrong("skip", &periods.to_string(), together),
+            (None, Some(periods)) => return wrong("keep", &periods.to_string(), together),
+            _ => {}
         }
         let carry = carry.map(|word| named(py, "carry", word, &Carry::ALL, Carry::name)).transpose()?;
         let at = match at {
             "phase" => SectionAt::Phase(phase_deg),
             "impacts" => SectionAt::Impacts,
-            _ => return wrong("at", "give phase or impacts"),
+            other => return wrong("at", other, "give phase or impacts"),
         };
         let options = SectionOptions { at, periods: skip.zip(keep), until_settled, carry };
         let question = Section { over, options };
@@ -507,7 +522,10 @@ impl Simulation {
     ) -> PyResult<Answer> {
         let question = Branch { field, range, period, phase_deg, step, count };
         let way = Way { threads: None, progress };
-        let found = work(py, &way, |progress| question.with_switches(switch, &self.inner, progress))?;
+        let found = work(py, &way, |progress| {
+            let found = question.with_switches(switch, &self.inner, progress);
+            found.map_err(|error| renamed(error, [["range", "end"]]))
+        })?;
         let table = if switch > 0 { branches_table(&found) } else { found[0].table() };
         let remarks = branches_remarks(&found, range);
         let answer = Answer::new(py, table, self.caption()).told(remarks);
@@ -584,7 +602,9 @@ impl Simulation {
     ) -> PyResult<(Answer, Answer)> {
         let question = Basins { random, ..Basins::of(x_mm, v) };
         let way = Way { threads, progress };
-        let found = work(py, &way, |progress| question.run(&self.inner, progress))?;
+        let found = work(py, &way, |progress| {
+            question.run(&self.inner, progress).map_err(|error| renamed(error, [["v", "v_m_per_s"]]))
+        })?;
         let attractors = Answer::new(py, found.attractors(), self.caption());
         let starts = Answer::new(py, found.table(), self.caption()).told(found.answer.words());
         let starts = starts.drawn(move |_, _| Ok(basins_chart(&found.basins, &found.answer)));
@@ -659,6 +679,14 @@ impl Run {
         summary(&self.summary, self.simulation.scene(), &origin)
     }
 
+    /// Potential of the mechanism in J at each sample.
+    fn potential<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let positions = self.samples.get().numbers(py, "x_m")?;
+        let curve = &self.simulation.mechanism().curve;
+        let potential = py.detach(|| positions.into_iter().map(|x| curve.potential(x)).collect());
+        Ok(PyArray1::from_vec(py, potential))
+    }
+
     /// Why the run ended before its duration, or is inaccurate; None if it is done.
     fn outcome(&self) -> &'static str {
         self.summary.outcome.name()
@@ -684,7 +712,9 @@ pub fn identify(
 ) -> PyResult<(Answer, String)> {
     let of = named(py, "of", of, &WhatToIdentify::ALL, WhatToIdentify::name)?;
     let question = Identify { of, time, column, position, base, between, impact_times, stops_mm, points };
-    let answer = work(py, &Way::default(), |_| question.run(&path))?;
+    let answer = work(py, &Way::default(), |progress| {
+        question.run(&path, progress).map_err(|error| renamed(error, [["from", "start"], ["to", "end"]]))
+    })?;
     let origin = Provenance {
         version: VERSION.to_owned(),
         arguments: Vec::new(),
@@ -704,6 +734,24 @@ pub fn identify(
         Ok(identified_chart(of.name(), &answer.found, record, answer.values.quantity, asked.ranges))
     };
     Ok((rows.drawn(drawn), summary))
+}
+
+/// The error with the names that arguments have in Python, in place of those of the question.
+fn renamed<const N: usize>(error: Error, names: [[&str; 2]; N]) -> Error {
+    let named = |text: &str| {
+        let option =
+            |text: String, [from, to]: [&str; 2]| text.replace(&format!("--{from}"), &format!("--{to}"));
+        names.into_iter().fold(text.to_owned(), option)
+    };
+    match error {
+        Error::Argument { name, value, problem } => {
+            let known = names.into_iter().find(|[from, _]| *from == name);
+            let name = known.map_or(name, |[_, to]| to.to_owned());
+            Error::Argument { name, value, problem: named(&problem) }
+        }
+        Error::Unfit { scene, problem } => Error::Unfit { scene, problem: named(&problem) },
+        other => other,
+    }
 }
 
 /// Names and titles of the built-in scenes.
@@ -731,7 +779,7 @@ fn values_of(
             number.map_err(|_| {
                 let shown = value.repr().map_or_else(|_| String::new(), |text| text.to_string());
                 let problem = format!("the function returned {shown} at {at}; it must return a number");
-                raised(function.py(), &Error::argument(argument, "", problem))
+                raised(function.py(), &Error::argument(argument, shown, problem))
             })
         });
         value.unwrap_or_else(|error| {

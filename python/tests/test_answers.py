@@ -156,6 +156,16 @@ def test_exponents_and_spectrum(command: Command) -> None:
     assert duffing.spectrum("v").csv() == command("spectrum", "duffing", "--of", "v")
 
 
+def test_escape(command: Command) -> None:
+    noise = "Noise(rms_g: 1.0, low_hz: 1, high_hz: 20, seed: 1, lines: 64)"
+    noisy = iw.Scene.preset("nominal-cubic").set(excitation=noise, stops="None")
+    options = "--set", f"excitation={noise}", "--set", "stops=None", "--runs", "9", "--within", "3"
+    assert noisy.escape(runs=9, within=3.0).csv() == command("escape", "nominal-cubic", *options)
+    found = noisy.escape({"mass_g": [10.0, 20.0]}, runs=9, within=3.0, until="crossing")
+    over = "--over=mass_g=10.0,20.0", "--until", "crossing"
+    assert found.csv() == command("escape", "nominal-cubic", *options, *over)
+
+
 def test_curve_compare_and_best(command: Command) -> None:
     paper = iw.Scene.preset("paper")
     assert paper.curve().csv() == command("curve", "paper")
@@ -179,6 +189,21 @@ def test_identify(command: Command, tmp_path: pathlib.Path) -> None:
     assert found.csv() == expected
     written = json.loads(summary.read_text())
     assert all(found.summary[key] == written[key] for key in found.summary)
+
+
+def test_identify_restitution_and_force(command: Command, tmp_path: pathlib.Path) -> None:
+    shaken, pull, summary = tmp_path / "shaken.csv", tmp_path / "pull.csv", tmp_path / "summary.json"
+    shaken.write_text(command("simulate", "paper", "--dt", "1e-3"))
+    pull.write_text(command("curve", "nominal-cubic", "--range-mm=-9:9", "--points", "401"))
+    for record, of, options in [
+        (shaken, "restitution", {"column": "x_m"}), (pull, "force", {}), (pull, "force", {"points": 51})
+    ]:
+        given = [f"--{name}={value}" for name, value in options.items()]
+        expected = command("identify", str(record), "--of", of, "--summary", str(summary), *given)
+        found = iw.identify(record, of, **options)  # type: ignore[arg-type]
+        assert found.csv() == expected
+        written = json.loads(summary.read_text())
+        assert all(found.summary[key] == written[key] for key in found.summary)
 
 
 def test_force_of_samples(tmp_path: pathlib.Path) -> None:

@@ -55,6 +55,10 @@ def test_energy_is_kept_without_losses() -> None:
     )
     energy = scene.run().energy
     assert np.ptp(energy) < 1e-7 * np.abs(energy).max()
+    run = scene.run()
+    assert run.energy is run.energy and not run.energy.flags.writeable
+    whole = 0.5 * (1e-3 * scene["mass_g"]) * run.v**2 + scene.curve(run.x)["potential_j"]
+    assert (run.energy == whole).all() and (energy == whole).all()
 
 
 def test_walks_have_the_order_of_the_fields() -> None:
@@ -279,7 +283,8 @@ BAD = [
     (lambda: iw.Scene.preset("paper").sweep({"mass_g": [1]}, columns="rms"), "columns", "columns"),
     (lambda: iw.Scene.preset("paper").sweep({"mass_g": [1]}, carry="left"), "carry", "carry"),
     (lambda: coil().escape(), "no noise", ""),
-    (lambda: iw.Scene.preset("paper").threshold("mass_g", (2, 1)), "FROM", "field"),
+    (lambda: iw.Scene.preset("paper").threshold("mass_g", (2, 1)), "lower end first", "range"),
+    (lambda: iw.Scene.preset("paper").threshold(step="a"), "number", "step"),
     (lambda: iw.Scene.preset("paper").threshold(of="bliss"), "of", "of"),
     (lambda: iw.Scene.preset("paper").threshold(runs=5), "`probability`", "runs"),
     (lambda: iw.Scene.preset("paper").threshold(probability=0.5, melnikov=True), "`probability`", "melnikov"),
@@ -287,11 +292,11 @@ BAD = [
     (lambda: iw.Scene.preset("paper").threshold(probability=0.5), "noise", ""),
     (lambda: iw.Scene.preset("paper").basins((1, -1, 3), (0, 1, 2)), "reversed", "x_mm"),
     (lambda: iw.Scene.preset("paper").orbit(phase_deg=float("inf")), "phase_deg", "phase_deg"),
-    (lambda: iw.Scene.preset("paper").branch("mass_g", 1, 1), "both", "branch"),
+    (lambda: iw.Scene.preset("paper").branch("mass_g", 1, 1), "both", "end"),
     (lambda: iw.Scene.preset("paper").branch("mass_g", 1, 2, step=1), "0.05", "step"),
     (lambda: iw.Scene.preset("paper").branch("mass_g", 1, 2, count=0), "count", "count"),
     (lambda: iw.Scene.preset("paper").branch("mass_g", 1, 2, switch=11), "switch", "switch"),
-    (lambda: iw.Scene.preset("paper").branch("run.tolerance", 1e-9, 1e-8), "does not depend", "branch"),
+    (lambda: iw.Scene.preset("paper").branch("run.tolerance", 1e-9, 1e-8), "does not depend", "field"),
     (lambda: iw.Scene.preset("paper").locus("bang", "mass_g", (1, 2), "mass_g", (1, 2)), "event", "event"),
     (lambda: iw.Scene.preset("paper").locus("fold", "mass_g", (1, 2), "mass_g", (1, 2)), "already", "second"),
     (lambda: iw.Scene.preset("paper").section(skip=3), "keep", "skip"),
@@ -302,7 +307,11 @@ BAD = [
     (lambda: iw.Scene.preset("paper").best({"mass_g": (1, 2)}, maximise="joy"), "maximise", "maximise"),
     (lambda: iw.Scene.preset("paper").with_force(lambda x: 1 / 0, (-1, 1)), None, None),
     (lambda: iw.Scene.preset("paper").with_force(lambda x: float("nan"), (-1, 1)), "finite", "force"),
-    (lambda: iw.Scene.preset("paper").with_force(lambda x: x, (1, -1)), "range", "force"),
+    (lambda: iw.Scene.preset("paper").with_force(lambda x: x, (1, -1)), "smaller first", "range"),
+    (lambda: iw.Scene.preset("paper").with_force(lambda x: x, (-1, 1), tolerance="a"), "number", "tolerance"),
+    (lambda: iw.Scene.preset("paper").with_force(lambda x: x, (-1, 1), tolerance=1), "1e-10", "tolerance"),
+    (lambda: iw.Scene.preset("paper").with_force(lambda x: x, (-1, 1), breaks="a"), "numbers", "breaks"),
+    (lambda: iw.Scene.preset("paper").with_force(lambda x: x, (-1, 1), breaks=[2]), "inside", "breaks"),
     (lambda: iw.Scene.preset("paper").with_force(lambda x: "a", (-1, 1)), "must return a number", "force"),
     (lambda: iw.Scene.preset("paper").with_force(([0, 1, 2, 2], [0, 1, 2, 3])), "sort them", "force"),
     (lambda: iw.Scene.preset("paper").with_force(([0, 1], [0, 1]), (0, 1)), "leave it out", "range"),
@@ -310,9 +319,13 @@ BAD = [
     (lambda: iw.Scene.preset("paper").with_drive(lambda t: float("inf"), 3.0), "finite", "acceleration"),
     (lambda: iw.Scene.preset("paper").with_drive(lambda t: float(t > 0.1), 3.0), "Recorded", "acceleration"),
     (lambda: iw.Scene.preset("paper").with_drive([], 3.0), "0 samples", "acceleration"),
-    (lambda: iw.Scene.preset("paper").with_drive([1.0, 2.0], 1 / 3), "0.33333333333", "acceleration"),
+    (lambda: iw.Scene.preset("paper").with_drive([1.0, 2.0], 1 / 3), "0.33333333333", "frequency_hz"),
+    (lambda: iw.Scene.preset("paper").with_drive([1.0, 2.0], "a"), "number", "frequency_hz"),
+    (lambda: iw.Scene.preset("paper").with_drive([1.0, 2.0], 3.0, tolerance="a"), "number", "tolerance"),
     (lambda: iw.identify("no.csv", "damping"), "no.csv", ""),
     (lambda: iw.identify("no.csv", "joy"), "of", "of"),
+    (lambda: iw.identify("no.csv", "damping", start=5, end=2), "`end`, which is 2", "start"),
+    (lambda: iw.identify("no.csv", "damping", left_mm=2), "restitution", "left_mm"),
     (lambda: iw.Scene.preset("paper").orbit().plot(), "picture", "plot"),
     (lambda: iw.Scene.preset("paper").sweep({}), "over", "over"),
     (lambda: iw.Scene.preset("paper").sweep({"mass_g": [15]}, threads=0), "threads", "threads"),
@@ -331,6 +344,9 @@ BAD = [
     (lambda: iw.Scene.preset("paper").threshold(range=1), "(first, last)", "range"),
     (lambda: iw.Scene.preset("paper").basins((0, 1), (0, 1, 2)), "(first, last, count)", "x_mm"),
     (lambda: iw.Scene.preset("paper").basins((0, 1, 2), (0, "a", 2)), "numbers", "v_m_per_s"),
+    (lambda: iw.Scene.preset("paper").basins((0, 1, 2), (1, -1, 3)), "reversed", "v_m_per_s"),
+    (lambda: iw.Scene.preset("paper").sweep({"mass_g": [15]}, uncertain={"damping.xi": float("nan")}),
+     "not finite", "uncertain"),
     (lambda: iw.Scene.preset("paper").basins((0, 1, 2.5), (0, 1, 2)), "whole number", "x_mm"),
     (lambda: iw.Scene.preset("paper").basins((0, 1, 2, 3), (0, 1), random=9), "count", "x_mm"),
     (lambda: iw.Scene.preset("paper").best({"mass_g": (1,)}), "largest", "mass_g"),
@@ -403,6 +419,7 @@ def in_a_process(program: str, interrupted: bool = False) -> subprocess.Complete
         "scene.run(dt=1e3)",
         "scene.sweep({'excitation.amplitude_g': np.linspace(1, 1.4, 4000)})",
         "scene.exponents(periods=10_000_000)",
+        "iw.Scene('duffing-chaos').orbit(period=1000)",
     ],
 )
 def test_interruption_ends_a_question(question: str) -> None:
@@ -424,7 +441,8 @@ def test_interruption_ends_a_question(question: str) -> None:
     assert done.stdout.endswith("interrupted\n"), done.stderr
 
 
-def test_other_threads_go_on() -> None:
+@pytest.mark.parametrize("question", ["run", "plot", "csv"])
+def test_other_threads_go_on(question: str) -> None:
     count, over = 0, threading.Event()
 
     def counted() -> None:
@@ -434,9 +452,11 @@ def test_other_threads_go_on() -> None:
 
     thread = threading.Thread(target=counted)
     scene = iw.Scene.preset("paper-unconstrained").set({"run.duration_s": 2000})
+    run = scene.run()
+    asked = {"run": scene.run, "plot": run.plot, "csv": run.csv}[question]
     thread.start()
     before = count
-    scene.run()
+    asked()
     after = count
     over.set()
     thread.join()

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use interwell::output::{Caption, identified, identified_chart};
-use interwell::questions::{Identify, IdentifyAnswer, WhatToIdentify};
+use interwell::questions::{Identify, IdentifyAnswer, Progress, WhatToIdentify};
 use interwell::scene::Timing;
 use interwell::study::Identity;
 
@@ -63,7 +63,7 @@ pub struct Arguments {
     #[arg(long, value_name = "MM", allow_hyphen_values = true)]
     pub right_mm: Option<f64>,
 
-    /// Of force: points of the curve, 4 to 100000 [default: 101]
+    /// Of force: points of the curve, 4 to 100000 [default: 101, or as many as the samples allow]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(4..=100_000))]
     pub points: Option<u32>,
 
@@ -97,7 +97,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         .reading(&record)?
         .with(Output::SUMMARY, options.summary.as_deref())?
         .with_picture(picture)?;
-    let IdentifyAnswer { timing, found, across, values, columns } = question.run(file)?;
+    let IdentifyAnswer { timing, found, across, values, columns } = question.run(file, &Progress::none())?;
     common.say(&format!("{}: {columns}", file.display()));
     outputs.table(Output::DATA, &found.rows)?;
     outputs.write(Output::SUMMARY, identified(of, &found, timing.as_ref(), &watch.origin(1)))?;

@@ -89,7 +89,8 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let mut document = read(&options.scene, common)?;
     let over = options.branch.as_ref().map(|text| range("--branch", text, &document)).transpose()?;
     let and = options.and.as_ref().map(|text| range("--and", text, &document)).transpose()?;
-    let fields = [("branch", &over), ("and", &and)].map(|(option, field)| Some((option, field.as_ref()?)));
+    let fields =
+        [("branch", &over), ("and", &and)].map(|(option, field)| Some(([option; 2], field.as_ref()?)));
     check_fields(&document.scene, fields.into_iter().flatten())?;
     // the branch begins at these values; those in the scene are never run
     for (option, range) in [("--branch", &over), ("--and", &and)] {

@@ -15,7 +15,10 @@ use super::{Failure, given, interrupt, refuse};
 const ROWS: usize = 1 << 15;
 
 /// Endings of tables that are not text.
-const BINARY_TABLES: [&str; 9] = ["arrow", "feather", "h5", "hdf5", "mat", "nc", "npy", "parquet", "xlsx"];
+const BINARY_TABLES: [&str; 18] = [
+    "arrow", "feather", "h5", "hdf5", "mat", "nc", "nc4", "netcdf", "npy", "npz", "ods", "parquet", "pickle",
+    "pkl", "pq", "xls", "xlsx", "zarr",
+];
 
 /// What a command writes, by the option that says where it goes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -103,6 +106,14 @@ impl Outputs {
                  tables become data frames (to_pandas)",
                 path.display()
             );
+        }
+        if ending == "json" && ![Output::MANIFEST, Output::SUMMARY, Output::LANDSCAPE].contains(&output) {
+            refuse!("{option} {}: this is written as CSV or text: name a .csv or .txt", path.display());
+        }
+        if ending == "gz" {
+            let plain = path.with_extension("");
+            let plain = plain.display();
+            refuse!("{option} {plain}.gz: files are not compressed: name {plain}, and take gzip {plain}");
         }
         let would_overwrite = |what: &str| {
             let path = path.display();

@@ -390,3 +390,14 @@ fn what_cannot_be_searched_is_refused_with_what_would_be_right() {
     let open = "best harvester --over transducer.load_ohm=1:inf";
     refused(headless(open), &["load_ohm=1:inf", "must be finite"]);
 }
+
+#[test]
+fn a_search_that_is_cancelled_makes_none_of_its_places() {
+    let mut asked = question(&linear(), ("mass_g", 900.0, 1100.0), 30_000);
+    for field in ["excitation.frequency_hz", "excitation.amplitude_g", "run.duration_s"] {
+        asked.over.push(DesignRange::new(field, (1.0, 2.0), 30_000));
+    }
+    let task = Task { tick: &|| (), cancel: &AtomicBool::new(true) };
+    let found = best(&asked, &Pool::new(2).unwrap(), &task, &mut |_| ());
+    assert_eq!(found.unwrap_err(), NoBest::Cancelled);
+}

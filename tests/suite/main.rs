@@ -29,6 +29,7 @@ mod orbit;
 mod plots;
 mod presets;
 mod properties;
+mod questions;
 mod recurrence;
 mod scene;
 mod section;

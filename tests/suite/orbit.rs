@@ -10,9 +10,9 @@ mod switch;
 
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-use interwell::dynamics::{Model, Multiplier, STANDARD_GRAVITY};
+use interwell::dynamics::{Model, Multiplier, Outcome, STANDARD_GRAVITY};
 use interwell::mechanics::Mechanism;
 use interwell::scene::{Document, Files};
 use interwell::study::{
@@ -249,4 +249,32 @@ fn what_is_not_there_is_said() {
     // a guess beyond the stop is held at it
     let map = single.stroboscopic_map(0.0).unwrap();
     assert_eq!(orbit_near(&map, (1.0, 3.0), 1).unwrap().period, 1);
+}
+
+#[test]
+fn a_cancelled_search_integrates_nothing() {
+    let stop = AtomicBool::new(true);
+    let map = preset("duffing-chaos", &[]).stroboscopic_map(0.0).unwrap().cancelled_by(&stop);
+    let (passage, _) = map.pass_with_jacobian((0.3, 0.0), 300);
+    assert_eq!((passage.outcome, passage.state), (Outcome::Cancelled { at: map.first_strobe() }, (0.3, 0.0)));
+    assert_eq!(map.pass((0.3, 0.0), 1).outcome, passage.outcome);
+    assert_eq!(orbit_near(&map, (0.3, 0.0), 300), Err(NoOrbit::Cancelled));
+}
+
+/// The flag is set with the last orbit, after which nothing but the correction of that orbit looks at it.
+#[test]
+fn a_branch_that_is_cancelled_at_its_last_orbit_is_no_answer() {
+    let document = changed("nominal-cubic", &["stops=None", "excitation.amplitude_g=0.6"]);
+    let mechanism = Arc::new(Mechanism::build(&document.scene.mechanism, &document.files).unwrap());
+    let family = Family::new(&document.scene, &document.files, &mechanism, AMPLITUDE);
+    let options = BranchOptions::new(0.0, Some(1));
+    let until = |last: u64| {
+        let (ticks, cancel) = (AtomicU64::new(0), AtomicBool::new(false));
+        let tick = || cancel.store(ticks.fetch_add(1, Ordering::Relaxed) + 1 == last, Ordering::Relaxed);
+        let found = branch(&family, AMPLITUDE, (0.6, 0.61), &options, &Task { tick: &tick, cancel: &cancel });
+        (found, ticks.into_inner())
+    };
+    let (whole, count) = until(u64::MAX);
+    assert_eq!(whole.unwrap().end, BranchEnd::Range);
+    assert_eq!(until(count), (Err(NoOrbit::Cancelled), count));
 }

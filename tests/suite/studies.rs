@@ -167,7 +167,7 @@ fn a_damping_ratio_is_told_in_all_its_meanings() {
     let right = piece(kink, vec![force, outer]);
     let middle = piece(0.0, vec![0.0, force / kink - cubic, 0.0, cubic / (kink * kink)]);
     let pieces = vec![right.mirrored(), middle, right];
-    let curve = ForceCurve::from_pieces(pieces, vec![-kink, kink], (-8e-3, 8e-3), true, None);
+    let curve = ForceCurve::from_pieces(pieces, vec![-kink, kink], (-8e-3, 8e-3), true, None).unwrap();
     let mut document = Document::load("paper").unwrap();
     document.set("damping=Ratio(0.023)").unwrap();
     let lines = inspect(&document.scene, &Arc::new(Mechanism::new(curve))).unwrap();

@@ -123,20 +123,14 @@ impl ForceCurve {
         }
     }
 
-    /// A curve of several pieces; `pieces[i]` reaches from `breaks[i - 1]` to `breaks[i]`, the outermost ones
-    /// to the ends of `domain`. This sets the potentials of the pieces so that the potential is continuous
-    /// and 0 at x = 0 (at the nearer end of the domain if 0 is outside).
-    ///
-    /// Preconditions: `breaks` strictly increasing inside `domain`, one more piece than breaks, values
-    /// continuous at the breaks; `odd` only if the pieces mirror each other bit for bit.
-    pub fn from_pieces(
+    /// As [`from_pieces`](Self::from_pieces), of pieces that are known to fit.
+    pub(super) fn joined(
         mut pieces: Vec<Piece>,
         breaks: Vec<f64>,
         domain: (f64, f64),
         odd: bool,
         fit: Option<FitReport>,
     ) -> Self {
-        assert_eq!(pieces.len(), breaks.len() + 1);
         let zero = 0.0_f64.clamp(domain.0, domain.1);
         let middle = breaks.partition_point(|b| *b < zero);
         let level_at = |piece: &mut Piece, x: f64, level: f64| {
@@ -164,7 +158,7 @@ impl ForceCurve {
         let pieces = left.chain(right.iter().cloned()).collect();
         let left = breaks.iter().skip(usize::from(in_middle)).rev().map(|x| -x);
         let breaks = left.chain(breaks.iter().copied()).collect();
-        Self::from_pieces(pieces, breaks, (-end, end), true, None)
+        Self::joined(pieces, breaks, (-end, end), true, None)
     }
 
     /// The same curve with a report of how well it follows its data.
@@ -291,7 +285,7 @@ pub fn sum(parts: &[&ForceCurve]) -> Option<ForceCurve> {
     if !odd {
         let ends: Vec<f64> = [&[low], &breaks[..], &[high]].concat();
         let pieces = ends.windows(2).map(|pair| piece_of_sum(parts, pair[0], pair[1])).collect();
-        return Some(ForceCurve::from_pieces(pieces, breaks, (low, high), false, None));
+        return Some(ForceCurve::joined(pieces, breaks, (low, high), false, None));
     }
     let in_middle = breaks.contains(&0.0);
     let right: Vec<f64> = breaks.into_iter().filter(|x| *x > 0.0).collect();

@@ -237,7 +237,7 @@ impl Samples<'_> {
         let last = self.x[self.x.len() - 1];
         let right: Vec<f64> = ends[..ends.len() - 1].iter().map(|i| self.x[*i]).collect();
         if !self.odd {
-            return ForceCurve::from_pieces(pieces, right, (self.x[0], last), false, None);
+            return ForceCurve::joined(pieces, right, (self.x[0], last), false, None);
         }
         ForceCurve::odd(pieces, &right, last)
     }

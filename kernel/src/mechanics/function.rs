@@ -78,9 +78,35 @@ pub enum FunctionError {
     /// The fit of the samples failed.
     #[error("the force {0}")]
     Fit(String),
+    /// The numbers of pieces and breaks do not fit, or the domain does not go upward.
+    #[error(
+        "{0} pieces have {1} breaks over {2} to {3} m; give one piece more than breaks, and the smaller end \
+         first"
+    )]
+    Pieces(usize, usize, f64, f64),
 }
 
 impl ForceCurve {
+    /// A curve of several pieces; `pieces[i]` reaches from `breaks[i - 1]` to `breaks[i]`, the outermost ones
+    /// to the ends of `domain`. This sets the potentials of the pieces so that the potential is continuous
+    /// and 0 at x = 0 (at the nearer end of the domain if 0 is outside).
+    ///
+    /// Gives [`FunctionError::Pieces`] unless there is one more piece than breaks and the domain goes upward.
+    /// Preconditions: `breaks` strictly increasing inside `domain`, values continuous at the breaks; `odd`
+    /// only if the pieces mirror each other bit for bit.
+    pub fn from_pieces(
+        pieces: Vec<Piece>,
+        breaks: Vec<f64>,
+        domain: (f64, f64),
+        odd: bool,
+        fit: Option<FitReport>,
+    ) -> Result<Self, FunctionError> {
+        if pieces.len() != breaks.len() + 1 || !(domain.0 < domain.1) {
+            return Err(FunctionError::Pieces(pieces.len(), breaks.len(), domain.0, domain.1));
+        }
+        Ok(Self::joined(pieces, breaks, domain, odd, fit))
+    }
+
     /// The curve of a function: the force in N at a position in m, over a range in m.
     ///
     /// The curve differs from the function by at most `tolerance` (1e-10 to 0.1) times the largest force
@@ -153,7 +179,7 @@ impl ForceCurve {
         let (last, breaks) = (pieces.len(), ends[1..pieces.len()].to_vec());
         let is_odd = (0..=last).all(|i| ends[i] == -ends[last - i])
             && pieces.iter().zip(pieces.iter().rev()).all(|(left, right)| *left == right.mirrored());
-        let curve = Self::from_pieces(pieces, breaks, (ends[0], ends[last]), is_odd, None);
+        let curve = Self::joined(pieces, breaks, (ends[0], ends[last]), is_odd, None);
         if error == 0.0 {
             return curve;
         }

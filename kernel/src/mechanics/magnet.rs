@@ -162,7 +162,7 @@ pub fn magnet(moments: Moments, strength: f64, gap: f64) -> Result<ForceCurve, S
         ..fit.clone()
     });
     let finite = pieces.iter().flat_map(|piece| &piece.coefficients).all(|c| c.is_finite());
-    let curve = ForceCurve::from_pieces(pieces, breaks, (low * gap, high * gap), true, fit);
+    let curve = ForceCurve::joined(pieces, breaks, (low * gap, high * gap), true, fit);
     if scale != 0.0 && finite && curve.pieces().iter().all(|piece| piece.potential_at_origin.is_finite()) {
         return Ok(curve);
     }

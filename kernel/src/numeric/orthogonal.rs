@@ -1,4 +1,8 @@
 //! Least-squares polynomials of several degrees through samples, with the errors of their values and slopes.
+//!
+//! [`Orthogonal::fit`] takes as many places, in ascending order, as values, in any units; it does not fail.
+//! Of n samples only the polynomials with 1 to n coefficients exist, at most [`MAX_TERMS`]. A variance is
+//! to be multiplied by that of the samples.
 
 /// Largest number of coefficients.
 pub const MAX_TERMS: usize = 7;

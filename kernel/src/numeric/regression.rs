@@ -1,4 +1,9 @@
 //! Least-squares fits with the uncertainty of their coefficients.
+//!
+//! A fit of N coefficients needs at least N + 1 values; otherwise, and where the values do not determine
+//! it, there is `None`. Coefficients have the units of value over row. For an interval of 95 % a standard
+//! error, the root of an entry on the diagonal of the covariance, is multiplied by [`student`] of
+//! [`Fit::freedom`].
 
 use nalgebra::{SMatrix, SVector};
 use statrs::distribution::{ContinuousCDF, StudentsT};

@@ -1,4 +1,7 @@
 //! Round numbers: a leading digit times a power of ten.
+//!
+//! Arguments are above 0 and finite, which is not checked. A result is the double nearest to its decimal. A
+//! value counts as round if it differs from a round number by at most 1e-9 of itself.
 
 use super::elementary;
 

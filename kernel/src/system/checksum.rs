@@ -1,4 +1,7 @@
 //! SHA-256 checksums in the format of `sha256sum`.
+//!
+//! A checksum is a text of 64 hexadecimal digits in lower case (FIPS 180-4). That of a file is taken 64 KiB
+//! at a time; its error is that of opening or reading the file.
 
 use std::io::Read;
 use std::path::Path;

@@ -1,5 +1,9 @@
 //! Wall, thread and process clocks. A web page can read no clock of the processor; there all three are the
 //! wall clock.
+//!
+//! Times are in s from the start of a clock. That of a thread is read by the thread that started it; that
+//! of the program sums all threads, so that with two of them at work it goes twice as fast as the wall
+//! clock.
 
 use std::time::Duration;
 

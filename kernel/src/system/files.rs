@@ -1,4 +1,7 @@
 //! Read access to files; in a web page, to those that it keeps.
+//!
+//! A function that reads returns the error of the system, without the path, which the caller adds. One that
+//! asks returns false, or `None`, also where the system refuses the answer.
 
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};

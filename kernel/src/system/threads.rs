@@ -1,4 +1,8 @@
 //! Threads, and the distribution of work among them.
+//!
+//! [`Pool::new`] is the only function that fails, with [`NoThreads`], where the system grants no thread.
+//! Results come in the order of their parts, whatever the number of threads. A panic in a part goes on in
+//! the caller.
 
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;

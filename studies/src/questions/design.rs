@@ -59,7 +59,8 @@ impl Compare {
         let others = self.with.iter().map(|(name, other)| (name.clone(), other));
         let mut all = Vec::new();
         for (name, other) in std::iter::once(first).chain(others) {
-            let other = other.with_document(in_environment(other.document(), simulation.document()))?;
+            let changed = in_environment(other.document(), simulation.document());
+            let other = other.with_document(changed, progress)?;
             check_until(self.until_settled, other.document(), other.model())?;
             let (document, mechanism) = (other.document().clone(), other.mechanism().clone());
             all.push(Alternative { name, scene: document.scene, files: document.files, mechanism });
@@ -332,7 +333,7 @@ fn ranges(over: &[String], document: &Document) -> Result<Vec<DesignRange>, Erro
     }
     if ranges.len() > MOST_FIELDS {
         let problem = format!("{} fields; at most {MOST_FIELDS} are searched together", ranges.len());
-        return Err(Error::argument("over", "", problem));
+        return Err(Error::argument("over", over.join(", "), problem));
     }
     Ok(ranges)
 }

@@ -3,9 +3,9 @@
 use std::fmt;
 
 use crate::dynamics::Model;
-use crate::mechanics::BuildError;
+use crate::mechanics::{BuildError, FunctionError};
 use crate::numeric::number_text;
-use crate::scene::{Document, Fault, Origin, SceneError};
+use crate::scene::{Document, DriveError, Fault, Origin, SceneError};
 use crate::study::{CellFaults, GridError};
 
 /// Why a question has no answer.
@@ -227,6 +227,35 @@ impl From<SceneError> for Error {
 impl From<crate::scene::ArgumentError> for Error {
     fn from(error: crate::scene::ArgumentError) -> Self {
         Self::Scene(error.into())
+    }
+}
+
+impl From<FunctionError> for Error {
+    fn from(error: FunctionError) -> Self {
+        use FunctionError as Wrong;
+        let (name, value) = match &error {
+            Wrong::Range(low, high) => ("range", format!("{}:{}", number_text(*low), number_text(*high))),
+            Wrong::Tolerance(tolerance) => ("tolerance", number_text(*tolerance)),
+            Wrong::Break(at) => ("breaks", number_text(*at)),
+            Wrong::NotFinite(_, force) => ("force", number_text(*force)),
+            Wrong::Pieces(pieces, ..) => ("pieces", pieces.to_string()),
+            Wrong::Step(_) | Wrong::Rough(_) | Wrong::Samples(_) | Wrong::Fit(_) => ("force", String::new()),
+        };
+        Self::argument(name, value, error)
+    }
+}
+
+impl From<DriveError> for Error {
+    fn from(error: DriveError) -> Self {
+        use DriveError as Wrong;
+        let (name, value) = match &error {
+            Wrong::Frequency(hz) | Wrong::Digits(hz, _) => ("frequency_hz", number_text(*hz)),
+            Wrong::Tolerance(tolerance) => ("tolerance", number_text(*tolerance)),
+            Wrong::NotFinite(_, value) | Wrong::TooLarge(_, value) => ("acceleration", number_text(*value)),
+            Wrong::Samples(count) => ("acceleration", format!("{count} samples")),
+            Wrong::Unresolved(..) => ("acceleration", String::new()),
+        };
+        Self::argument(name, value, error)
     }
 }
 

@@ -38,7 +38,8 @@ impl Curve {
     pub fn run(&self, simulation: &Simulation) -> Result<Table, Error> {
         let default = || default_positions(simulation.scene(), simulation.mechanism(), CURVE_POINTS as usize);
         let positions = self.positions.clone().unwrap_or_else(default);
-        curve(simulation.mechanism(), positions).map_err(|problem| Error::argument("positions", "", problem))
+        let found = curve(simulation.mechanism(), positions);
+        found.map_err(|problem| Error::number("positions", problem.x, problem))
     }
 }
 

@@ -2,7 +2,8 @@
 
 use super::{Error, Progress, Simulation};
 use crate::dynamics::Model;
-use crate::scene::{Axis, Document, Scene, is_whole};
+use crate::numeric::number_text;
+use crate::scene::{Axis, Document, FieldPath, Scene, is_whole};
 use crate::study::{
     self, BranchEnd, BranchEvent, BranchOptions, Family, FieldRange, NoBasins, NoOrbit, Table, branch, loci,
     orbit, orbit_table, switched,
@@ -128,10 +129,10 @@ impl Branch {
         if levels > MOST_LEVELS {
             return Err(Error::argument("switch", levels, format!("give 0 to {MOST_LEVELS}")));
         }
-        check_fields(simulation.scene(), [("branch", &self.field_range())])?;
+        check_fields(simulation.scene(), [(["field", "range"], &self.field_range())])?;
         let options = self.options()?;
         let from = self.range.0;
-        let first = simulation.with(&self.field, from)?;
+        let first = simulation.with_changes(&[(self.field.clone(), from.to_string())], progress)?;
         can_have_orbits(first.document(), first.model())?;
         let document = first.document();
         let family = Family::new(&document.scene, &document.files, first.mechanism(), &self.field);
@@ -166,22 +167,35 @@ const STEPS: std::ops::RangeInclusive<f64> = 1e-4..=0.05;
 const MOST_LEVELS: u32 = 10;
 const COUNTS: std::ops::RangeInclusive<usize> = 1..=1_000_000;
 
-/// Checks fields that take all values of a range, each with the argument that gives it.
+/// Checks fields that take all values of a range, each with the arguments that give the field and the range;
+/// both may be the same one, `FIELD=FROM:TO`.
 pub fn check_fields<'a>(
     scene: &Scene,
-    fields: impl IntoIterator<Item = (&'a str, &'a FieldRange)>,
+    fields: impl IntoIterator<Item = ([&'a str; 2], &'a FieldRange)>,
 ) -> Result<(), Error> {
     let mut known: Vec<&str> = Vec::new();
-    for (argument, FieldRange { field, range: (from, to) }) in fields {
-        let wrong = |problem: String| Error::argument(argument, format!("{field}={from}:{to}"), problem);
-        Axis::listed(field, vec![*from, *to], scene).map_err(wrong)?;
-        let problem = if !(from.is_finite() && to.is_finite()) {
-            "both ends of the range must be finite"
-        } else if is_whole(scene, field) {
+    for ([of_field, of_range], FieldRange { field, range: (from, to) }) in fields {
+        let ends = || format!("{}:{}", number_text(*from), number_text(*to));
+        let wrong_range = |problem: String| match of_field == of_range {
+            true => Error::argument(of_range, format!("{field}={}", ends()), problem),
+            false => Error::argument(of_range, ends(), problem),
+        };
+        let wrong_field = |problem: String| match of_field == of_range {
+            true => wrong_range(problem),
+            false => Error::argument(of_field, field, problem),
+        };
+        let is_known = FieldPath::new(field).get(scene).is_some();
+        let found = Axis::listed(field, vec![*from, *to], scene);
+        found.map_err(|problem| if is_known { wrong_range(problem) } else { wrong_field(problem) })?;
+        if !(from.is_finite() && to.is_finite()) {
+            return Err(wrong_range("both ends of the range must be finite".to_owned()));
+        }
+        if from == to {
+            return Err(wrong_range("both ends are equal; give a range, such as 0.5:2".to_owned()));
+        }
+        let problem = if is_whole(scene, field) {
             "this field holds whole numbers, and a branch takes all values between two ends; follow the \
              motion by `sweep --carry` over it"
-        } else if from == to {
-            "both ends are equal; give a range, such as 0.5:2"
         } else if ["run.", "start."].iter().any(|group| field.starts_with(group)) {
             "a periodic motion does not depend on this field; take another one"
         } else if known.contains(&field.as_str()) {
@@ -190,7 +204,7 @@ pub fn check_fields<'a>(
             known.push(field);
             continue;
         };
-        return Err(wrong(problem.to_owned()));
+        return Err(wrong_field(problem.to_owned()));
     }
     Ok(())
 }
@@ -274,8 +288,11 @@ impl Locus {
     /// Follows the branch, and the loci from it.
     pub fn run(&self, simulation: &Simulation, progress: &Progress) -> Result<Vec<study::Locus>, Error> {
         let Self { branch: over, of, second } = self;
-        check_fields(simulation.scene(), [("branch", &over.field_range()), ("second", second)])?;
-        let first = simulation.with(&second.field, second.range.0)?.with(&over.field, over.range.0)?;
+        let names = [["field", "range"], ["second", "second_range"]];
+        check_fields(simulation.scene(), names.into_iter().zip([&over.field_range(), second]))?;
+        let begin = [(&second.field, second.range.0), (&over.field, over.range.0)];
+        let begin = begin.map(|(field, value)| (field.clone(), value.to_string()));
+        let first = simulation.with_changes(&begin, progress)?;
         can_have_orbits(first.document(), first.model())?;
         let (document, options) = (first.document(), over.options()?);
         let family = Family::new(&document.scene, &document.files, first.mechanism(), &over.field);

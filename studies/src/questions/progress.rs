@@ -85,7 +85,8 @@ impl<'a> Progress<'a> {
         Self { threads: Some(count), ..self }
     }
 
-    pub(super) fn stop(&self) -> &'a AtomicBool {
+    /// The flag that cancels the question.
+    pub fn stop(&self) -> &'a AtomicBool {
         self.stop
     }
 

@@ -2,12 +2,12 @@
 
 use std::fmt::Display;
 use std::path::Path;
+use std::sync::atomic::Ordering;
 
-use super::Error;
+use super::{Error, Progress};
+use crate::numeric::number_text;
 use crate::scene::{Channel, ColumnRequest, Measured, Quantity, Timing, read_measured};
-use crate::study::{
-    FORCE_POINTS, Identified, Table, Unidentified, damping, force, restitution, restitution_of_times,
-};
+use crate::study::{Identified, Table, Unidentified, damping, force, restitution, restitution_of_times};
 
 words! {
     /// What is identified from a record.
@@ -41,7 +41,7 @@ words! {
 /// nothing can be identified, with the reason.
 ///
 /// ```
-/// use interwell_studies::questions::{Identify, WhatToIdentify};
+/// use interwell_studies::questions::{Identify, Progress, WhatToIdentify};
 ///
 /// // A free decay of 10 Hz with a damping ratio of 2 %, sampled at 1 kHz.
 /// let rate = std::f64::consts::TAU * 10.0;
@@ -50,7 +50,7 @@ words! {
 /// let rows: String = (0..2000).map(|i| row(f64::from(i) * 1e-3)).collect();
 /// let path = std::env::temp_dir().join(format!("interwell-decay-{}.csv", std::process::id()));
 /// std::fs::write(&path, format!("t_s,x_mm\n{rows}")).unwrap();
-/// let answer = Identify::of(WhatToIdentify::Damping).run(&path);
+/// let answer = Identify::of(WhatToIdentify::Damping).run(&path, &Progress::none());
 /// std::fs::remove_file(&path).unwrap();
 /// let ratio = answer?.found.summary[0];
 /// assert_eq!(ratio.name, "damping_ratio");
@@ -76,7 +76,8 @@ pub struct Identify {
     pub impact_times: bool,
     /// For restitution: approximate positions of the left and the right stop in mm.
     pub stops_mm: [Option<f64>; 2],
-    /// For a force: number of points of the curve, 4 to 100000; by default 101.
+    /// For a force: number of points of the curve, 4 to 100000; by default 101, or as many as the
+    /// samples allow.
     pub points: Option<u32>,
 }
 
@@ -117,10 +118,11 @@ impl Identify {
         Self { of, time, column, position, base, between, impact_times: false, stops_mm, points: None }
     }
 
-    /// Reads the record at `path` and identifies the quantity.
-    pub fn run(&self, path: &Path) -> Result<IdentifyAnswer, Error> {
+    /// Reads the record at `path` and identifies the quantity. The flag of `progress` is looked at when the
+    /// file has been read.
+    pub fn run(&self, path: &Path, progress: &Progress) -> Result<IdentifyAnswer, Error> {
         self.check()?;
-        self.answer(path)
+        self.answer(path, progress)
     }
 
     /// Refuses options that do not belong to the quantity, and impossible values.
@@ -128,23 +130,23 @@ impl Identify {
         use WhatToIdentify::{Force, Restitution};
         let of = self.of;
         for (name, given, only) in [
-            ("impact_times", self.impact_times, Restitution),
-            ("base", self.base[0].is_some(), Restitution),
-            ("base_unit", self.base[1].is_some(), Restitution),
-            ("left_mm", self.stops_mm[0].is_some(), Restitution),
-            ("right_mm", self.stops_mm[1].is_some(), Restitution),
-            ("points", self.points.is_some(), Force),
-            ("position", self.position[0].is_some(), Force),
-            ("position_unit", self.position[1].is_some(), Force),
+            ("impact_times", self.impact_times.then(String::new), Restitution),
+            ("base", self.base[0].clone(), Restitution),
+            ("base_unit", self.base[1].clone(), Restitution),
+            ("left_mm", self.stops_mm[0].map(number_text), Restitution),
+            ("right_mm", self.stops_mm[1].map(number_text), Restitution),
+            ("points", self.points.map(|points| points.to_string()), Force),
+            ("position", self.position[0].clone(), Force),
+            ("position_unit", self.position[1].clone(), Force),
         ] {
-            if given && of != only {
+            if let Some(value) = given.filter(|_| of != only) {
                 let problem = format!("belongs to --of {}, not to --of {}", only.name(), of.name());
-                return Err(Error::argument(name, "", problem));
+                return Err(Error::argument(name, value, problem));
             }
         }
-        for (name, given) in [("from", self.between[0].is_some()), ("to", self.between[1].is_some())] {
-            if given && of == Force {
-                return Err(Error::argument(name, "", "cuts a record over time; --of force has none"));
+        for (name, given) in ["from", "to"].into_iter().zip(self.between) {
+            if let Some(time) = given.filter(|_| of == Force) {
+                return Err(Error::number(name, time, "cuts a record over time; --of force has none"));
             }
         }
         for (name, time) in ["from", "to"].into_iter().zip(self.between) {
@@ -155,8 +157,7 @@ impl Identify {
         if let [Some(from), Some(to)] = self.between
             && !(from < to)
         {
-            let problem = "give a time before and one after";
-            return Err(Error::argument("from", format!("{from} --to {to}"), problem));
+            return Err(Error::argument("from", from, format!("must lie before --to, which is {to}")));
         }
         if let Some(points) = self.points.filter(|points| !(4..=100_000).contains(points)) {
             return Err(Error::argument("points", points, "give 4 to 100000 points"));
@@ -175,26 +176,26 @@ impl Identify {
             && !(left < right)
         {
             let problem = "the left stop is the one at the lesser displacement; exchange them";
-            return Err(Error::argument("left_mm", format!("{left} --right-mm {right}"), problem));
+            return Err(Error::argument("left_mm", left, format!("--right-mm is {right}: {problem}")));
         }
-        if let [None, Some(_)] = self.base {
+        if let [None, Some(unit)] = &self.base {
             let problem = "is the unit of a column: name the column by --base";
-            return Err(Error::argument("base_unit", "", problem));
+            return Err(Error::argument("base_unit", unit, problem));
         }
         for (name, given) in [
-            ("base", self.base[0].is_some()),
-            ("left_mm", self.stops_mm[0].is_some()),
-            ("right_mm", self.stops_mm[1].is_some()),
+            ("base", self.base[0].clone()),
+            ("left_mm", self.stops_mm[0].map(number_text)),
+            ("right_mm", self.stops_mm[1].map(number_text)),
         ] {
-            if self.impact_times && given {
-                let problem = "a record of impact times has no displacement; leave one of them out";
-                return Err(Error::argument(name, "with --impact-times", problem));
+            if let Some(value) = given.filter(|_| self.impact_times) {
+                let problem = "a record of --impact-times has no displacement; leave one of them out";
+                return Err(Error::argument(name, value, problem));
             }
         }
         Ok(())
     }
 
-    fn answer(&self, path: &Path) -> Result<IdentifyAnswer, Error> {
+    fn answer(&self, path: &Path, progress: &Progress) -> Result<IdentifyAnswer, Error> {
         let request = |quantities: &[Quantity], [column, unit]: &[Option<String>; 2], names| {
             ColumnRequest::by_options(quantities, column, unit, names)
         };
@@ -208,21 +209,22 @@ impl Identify {
             WhatToIdentify::Force => {
                 let names = ["--position", "--position-unit"];
                 let positions = request(&[Quantity::Displacement], &self.position, names);
-                let (record, columns) = read(path, &[positions, values_request(&[Quantity::Force])])?;
+                let (record, columns) =
+                    read(path, &[positions, values_request(&[Quantity::Force])], progress)?;
                 let [x, values] = record.channels;
-                let points = self.points.map_or(FORCE_POINTS, |points| points as usize);
+                let points = self.points.map(|points| points as usize);
                 let found = force(&x.values, &values.values, points);
                 answer(found, None, x.values, values, columns)
             }
             WhatToIdentify::Damping => {
                 let any = [Quantity::Displacement, Quantity::Velocity, Quantity::Acceleration];
-                let (record, columns) = read(path, &[times, values_request(&any)])?;
+                let (record, columns) = read(path, &[times, values_request(&any)], progress)?;
                 let [times, values] = self.cut(record, path)?.channels;
                 let found = damping(&times.values, &values);
                 answer(found, Some(Timing::of(&times.values)), times.values, values, columns)
             }
             WhatToIdentify::Restitution if self.impact_times => {
-                let (record, columns) = read(path, &[times])?;
+                let (record, columns) = read(path, &[times], progress)?;
                 let [times] = self.cut(record, path)?.channels;
                 let found = restitution_of_times(&times.values);
                 let values = Channel { quantity: Quantity::Displacement, values: Vec::new(), ..times };
@@ -232,11 +234,11 @@ impl Identify {
                 let values = values_request(&[Quantity::Displacement]);
                 let ([times, values], base, columns) = if self.base[0].is_some() {
                     let base = request(&[Quantity::Acceleration], &self.base, ["--base", "--base-unit"]);
-                    let (record, columns) = read(path, &[times, values, base])?;
+                    let (record, columns) = read(path, &[times, values, base], progress)?;
                     let [times, values, base] = self.cut(record, path)?.channels;
                     ([times, values], Some(base.values), columns)
                 } else {
-                    let (record, columns) = read(path, &[times, values])?;
+                    let (record, columns) = read(path, &[times, values], progress)?;
                     (self.cut(record, path)?.channels, None, columns)
                 };
                 let places = self.stops_mm.map(|place| place.map(|mm| mm * 1e-3));
@@ -264,8 +266,15 @@ impl Identify {
     }
 }
 
-fn read<const N: usize>(path: &Path, requests: &[ColumnRequest; N]) -> Result<(Measured<N>, String), Error> {
+fn read<const N: usize>(
+    path: &Path,
+    requests: &[ColumnRequest; N],
+    progress: &Progress,
+) -> Result<(Measured<N>, String), Error> {
     let record = read_measured(path, requests).map_err(|problem| about(path, problem))?;
+    if progress.stop().load(Ordering::Relaxed) {
+        return Err(Error::Cancelled);
+    }
     let columns = columns_read(&record);
     Ok((record, columns))
 }

@@ -41,32 +41,48 @@ pub struct Simulation {
 impl Simulation {
     /// The simulation of a built-in scene, such as `paper`.
     pub fn preset(name: &str) -> Result<Self, Error> {
-        Self::of(Document::preset(name)?, None)
+        Self::build(Document::preset(name)?, &Progress::none())
     }
 
     /// The simulation of a scene file.
     pub fn from_file(path: impl AsRef<Path>) -> Result<Self, Error> {
-        Self::of(Document::from_file(path.as_ref())?, None)
+        Self::build(Document::from_file(path.as_ref())?, &Progress::none())
     }
 
     /// The simulation of a scene in RON. Messages call it `name`. Files in it must have absolute paths or be
     /// built-in tables.
     pub fn from_text(name: &str, text: &str) -> Result<Self, Error> {
-        Self::of(Document::from_text(name, text, Files::default())?, None)
+        Self::build(Document::from_text(name, text, Files::default())?, &Progress::none())
     }
 
     /// The simulation of a scene that has been read.
     pub fn new(document: &Document) -> Result<Self, Error> {
-        Self::of(document.clone(), None)
+        Self::build(document.clone(), &Progress::none())
+    }
+
+    /// The simulation of a scene that has been read. [`Progress::stopped_by`] ends the solution of its
+    /// mechanism, with [`Error::Cancelled`].
+    pub fn build(document: Document, progress: &Progress) -> Result<Self, Error> {
+        Self::of(document, None, progress)
     }
 
     /// The simulation of a document with its mechanism, if that is known.
-    fn of(mut document: Document, known: Option<&Arc<Mechanism>>) -> Result<Self, Error> {
+    fn of(
+        mut document: Document,
+        known: Option<&Arc<Mechanism>>,
+        progress: &Progress,
+    ) -> Result<Self, Error> {
         let start_moved = document.settle_within();
         let warnings = start_moved.into_iter().chain(document.check()?).collect();
-        let built = || Mechanism::build(&document.scene.mechanism, &document.files).map(Arc::new);
-        let mechanism = known.map_or_else(built, |known| Ok(Arc::clone(known)));
-        let mechanism = mechanism.map_err(|error| Error::unbuilt(&document, error))?;
+        let mechanism = match known {
+            Some(known) => Arc::clone(known),
+            None => {
+                let scene = &document.scene;
+                let built = Mechanism::build_cancellable(&scene.mechanism, &document.files, progress.stop());
+                let built = built.ok_or(Error::Cancelled)?;
+                Arc::new(built.map_err(|error| Error::unbuilt(&document, error))?)
+            }
+        };
         match Model::build(&document.scene, mechanism) {
             Ok(model) => Ok(Self { document, model, warnings }),
             Err(faults) => Err(Error::faults_of(&document, faults)),
@@ -81,18 +97,24 @@ impl Simulation {
     /// The simulation with several fields changed in this order. The scene is checked once, after all
     /// changes.
     pub fn with_all(&self, changes: &[(String, String)]) -> Result<Self, Error> {
+        self.with_changes(changes, &Progress::none())
+    }
+
+    /// Like [`with_all`](Self::with_all). [`Progress::stopped_by`] ends the solution of a changed mechanism,
+    /// with [`Error::Cancelled`].
+    pub fn with_changes(&self, changes: &[(String, String)], progress: &Progress) -> Result<Self, Error> {
         let mut document = self.document.clone();
         for (field, value) in changes {
             document.set(&format!("{field}={value}"))?;
         }
-        self.with_document(document)
+        self.with_document(document, progress)
     }
 
     /// The simulation of a changed document, with the same mechanism if that is not changed.
-    pub(super) fn with_document(&self, document: Document) -> Result<Self, Error> {
+    pub(super) fn with_document(&self, document: Document, progress: &Progress) -> Result<Self, Error> {
         let same_mechanism = document.scene.mechanism == self.document.scene.mechanism;
         let known = same_mechanism && document.files == self.document.files;
-        Self::of(document, known.then(|| self.mechanism()))
+        Self::of(document, known.then(|| self.mechanism()), progress)
     }
 
     /// The simulation with this force curve in place of its mechanism. The fields of the mechanism are then
@@ -102,7 +124,7 @@ impl Simulation {
         let mut document = self.document.clone();
         document.scene.mechanism = curve.to_scene();
         document.scene.sweep.retain(|axis| !axis.field.starts_with("mechanism"));
-        Self::of(document, None)
+        Self::build(document, &Progress::none())
     }
 
     /// The simulation with this drive in place of its excitation, such as one that
@@ -111,7 +133,7 @@ impl Simulation {
         let mut document = self.document.clone();
         document.scene.excitation = drive.clone();
         document.scene.sweep.retain(|axis| !axis.field.starts_with("excitation"));
-        self.with_document(document)
+        self.with_document(document, &Progress::none())
     }
 
     /// Runs the scene once and keeps what is requested.
@@ -142,7 +164,7 @@ impl Simulation {
     ) -> Result<Recorded, Error> {
         check_until(until_settled, &self.document, &self.model)?;
         let times = sample_times(&self.document.scene, &self.model, sampling, until_settled)
-            .map_err(|problem| Error::argument(problem.argument(), "", problem))?;
+            .map_err(|problem| Error::number(problem.argument(), problem.value(), problem))?;
         let keep = Keep { times, events: true, until_settled };
         let recorded = simulate(&self.model, &keep, Some(progress.stop()));
         match recorded.summary.outcome {

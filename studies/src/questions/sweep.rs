@@ -75,10 +75,11 @@ impl Sweep {
     }
 
     /// The simulation with the values of the uncertain inputs, of which the rows of the cells themselves are.
-    pub fn nominal(&self, simulation: &Simulation) -> Result<Simulation, Error> {
+    /// Its mechanism is not solved again where it is given to [`run`](Self::run).
+    pub fn nominal(&self, simulation: &Simulation, progress: &Progress) -> Result<Simulation, Error> {
         let mut document = simulation.document().clone();
         match assign(&self.uncertain, &mut document)? {
-            true => simulation.with_document(document),
+            true => simulation.with_document(document, progress),
             false => Ok(simulation.clone()),
         }
     }
@@ -90,7 +91,7 @@ impl Sweep {
 
     /// Runs the cells.
     pub fn run(&self, simulation: &Simulation, progress: &Progress) -> Result<Table, Error> {
-        let simulation = self.nominal(simulation)?;
+        let simulation = self.nominal(simulation, progress)?;
         let (document, grid) = (simulation.document(), simulation.grid(&self.over)?);
         let columns = column_names(&self.columns, &grid, self.carry)?;
         let draws = self.draws(&simulation, &grid)?;
@@ -257,7 +258,10 @@ pub(super) fn variation(field: &str, by: &str, form: &str, document: &Document) 
         return Err(problem.to_owned());
     }
     let (number, relative) = by.strip_suffix('%').map_or((by, false), |share| (share, true));
-    let number = read_number(number).ok().filter(|number| number.is_finite()).ok_or(form)?;
+    let number = read_number(number).map_err(|_| form)?;
+    if !number.is_finite() {
+        return Err(format!("{} is not finite; give a number from 0 up", number_text(number)));
+    }
     if number < 0.0 {
         return Err(format!("{} is negative; give 0 or more", number_text(number)));
     }

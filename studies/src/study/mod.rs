@@ -148,6 +148,14 @@ impl Task<'_> {
     fn check_cancelled(&self) -> Result<()> {
         if self.is_cancelled() { Err(Cancelled) } else { Ok(()) }
     }
+
+    /// The result of `work`, or an error if the study was cancelled meanwhile: what is cut short then takes a
+    /// motion for one that ends early.
+    fn unless_cancelled<T, E: From<Cancelled>>(&self, work: impl FnOnce() -> Result<T, E>) -> Result<T, E> {
+        let found = work();
+        self.check_cancelled()?;
+        found
+    }
 }
 
 /// The result of a part of a study that can be cancelled.

@@ -207,6 +207,13 @@ impl TimesError {
             Self::Outside(..) => "at",
         }
     }
+
+    /// Its value.
+    pub fn value(&self) -> f64 {
+        match self {
+            Self::SamplingStep(value) | Self::TooMany(value, ..) | Self::Outside(value, _) => *value,
+        }
+    }
 }
 
 /// A positive rational number: the exact value of a decimal, or a fraction of it.

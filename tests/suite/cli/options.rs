@@ -71,12 +71,17 @@ fn a_table_that_a_scene_reads_is_not_overwritten() {
 #[test]
 fn a_table_of_another_kind_is_not_csv_under_its_name() {
     let folder = tempfile::tempdir().unwrap();
-    for ending in ["parquet", "H5", "nc", "xlsx", "feather"] {
+    for ending in
+        ["parquet", "H5", "nc", "xlsx", "feather", "pq", "npz", "xls", "ods", "pkl", "netcdf", "nc4", "zarr"]
+    {
         let path = folder.path().join(format!("map.{ending}"));
         let line = format!("sweep paper --over mass_g=15,16 --out {}", path.display());
         refused(headless(&line), &["--out", "CSV", "Python"]);
         refused(headless(&format!("simulate paper --events {}", path.display())), &["--events", "CSV"]);
     }
+    let to = |name: &str| format!("simulate paper --out {}", folder.path().join(name).display());
+    refused(headless(&to("run.json")), &["--out", "name a .csv"]);
+    refused(headless(&to("run.csv.gz")), &["--out", "not compressed", "run.csv, and take gzip"]);
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
 }
 

@@ -124,7 +124,7 @@ fn small_flights_beside_a_break_know_of_it() {
 #[test]
 fn leaving_the_known_range_ends_the_run_there_and_then() {
     let flat = Piece { origin: 0.0, coefficients: vec![0.0], potential_at_origin: 0.0 };
-    let curve = ForceCurve::from_pieces(vec![flat], vec![], (-1.0, 0.75), false, None);
+    let curve = ForceCurve::from_pieces(vec![flat], vec![], (-1.0, 0.75), false, None).unwrap();
     let times = [0.0, 0.5, 1.5, 1.6, 4.0];
     let m = model_on(&free(0.0, 0.5, 4.0), curve.clone());
     let r = m.run(&full(&times));

@@ -102,7 +102,8 @@ fn a_start_at_an_equilibrium_that_lies_on_a_break_stays_exact() {
                     (-1.0, 1.0),
                     false,
                     None,
-                );
+                )
+                .unwrap();
                 let mut s = scene(polynomial(&[0.0]), at(x * 1e3, 0.0), 1.0);
                 s.mass_g = 15.2;
                 s.excitation = sine(3.0, 1.0, 0.0);

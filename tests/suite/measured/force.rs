@@ -31,7 +31,7 @@ fn pull(noise: (f64, f64), samples: u32, seed: u64) -> (Vec<f64>, Vec<f64>) {
 #[test]
 fn without_noise_the_curve_and_its_landscape_have_their_digits() {
     let (x, measured) = pull((0.0, 0.0), 20_000, 0);
-    let found = force(&x, &measured, FORCE_POINTS).unwrap();
+    let found = force(&x, &measured, None).unwrap();
     let column = |name: &str| found.rows.numbers(name).unwrap();
     assert_eq!(found.rows.rows(), FORCE_POINTS);
     for (i, x) in column("x_m").iter().enumerate().skip(1).take(FORCE_POINTS - 2) {
@@ -70,7 +70,7 @@ fn with_noise_the_intervals_hold_the_numbers_in_95_of_100_records() {
         let mut hits = [0; 5];
         for seed in 0..SEEDS {
             let (x, measured) = pull(noise, 4000, seed);
-            let found = force(&x, &measured, 51).unwrap();
+            let found = force(&x, &measured, Some(51)).unwrap();
             for (hits, (name, exact)) in hits.iter_mut().zip(exact) {
                 *hits += u64::from(holds(number(&found, name), exact));
             }
@@ -92,7 +92,7 @@ fn wells_are_found_where_the_range_ends_shortly_beyond_them() {
         let there = (0..=4000).map(|i| (along(i), of(along(i)) + friction * slowly(along(i) + end)));
         let back = (0..4000).rev().map(|i| (along(i), of(along(i)) - friction * slowly(end - along(i))));
         let (x, measured): (Vec<f64>, Vec<f64>) = there.chain(back).unzip();
-        let found = force(&x, &measured, FORCE_POINTS).unwrap();
+        let found = force(&x, &measured, None).unwrap();
         for (name, exact) in [("left_well_m", -WELL), ("barrier_m", 0.0), ("right_well_m", WELL)] {
             let bound = if over > 0.0 { 5e-6 } else { 1e-12 };
             assert!((number(&found, name).value - exact).abs() < bound, "{name} {friction} {over}");
@@ -100,7 +100,7 @@ fn wells_are_found_where_the_range_ends_shortly_beyond_them() {
         let barrier = LINEAR.powi(2) / (4.0 * CUBIC);
         assert!((number(&found, "barrier_from_left_j").value / barrier - 1.0).abs() < 1e-4);
         if friction == 0.0 {
-            let found = force(&x[..4001], &measured[..4001], FORCE_POINTS).unwrap();
+            let found = force(&x[..4001], &measured[..4001], None).unwrap();
             assert!((number(&found, "left_well_m").value + WELL).abs() < 1e-12);
         }
     }
@@ -140,7 +140,7 @@ fn wells_beside_a_kink_are_held_by_their_intervals() {
         let back = (0..4000).rev().map(|i| (along(i), kinked(along(i)) - FRICTION));
         let (x, measured): (Vec<f64>, Vec<f64>) =
             there.chain(back).map(|(x, force)| (x, force + noise * random.next())).unzip();
-        let found = force(&x, &measured, FORCE_POINTS).unwrap();
+        let found = force(&x, &measured, None).unwrap();
         let exact = [
             ("right_well_m", low),
             ("right_well_stiffness_n_per_m", slope),
@@ -159,7 +159,7 @@ fn wells_beside_a_kink_are_held_by_their_intervals() {
 #[test]
 fn the_curve_is_a_table_that_makes_a_mechanism() {
     let (x, measured) = pull((1e-6, 2e-4), 20_000, 3);
-    let found = force(&x, &measured, FORCE_POINTS).unwrap();
+    let found = force(&x, &measured, None).unwrap();
     let text = header(&found.rows) + &rows(&found.rows, 0..found.rows.rows());
     let mechanism = Mechanism::from_table(&text, 1e-3).unwrap();
     let wells: Vec<f64> = mechanism.landscape.equilibria.iter().filter(|e| e.stable).map(|e| e.x).collect();
@@ -174,9 +174,22 @@ fn the_curve_is_a_table_that_makes_a_mechanism() {
 #[test]
 fn one_direction_is_said_to_be_one_and_too_little_is_refused() {
     let (x, measured) = pull((0.0, 0.0), 4000, 0);
-    let found = force(&x[..4000], &measured[..4000], FORCE_POINTS).unwrap();
+    let found = force(&x[..4000], &measured[..4000], None).unwrap();
     assert!(found.remarks.iter().any(|remark| remark.contains("one direction")), "{:?}", found.remarks);
     assert!(found.rows.numbers("force_falling_n").unwrap().iter().all(|force| force.is_nan()));
-    assert!(matches!(force(&[1.0; 9], &[0.0; 9], FORCE_POINTS), Err(Unidentified::Still)));
-    assert!(matches!(force(&x[..50], &measured[..50], 101), Err(Unidentified::FewSamples { .. })));
+    assert!(matches!(force(&[1.0; 9], &[0.0; 9], None), Err(Unidentified::Still)));
+    assert!(matches!(force(&x[..50], &measured[..50], Some(101)), Err(Unidentified::FewSamples { .. })));
+}
+
+#[test]
+fn a_curve_has_as_many_points_as_its_samples_allow() {
+    let (x, measured) = pull((1e-6, 1e-4), 400, 7);
+    let found = force(&x, &measured, None).unwrap();
+    let points = found.rows.rows();
+    assert!((50..FORCE_POINTS).contains(&points), "{points}");
+    assert_eq!(force(&x, &measured, Some(points)), Ok(found));
+    for more in points + 1..=FORCE_POINTS {
+        assert_eq!(force(&x, &measured, Some(more)), Err(Unidentified::FewSamples(x.len(), more)));
+    }
+    assert_eq!(force(&x[..9], &measured[..9], None), Err(Unidentified::FewSamples(9, 4)));
 }

@@ -1,6 +1,6 @@
 //! Curves of functions: their errors against the function, their corners, and their form in a scene.
 
-use interwell::mechanics::{ForceCurve, FunctionError, Mechanism};
+use interwell::mechanics::{ForceCurve, FunctionError, Mechanism, Piece};
 use interwell::scene::{Document, Files};
 use proptest::prelude::*;
 use rand_chacha::ChaCha8Rng;
@@ -205,4 +205,10 @@ fn what_is_no_force_is_refused() {
     assert!(matches!(made(|x| x, range, f64::NAN, &[]), FunctionError::Tolerance(_)));
     assert!(matches!(made(|x| x, range, 1e-20, &[]), FunctionError::Tolerance(_)));
     assert!(matches!(made(|x| x, range, 1e-6, &[0.02]), FunctionError::Break(0.02)));
+    let wrong = |pieces: usize, domain| {
+        let flat = Piece { origin: 0.0, coefficients: vec![1.0], potential_at_origin: 0.0 };
+        ForceCurve::from_pieces(vec![flat; pieces], vec![0.0], domain, false, None).unwrap_err()
+    };
+    assert_eq!(wrong(3, (-1.0, 1.0)), FunctionError::Pieces(3, 1, -1.0, 1.0));
+    assert_eq!(wrong(2, (1.0, -1.0)), FunctionError::Pieces(2, 1, 1.0, -1.0));
 }

@@ -20,7 +20,7 @@ fn chain(points: &[(f64, f64)]) -> ForceCurve {
         })
         .collect();
     let breaks = points[1..points.len() - 1].iter().map(|p| p.0).collect();
-    ForceCurve::from_pieces(pieces, breaks, (points[0].0, points[points.len() - 1].0), false, None)
+    ForceCurve::from_pieces(pieces, breaks, (points[0].0, points[points.len() - 1].0), false, None).unwrap()
 }
 
 #[test]
@@ -113,7 +113,7 @@ fn kinked(inner: f64, outer: f64, past: f64) -> Mechanism {
     let piece = |origin, coefficients| Piece { origin, coefficients, potential_at_origin: 0.0 };
     let right = piece(1.0, vec![force, outer]);
     let pieces = vec![right.mirrored(), piece(0.0, vec![0.0, a, 0.0, b]), right];
-    Mechanism::new(ForceCurve::from_pieces(pieces, vec![-1.0, 1.0], (-2.0, 2.0), true, None))
+    Mechanism::new(ForceCurve::from_pieces(pieces, vec![-1.0, 1.0], (-2.0, 2.0), true, None).unwrap())
 }
 
 #[test]

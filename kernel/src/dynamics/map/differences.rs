@@ -140,7 +140,8 @@ fn breaks_of_the_curve() {
     };
     let pieces = vec![line(-1.0, 0.0, 3.0), line(0.0, 0.1, 0.1), line(0.0, 0.1, -0.1), line(1.0, 0.0, 3.0)];
     let infinity = f64::INFINITY;
-    let curve = ForceCurve::from_pieces(pieces, vec![-1.0, 0.0, 1.0], (-infinity, infinity), false, None);
+    let domain = (-infinity, infinity);
+    let curve = ForceCurve::from_pieces(pieces, vec![-1.0, 0.0, 1.0], domain, false, None).unwrap();
     let smooth = model(&format!("{WELL}, {SINE}, {DAMPED}"));
     let model = Model { mechanism: Arc::new(Mechanism::new(curve)), ..smooth };
     let start = (0.4, -0.9);

@@ -12,6 +12,8 @@ mod differences;
 mod jacobian;
 mod passage;
 
+use std::sync::atomic::AtomicBool;
+
 use super::clock::{Clock, Instant};
 use super::drive::form::{Kernel, clock, general, with_drive};
 use super::drive::general::General;
@@ -62,7 +64,7 @@ impl DualKernel {
 
 /// The map from a state to the state one forcing period later.
 #[derive(Debug)]
-pub struct StroboscopicMap {
+pub struct StroboscopicMap<'a> {
     model: Model,
     plain: Kernel<f64>,
     dual: DualKernel,
@@ -71,12 +73,14 @@ pub struct StroboscopicMap {
     length: Length,
     /// Time in s that one application takes.
     period: f64,
+    /// Set by another thread to cancel a passage.
+    cancel: Option<&'a AtomicBool>,
 }
 
 impl Model {
     /// The map from the state at a phase of the drive, in forcing periods from 0 to 1, to the state one
     /// forcing period later. `None` if the drive has no period.
-    pub fn stroboscopic_map(&self, phase: f64) -> Option<StroboscopicMap> {
+    pub fn stroboscopic_map(&self, phase: f64) -> Option<StroboscopicMap<'static>> {
         let period = self.forcing_period.filter(|_| self.repeats())?;
         let cycles = self.cycles_per_period;
         let turns = (phase - self.start_phase).rem_euclid(1.0) * cycles as f64;
@@ -88,7 +92,7 @@ impl Model {
     }
 }
 
-impl StroboscopicMap {
+impl StroboscopicMap<'static> {
     /// The map from the state at time 0 to the state after `seconds`, for any drive.
     pub fn over(model: &Model, seconds: f64) -> Self {
         Self {
@@ -99,7 +103,16 @@ impl StroboscopicMap {
             phase: (0, 0.0),
             length: Length::Seconds(seconds),
             period: seconds,
+            cancel: None,
         }
+    }
+}
+
+impl StroboscopicMap<'_> {
+    /// The same map, whose passages end soon after `cancel` is set, with the outcome `Cancelled`.
+    #[must_use]
+    pub fn cancelled_by(self, cancel: &AtomicBool) -> StroboscopicMap<'_> {
+        StroboscopicMap { cancel: Some(cancel), ..self }
     }
 
     /// The model.
@@ -137,7 +150,10 @@ impl StroboscopicMap {
         let start = [x, v * by_v, electrical * by_electrical];
         let Kernel { equation, clock, drive } = &self.plain;
         let span = self.span(clock, span);
-        with_drive!(drive, drive => passage::trace(&self.model, equation, *clock, drive, start, span)).passage
+        let traced = with_drive!(drive, drive => {
+            passage::trace(&self.model, equation, *clock, drive, start, span, self.cancel)
+        });
+        traced.passage
     }
 
     /// The same with the derivatives of the state at the end with respect to that at the start. Without a
@@ -161,7 +177,7 @@ impl StroboscopicMap {
                 let [x, v] = self.variables([x, v]);
                 let (start, span) = ([x, v, Dual::of(0.0)], self.span(clock, span));
                 let traced = with_drive!(drive, drive => {
-                    passage::trace(model, equation, *clock, drive, start, span)
+                    passage::trace(model, equation, *clock, drive, start, span, self.cancel)
                 });
                 let [x, v, _] = traced.end;
                 let [by_x, by_v] = self.slopes([x, v], traced.passage.rested);
@@ -170,7 +186,8 @@ impl StroboscopicMap {
             DualKernel::WithCircuit(kernel) => {
                 let (equation, clock, drive) = &**kernel;
                 let (start, span) = (self.variables([x, v, electrical]), self.span(clock, span));
-                let Traced { passage, end } = passage::trace(model, equation, *clock, drive, start, span);
+                let Traced { passage, end } =
+                    passage::trace(model, equation, *clock, drive, start, span, self.cancel);
                 let rows = self.slopes(end, false);
                 (passage, Jacobian::with_circuit(rows))
             }

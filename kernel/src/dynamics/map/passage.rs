@@ -1,5 +1,7 @@
 //! A part of a motion between two strobes, and its events.
 
+use std::sync::atomic::AtomicBool;
+
 use crate::dynamics::clock::{Clock, Instant};
 use crate::dynamics::drive::Drive;
 use crate::dynamics::equation::{End, EndKind, Equation, Mode};
@@ -105,7 +107,7 @@ pub(super) struct Traced<T> {
     pub end: [T; 3],
 }
 
-/// Integrates the motion between two instants, from a state in kernel units.
+/// Integrates the motion between two instants, from a state in kernel units, unless `cancel` is set.
 pub(super) fn trace<T: Scalar, D: Drive<T>>(
     model: &Model,
     equation: &Equation<T>,
@@ -113,8 +115,9 @@ pub(super) fn trace<T: Scalar, D: Drive<T>>(
     drive: &D,
     start: [T; 3],
     (from, to): (Instant<T>, Instant<T>),
+    cancel: Option<&AtomicBool>,
 ) -> Traced<T> {
-    let request = Request { events: true, ..Request::default() };
+    let request = Request { events: true, cancel, ..Request::default() };
     let mut motion = Motion::new(model, &request, model.tolerance, equation, clock, drive);
     motion.stepper.end = to;
     motion.record.next_strobe = None;
@@ -130,6 +133,10 @@ pub(super) fn trace<T: Scalar, D: Drive<T>>(
         let left = motion.stepper.left(&motion.state);
         if !(left > T::zero()) {
             break Outcome::Done;
+        }
+        // at each step, since a short passage does not reach the next check of `spent`
+        if motion.stepper.work.is_cancelled() {
+            break Outcome::Cancelled { at: motion.stepper.seconds(&motion.state) };
         }
         let (before, steps, sums) = (motion.state, motion.steps, motion.record.counts.sums);
         let flow = motion.proceed(left);

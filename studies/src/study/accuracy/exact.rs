@@ -161,6 +161,7 @@ impl Corner {
         let coefficients = vec![at + outer * (far - at), outer];
         let right = Piece { origin: far, coefficients, potential_at_origin: 0.0 };
         ForceCurve::from_pieces(vec![inner, right], vec![at], (-5.0, 5.0), false, None)
+            .expect("two pieces have one break")
     }
 
     /// Time in s from the corner with speed `v` in m/s to the right and back to the corner: y'' = -at - outer

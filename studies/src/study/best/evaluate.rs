@@ -89,9 +89,12 @@ impl<'a> Evaluator<'a> {
         self.varied.iter().map(|path| path.get(&scene).unwrap_or(f64::NAN)).collect()
     }
 
+    pub fn check_cancelled(&self) -> Result<(), NoBest> {
+        if self.task.is_cancelled() { Err(NoBest::Cancelled) } else { Ok(()) }
+    }
+
     pub fn judge(&self, designs: &[Vec<f64>]) -> Result<Vec<Judged>, NoBest> {
-        let varied: Vec<Design> = designs.iter().map(|at| (at.clone(), Vec::new())).collect();
-        let judged = self.judge_varied(&varied)?;
+        let judged = self.judge_each(designs.len(), |number| (&designs[number], &[]))?;
         let tried = designs.iter().zip(&judged).map(|(at, judged)| {
             let (value, keeps) = match judged {
                 Judged::Invalid(_) | Judged::Missing => (None, true),
@@ -110,6 +113,15 @@ impl<'a> Evaluator<'a> {
     }
 
     pub fn judge_varied(&self, designs: &[Design]) -> Result<Vec<Judged>, NoBest> {
+        self.judge_each(designs.len(), |number| (&designs[number].0, &designs[number].1))
+    }
+
+    /// Judges this many designs; `design` returns the values of their fields, and of those that vary.
+    fn judge_each<'d>(
+        &self,
+        count: usize,
+        design: impl Fn(usize) -> (&'d [f64], &'d [f64]) + Sync,
+    ) -> Result<Vec<Judged>, NoBest> {
         let each = self.question.environments.len();
         let constraints = self.question.subject_to.iter().map(|constraint| constraint.of);
         let ledger = constraints.chain([self.question.maximise]).any(|field| field.needs_ledger);
@@ -118,17 +130,17 @@ impl<'a> Evaluator<'a> {
             ran
         };
         let model = |job: usize| {
-            let model = self.model(&designs[job / each], job % each).map_err(|faults| ticked(Err(faults)))?;
+            let model = self.model(design(job / each), job % each).map_err(|faults| ticked(Err(faults)))?;
             let (model, request) = followed(model, self.question.until_settled);
             Ok((model, Request { ledger, ..request }))
         };
         let summary = |run: &Run| ticked(Ok(Box::new(run.summary)));
-        let runs = shared_runs(Some(self.pool), self.task, designs.len() * each, model, summary);
+        let runs = shared_runs(Some(self.pool), self.task, count * each, model, summary);
         let summaries = runs.ok_or(NoBest::Cancelled)?;
         Ok(summaries.chunks(each).map(|runs| self.judged(runs)).collect())
     }
 
-    fn model(&self, (at, varied): &Design, environment: usize) -> Result<Model, Vec<Fault>> {
+    fn model(&self, (at, varied): (&[f64], &[f64]), environment: usize) -> Result<Model, Vec<Fault>> {
         let base = &self.question.environments[environment];
         let mut scene = Scene { sweep: Vec::new(), app: None, notes: String::new(), ..base.scene.clone() };
         apply(&self.paths, at, &mut scene);

@@ -47,10 +47,10 @@ pub(super) fn rounded(range: &DesignRange, value: f64) -> f64 {
     multiple(value, resolution(range)).clamp(range.low, range.high)
 }
 
-/// All indices of the scan, the first field slowest.
-fn indices(lengths: &[usize]) -> Vec<Vec<usize>> {
-    let count: usize = lengths.iter().product();
-    (0..count).map(|index| places(lengths.iter().copied(), index as u64).collect()).collect()
+/// All indices of a scan, the first field slowest.
+fn indices(lengths: &[usize]) -> impl Iterator<Item = Vec<usize>> {
+    let count: u64 = lengths.iter().map(|length| *length as u64).product();
+    (0..count).map(|index| places(lengths.iter().copied(), index).collect())
 }
 
 /// The best of some evaluated designs, the first of equal ones.
@@ -61,12 +61,17 @@ fn highest(places: &[Vec<f64>], judged: &[Judged]) -> Option<Optimum> {
 
 pub(super) fn search(evaluator: &Evaluator, preview: &mut dyn FnMut(&Optimum)) -> Result<Found, NoBest> {
     let over = &evaluator.over;
-    let all = indices(&over.iter().map(|range| range.intervals + 1).collect::<Vec<_>>());
+    let lengths: Vec<usize> = over.iter().map(|range| range.intervals + 1).collect();
     let coarse = |node: &Vec<usize>| node.iter().all(|index| index.is_multiple_of(COARSE));
     let (mut places, mut judged) = (Vec::new(), Vec::new());
     for first in [true, false] {
-        let part: Vec<Vec<f64>> =
-            all.iter().filter(|node| coarse(node) == first).map(|node| place(over, node)).collect();
+        let mut part = Vec::new();
+        for node in indices(&lengths) {
+            evaluator.check_cancelled()?;
+            if coarse(&node) == first {
+                part.push(place(over, &node));
+            }
+        }
         judged.extend(evaluator.judge(&part)?);
         places.extend(part);
         if let Some(best) = highest(&places, &judged).filter(|_| first) {
@@ -113,7 +118,7 @@ fn refine(evaluator: &Evaluator, starts: Vec<Optimum>) -> Result<Vec<Optimum>, N
     let mut half: Vec<f64> = over.iter().map(DesignRange::step).collect();
     let closer = |best: Optimum| Closer { tried: vec![best.at.clone()], best };
     let mut boxes: Vec<Closer> = starts.into_iter().map(closer).collect();
-    let grid = indices(&vec![2 * sides + 1; over.len()]);
+    let grid: Vec<Vec<usize>> = indices(&vec![2 * sides + 1; over.len()]).collect();
     loop {
         // the boxes are scanned together, so that no thread is idle
         let places: Vec<Vec<Vec<f64>>> = boxes.iter().map(|area| around(area, over, &grid, &half)).collect();

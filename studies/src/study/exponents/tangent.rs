@@ -16,7 +16,7 @@ const PARTS: u32 = 8;
 
 /// The stroboscopic map of a model, with perturbations in units of its scales.
 pub(super) struct Tangent {
-    pub map: StroboscopicMap,
+    pub map: StroboscopicMap<'static>,
     pub units: Units,
     /// Logarithm of the factor by which damping and a circuit contract volumes in a period.
     damped: f64,

@@ -6,8 +6,10 @@ use crate::numeric::regression::{Fit, least_squares, powers, student};
 use crate::numeric::{elementary, extent, short};
 use crate::study::{Table, Values};
 
-/// Default number of points of a curve.
+/// Number of points of a curve by default, if the samples are enough for them.
 pub const FORCE_POINTS: usize = 101;
+/// Least number of points, those of a cubic.
+const LEAST_POINTS: usize = 4;
 
 /// Reversal of the position that ends a pull in one direction, as a share of the range.
 const TURN: f64 = 0.1;
@@ -62,14 +64,15 @@ struct Curve {
 /// The force curve of a slow pull: force `force` in N over position `x` in m, in the order in which they were
 /// measured, in one direction or in both, any number of times.
 ///
-/// The curve has `points` even positions over the range that all directions cover. At each a cubic is fitted
+/// The curve has `points` even positions over the range that all directions cover, by default the largest
+/// number up to [`FORCE_POINTS`] for which the samples are enough. At each a cubic is fitted
 /// by least squares to the samples of one direction up to the neighbouring points, or up to a kink beside an
 /// equilibrium. The force is the mean of both directions, half their difference the friction. The equilibria
 /// are fitted separately (see `Rest::near`). Intervals are 95 %, from the residuals of the fits.
 ///
 /// Rows, as a table mechanism reads them:
 /// `x_m,force_n,force_low_n,force_high_n,force_rising_n,force_falling_n`.
-pub fn force(x: &[f64], force: &[f64], points: usize) -> Result<Identified, Unidentified> {
+pub fn force(x: &[f64], force: &[f64], points: Option<usize>) -> Result<Identified, Unidentified> {
     let [rising, falling] = directions(x, force);
     let pulls: Vec<&Pull> = [&rising, &falling].into_iter().filter(|pull| !pull.is_empty()).collect();
     let ends = pulls.iter().filter_map(|pull| Some((pull.first()?.0, pull.last()?.0)));
@@ -78,13 +81,19 @@ pub fn force(x: &[f64], force: &[f64], points: usize) -> Result<Identified, Unid
     if !(low < high && high - low < f64::INFINITY) {
         return Err(Unidentified::Still);
     }
-    let points = points.max(4);
-    let few = || Unidentified::FewSamples(x.len(), points);
-    let rough = Curve::of(&pulls, (low, high), points, &[]).ok_or_else(few)?;
-    let rests = rough.equilibria(&pulls, high - low);
-    let kinks: Vec<f64> = rests.iter().filter_map(|rest| rest.kink).map(|kink| kink[0]).collect();
-    let curve = if kinks.is_empty() { Some(rough) } else { Curve::of(&pulls, (low, high), points, &kinks) };
-    let curve = curve.ok_or_else(few)?;
+    let curve = |points: usize| {
+        let rough = Curve::of(&pulls, (low, high), points, &[])?;
+        let rests = rough.equilibria(&pulls, high - low);
+        let kinks: Vec<f64> = rests.iter().filter_map(|rest| rest.kink).map(|kink| kink[0]).collect();
+        let curve = if kinks.is_empty() { rough } else { Curve::of(&pulls, (low, high), points, &kinks)? };
+        Some((curve, rests))
+    };
+    let found = match points {
+        Some(points) => curve(points.max(LEAST_POINTS)),
+        None => (LEAST_POINTS..=FORCE_POINTS).rev().find_map(curve),
+    };
+    let (curve, rests) = found
+        .ok_or_else(|| Unidentified::FewSamples(x.len(), points.unwrap_or_default().max(LEAST_POINTS)))?;
     let which = |pull: &Pull, which: usize| -> Values {
         match pull.is_empty() {
             true => curve.positions.iter().map(|_| f64::NAN).collect(),

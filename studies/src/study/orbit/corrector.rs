@@ -1,6 +1,8 @@
 //! Points of a branch of periodic orbits, by Newton's method in planes across the branch (pseudo-arclength
 //! continuation; Keller 1977).
 
+use std::sync::atomic::AtomicBool;
+
 use nalgebra::{Const, DimMin, SMatrix, SVector, Vector3, Vector4};
 
 use super::{Orbit, allowed, map_of};
@@ -180,12 +182,14 @@ pub(super) struct Corrector<'a> {
     pub periods: u32,
     pub mirrored: bool,
     pub units: Units,
+    /// Set by another thread to cancel a passage, which then counts as one that ends early.
+    pub cancel: &'a AtomicBool,
 }
 
 impl Corrector<'_> {
     /// The stroboscopic map at a value of the field; `None` if the value makes no valid scene.
-    pub fn map(&self, value: f64) -> Option<StroboscopicMap> {
-        map_of(&self.family.model(value).ok()?, self.phase)
+    pub fn map(&self, value: f64) -> Option<StroboscopicMap<'_>> {
+        map_of(&self.family.model(value).ok()?, self.phase, self.cancel)
     }
 
     /// Number of forcing periods of the map of the corrector.

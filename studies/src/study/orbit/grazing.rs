@@ -15,7 +15,9 @@ use nalgebra::Vector4;
 
 use super::corrector::{Accuracy, Corrector, Equations, Point, newton};
 use super::{Orbit, map_of};
-use crate::dynamics::{Event, EventKind, Jacobian, MapState, Miss, Outcome, Passage, Side, StroboscopicMap};
+use crate::dynamics::{
+    Event, EventKind, Jacobian, MapState, Miss, Model, Outcome, Passage, Side, StroboscopicMap,
+};
 
 /// Largest gap at which a stop may be grazed nearby, as a share of the length scale.
 const SMALL_GAP: f64 = 0.1;
@@ -87,8 +89,8 @@ pub(super) struct Grazing<'a> {
 /// The maps with stops and without them at a value of the field.
 struct Maps<'a> {
     corrector: &'a Corrector<'a>,
-    with: StroboscopicMap,
-    without: StroboscopicMap,
+    with: StroboscopicMap<'a>,
+    without: StroboscopicMap<'a>,
 }
 
 /// The grazing orbits near an orbit that turns back close to a stop or strikes it gently, and the side on
@@ -163,8 +165,8 @@ fn openings(corrector: &Corrector, map: &StroboscopicMap, near: &Point, t: f64) 
 impl<'a> Maps<'a> {
     fn of(corrector: &'a Corrector<'a>, value: f64) -> Option<Self> {
         let model = corrector.family.model(value).ok()?;
-        let without = map_of(&model.without_stops(), corrector.phase)?;
-        Some(Self { corrector, with: map_of(&model, corrector.phase)?, without })
+        let map = |model: &Model| map_of(model, corrector.phase, corrector.cancel);
+        Some(Self { corrector, with: map(&model)?, without: map(&model.without_stops())? })
     }
 }
 

@@ -20,7 +20,7 @@ use std::sync::atomic::AtomicBool;
 
 use nalgebra::{Matrix3, Vector3, Vector4};
 
-use super::{Family, Table, Task, Values, settled};
+use super::{Cancelled, Family, Table, Task, Values, settled};
 use crate::dynamics::{
     CircuitState, Event, EventKind, Jacobian, MapState, Model, Multiplier, Outcome, Passage, Regime,
     StroboscopicMap,
@@ -96,6 +96,20 @@ pub enum NoOrbit {
     Cancelled,
 }
 
+impl From<Cancelled> for NoOrbit {
+    fn from(_: Cancelled) -> Self {
+        Self::Cancelled
+    }
+}
+
+/// Why there is no orbit where the motion ends early.
+fn ended(outcome: Outcome) -> NoOrbit {
+    match outcome {
+        Outcome::Cancelled { .. } => NoOrbit::Cancelled,
+        outcome => NoOrbit::Ended(outcome),
+    }
+}
+
 fn ended_at(outcome: Outcome) -> String {
     outcome.ended_at().map_or(String::new(), |at| format!(", {at} s after the drive's phase 0"))
 }
@@ -168,8 +182,9 @@ pub(super) fn allowed(model: &Model, state: MapState) -> MapState {
 }
 
 /// The stroboscopic map of a model, exact enough for its derivatives; `None` if the drive has no period.
-pub(super) fn map_of(model: &Model, phase: f64) -> Option<StroboscopicMap> {
-    model.with_tolerance(model.tolerance().min(TOLERANCE)).stroboscopic_map(phase)
+pub(super) fn map_of<'a>(model: &Model, phase: f64, cancel: &'a AtomicBool) -> Option<StroboscopicMap<'a>> {
+    let model = model.with_tolerance(model.tolerance().min(TOLERANCE));
+    model.stroboscopic_map(phase).map(|map| map.cancelled_by(cancel))
 }
 
 /// The periodic orbit near a state at the phase of the map, such as `(x, v)` without a circuit, by Newton's
@@ -181,7 +196,7 @@ pub fn orbit_near(map: &StroboscopicMap, guess: impl Into<MapState>, periods: u3
     for _ in 0..MAX_STEPS {
         let (passage, jacobian) = map.pass_with_jacobian(state, periods);
         if passage.outcome != Outcome::Done {
-            return Err(NoOrbit::Ended(passage.outcome));
+            return Err(ended(passage.outcome));
         }
         if !jacobian.is_finite() {
             return Err(NoOrbit::Grazing);
@@ -193,7 +208,7 @@ pub fn orbit_near(map: &StroboscopicMap, guess: impl Into<MapState>, periods: u3
         let length = largest(step);
         if largest(off) <= CLOSE && (length <= SMALLEST_STEP || length >= 0.5 * best) {
             let circuit = map.model().circuit_state();
-            return Ok(shortest(map, Orbit { period: periods, state, passage, jacobian, circuit }));
+            return shortest(map, Orbit { period: periods, state, passage, jacobian, circuit });
         }
         if !length.is_finite() {
             return Err(NoOrbit::NotConverged);
@@ -223,16 +238,20 @@ pub(super) fn newton_step(jacobian: &Jacobian, off: [f64; 3]) -> Option<[f64; 3]
     Some([x / determinant, v / determinant, 0.0])
 }
 
-fn shortest(map: &StroboscopicMap, orbit: Orbit) -> Orbit {
+/// The same orbit with its shortest period.
+fn shortest(map: &StroboscopicMap, orbit: Orbit) -> Result<Orbit, NoOrbit> {
     let units = Units::of(map.model(), 1.0);
     let divisors = (1..orbit.period).filter(|period| orbit.period.is_multiple_of(*period));
     for period in divisors {
         let (passage, jacobian) = map.pass_with_jacobian(orbit.state, period);
+        if passage.outcome != Outcome::Done {
+            return Err(ended(passage.outcome));
+        }
         if largest(units.apart(orbit.state, (&passage).into())) <= SAME {
-            return Orbit { period, passage, jacobian, ..orbit };
+            return Ok(Orbit { period, passage, jacobian, ..orbit });
         }
     }
-    orbit
+    Ok(orbit)
 }
 
 /// The periodic orbit near the settled motion of a run of `model`, at a phase of the drive in forcing
@@ -240,7 +259,7 @@ fn shortest(map: &StroboscopicMap, orbit: Orbit) -> Orbit {
 ///
 /// Precondition: the drive repeats.
 pub fn orbit(model: &Model, phase: f64, period: Option<u32>, cancel: &AtomicBool) -> Result<Orbit, NoOrbit> {
-    let (Some(map), Some(forcing)) = (map_of(model, phase), model.forcing_period()) else {
+    let (Some(map), Some(forcing)) = (map_of(model, phase, cancel), model.forcing_period()) else {
         return Err(NoOrbit::NotSettled);
     };
     let summary = settled(model, cancel).ok_or(NoOrbit::Cancelled)?;
@@ -253,7 +272,8 @@ pub fn orbit(model: &Model, phase: f64, period: Option<u32>, cancel: &AtomicBool
     let since = (summary.window.1.max(summary.settles_at.unwrap_or(0.0)) / forcing).ceil();
     let (x, v) = model.start();
     let start = MapState { x, v, electrical: model.start_electrical() };
-    let run = StroboscopicMap::over(model, map.first_strobe() + since * forcing).pass(start, 1);
+    let until = map.first_strobe() + since * forcing;
+    let run = StroboscopicMap::over(model, until).cancelled_by(cancel).pass(start, 1);
     let state = MapState::from(&run);
     let guess = if summary.period.or(still).is_some() { state } else { closest_return(&map, state, periods) };
     let orbit = orbit_near(&map, guess, periods)?;
@@ -423,18 +443,22 @@ pub fn branch(
     options: &BranchOptions,
     task: &Task,
 ) -> Result<Branch, NoOrbit> {
-    let BranchOptions { phase, period, .. } = *options;
-    let model = family.model(from).map_err(|_| NoOrbit::NotConverged)?;
-    let first = orbit(&model, phase, period, task.cancel)?;
-    let units = Units::of(&model, (to - from).abs());
-    let map = map_of(&model, phase).ok_or(NoOrbit::NotConverged)?;
-    let mirrored = Corrector::asymmetry(&map, &first).is_some_and(|off| off.amax() <= SAME);
-    let corrector = Corrector { family, phase, periods: first.period, mirrored, units };
-    let upwards = Vector4::w() * (to - from).signum();
-    let point = corrector.correct(corrector.at(first.state, from), &upwards).ok_or(NoOrbit::NotConverged)?;
-    let along = corrector.tangent(&point, &upwards).ok_or(NoOrbit::Grazing)?;
-    let branch = Branch::empty(field);
-    let mut walk = Walk::new(corrector, branch, (from, to), &model, (point, along), *options);
-    walk.branch.end = walk.run_out(task)?;
-    Ok(walk.branch)
+    task.unless_cancelled(|| {
+        let BranchOptions { phase, period, .. } = *options;
+        let model = family.model(from).map_err(|_| NoOrbit::NotConverged)?;
+        let first = orbit(&model, phase, period, task.cancel)?;
+        let units = Units::of(&model, (to - from).abs());
+        let map = map_of(&model, phase, task.cancel).ok_or(NoOrbit::NotConverged)?;
+        let mirrored = Corrector::asymmetry(&map, &first).is_some_and(|off| off.amax() <= SAME);
+        let periods = first.period;
+        let corrector = Corrector { family, phase, periods, mirrored, units, cancel: task.cancel };
+        let upwards = Vector4::w() * (to - from).signum();
+        let point =
+            corrector.correct(corrector.at(first.state, from), &upwards).ok_or(NoOrbit::NotConverged)?;
+        let along = corrector.tangent(&point, &upwards).ok_or(NoOrbit::Grazing)?;
+        let branch = Branch::empty(field);
+        let mut walk = Walk::new(corrector, branch, (from, to), &model, (point, along), *options);
+        walk.branch.end = walk.run_out(task)?;
+        Ok(walk.branch)
+    })
 }

@@ -1,6 +1,8 @@
 //! Branch switching: from a flip to the motions of twice the period, from a breaking of the symmetry to the
 //! motions that are not their own mirror images, and from these to those that are.
 
+use std::sync::atomic::AtomicBool;
+
 use nalgebra::{Matrix3, Vector4};
 
 use super::corrector::{Corrector, Point};
@@ -37,24 +39,28 @@ pub fn switched(
     options: &BranchOptions,
     task: &Task,
 ) -> Result<Vec<Branch>, NoOrbit> {
-    let mut all = vec![branch];
-    let mut begin = 0;
-    for _ in 0..levels {
-        let end = all.len();
-        for number in begin..end {
-            for place in 0..all[number].values.len() {
-                for (corrector, first) in starts(family, &all, (number, place), range, options) {
-                    let model = family.model(first.0.value).map_err(|_| NoOrbit::NotConverged)?;
-                    let branch = Branch::empty(&all[number].field);
-                    let mut walk = Walk::new(corrector, branch, range, &model, first, *options);
-                    walk.branch.end = walk.run_out(task)?;
-                    all.push(walk.branch);
+    task.unless_cancelled(|| {
+        let mut all = vec![branch];
+        let mut begin = 0;
+        for _ in 0..levels {
+            let end = all.len();
+            for number in begin..end {
+                for place in 0..all[number].values.len() {
+                    for (corrector, first) in
+                        starts(family, &all, (number, place), range, options, task.cancel)
+                    {
+                        let model = family.model(first.0.value).map_err(|_| NoOrbit::NotConverged)?;
+                        let branch = Branch::empty(&all[number].field);
+                        let mut walk = Walk::new(corrector, branch, range, &model, first, *options);
+                        walk.branch.end = walk.run_out(task)?;
+                        all.push(walk.branch);
+                    }
                 }
             }
+            begin = end;
         }
-        begin = end;
-    }
-    Ok(all)
+        Ok(all)
+    })
 }
 
 /// The branches that begin at a row of a branch, if that is an event at which no other branch begins or ends.
@@ -64,6 +70,7 @@ fn starts<'a>(
     (number, place): (usize, usize),
     range: (f64, f64),
     options: &BranchOptions,
+    cancel: &'a AtomicBool,
 ) -> Vec<Start<'a>> {
     let from = &all[number];
     let (orbit, value) = (&from.orbits[place], from.values[place]);
@@ -73,7 +80,8 @@ fn starts<'a>(
     }
     let Ok(model) = family.model(value) else { return Vec::new() };
     let units = Units::of(&model, (range.1 - range.0).abs());
-    let base = Corrector { family, phase: options.phase, periods: orbit.period, mirrored: !is_flip, units };
+    let (phase, periods) = (options.phase, orbit.period);
+    let base = Corrector { family, phase, periods, mirrored: !is_flip, units, cancel };
     let at = base.at(orbit.state, value);
     let is_known = all.iter().enumerate().filter(|(other, _)| *other != number).any(|(_, other)| {
         let rows = other.orbits.iter().zip(&other.values).zip(&other.events);
@@ -87,7 +95,7 @@ fn starts<'a>(
     let sideways = |up: f64| Some((base, (point.clone(), base.tangent(&point, &(Vector4::w() * up))?)));
     let is_symmetric = |place: usize| {
         let (orbit, value) = (from.orbits.get(place)?, from.values.get(place)?);
-        let map = map_of(&family.model(*value).ok()?, options.phase)?;
+        let map = map_of(&family.model(*value).ok()?, options.phase, cancel)?;
         Some(Corrector::asymmetry(&map, orbit)?.amax() <= SAME)
     };
     let beside = [place.wrapping_sub(1), place + 1].into_iter().find_map(is_symmetric);

@@ -104,7 +104,7 @@ impl<'a> Walk<'a> {
     pub fn run_out(&mut self, task: &Task) -> Result<BranchEnd, NoOrbit> {
         let mut step = FIRST.min(self.options.step);
         while self.branch.values.len() < self.options.count {
-            task.check_cancelled().map_err(|_| NoOrbit::Cancelled)?;
+            task.check_cancelled()?;
             (task.tick)();
             self.keep_clear(&[]);
             let (found, beyond) = self.predicted(step);

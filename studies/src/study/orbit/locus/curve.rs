@@ -1,5 +1,7 @@
 //! The equations of a locus, and its points by Newton's method.
 
+use std::sync::atomic::AtomicBool;
+
 use nalgebra::{Vector4, Vector5};
 
 use super::super::corrector::{Accuracy, Corrector, Equations, Point, newton, tangent};
@@ -78,6 +80,7 @@ impl<'a> Curve<'a> {
         range: (f64, f64),
         (of, second): (BranchEvent, &FieldRange),
         options: &BranchOptions,
+        cancel: &'a AtomicBool,
     ) -> Option<(Self, Spot)> {
         let path = FieldPath::new(&second.field);
         let unit = unit_of(second.range);
@@ -85,10 +88,11 @@ impl<'a> Curve<'a> {
         let there = family.with(&path, second.range.0);
         let model = there.model(value).ok()?;
         let units = Units::of(&model, unit_of(range));
-        let map = map_of(&model, options.phase)?;
+        let map = map_of(&model, options.phase, cancel)?;
         let is_symmetric = Corrector::asymmetry(&map, orbit).is_some_and(|off| off.amax() <= SAME);
         let mirrored = of == BranchEvent::Symmetry || is_symmetric && of != BranchEvent::Flip;
-        let corrector = Corrector { family, phase: options.phase, periods: orbit.period, mirrored, units };
+        let (phase, periods) = (options.phase, orbit.period);
+        let corrector = Corrector { family, phase, periods, mirrored, units, cancel };
         let has_circuit = orbit.circuit.is_some();
         let curve = Self { corrector, path, range: unit, of, has_circuit, touch: None };
         let at = with_fifth(&curve.corrector.at(orbit.state, value), second.range.0 / unit);

@@ -106,37 +106,39 @@ pub fn loci(
     options: &BranchOptions,
     task: &Task,
 ) -> Result<Vec<Locus>, NoOrbit> {
-    let mut found: Vec<Locus> = Vec::new();
-    for (place, event) in branch.events.iter().enumerate() {
-        let value = branch.values[place];
-        let unit = (range.1 - range.0).abs();
-        let starts_at =
-            |values: &[f64; 2]| values[1] == second.range.0 && (values[0] - value).abs() <= SAME * unit;
-        let is_known = || found.iter().any(|locus| locus.values.iter().any(starts_at));
-        if *event != Some(of) || is_known() {
-            continue;
-        }
-        let orbit = &branch.orbits[place];
-        let locus = Locus {
-            of,
-            fields: [branch.field.clone(), second.field.clone()],
-            values: Vec::new(),
-            orbits: Vec::new(),
-            events: Vec::new(),
-            end: LocusEnd::Lost,
-        };
-        found.push(match Curve::new(family, orbit, value, range, (of, second), options) {
-            Some((curve, start)) => {
-                let ranges = [range, second.range];
-                Walk { curve, locus, at: start, ranges, options: *options }.run_out(task)?
+    task.unless_cancelled(|| {
+        let mut found: Vec<Locus> = Vec::new();
+        for (place, event) in branch.events.iter().enumerate() {
+            let value = branch.values[place];
+            let unit = (range.1 - range.0).abs();
+            let starts_at =
+                |values: &[f64; 2]| values[1] == second.range.0 && (values[0] - value).abs() <= SAME * unit;
+            let is_known = || found.iter().any(|locus| locus.values.iter().any(starts_at));
+            if *event != Some(of) || is_known() {
+                continue;
             }
-            None => Locus {
-                values: vec![[value, second.range.0]],
-                orbits: vec![orbit.clone()],
-                events: vec![None],
-                ..locus
-            },
-        });
-    }
-    Ok(found)
+            let orbit = &branch.orbits[place];
+            let locus = Locus {
+                of,
+                fields: [branch.field.clone(), second.field.clone()],
+                values: Vec::new(),
+                orbits: Vec::new(),
+                events: Vec::new(),
+                end: LocusEnd::Lost,
+            };
+            found.push(match Curve::new(family, orbit, value, range, (of, second), options, task.cancel) {
+                Some((curve, start)) => {
+                    let ranges = [range, second.range];
+                    Walk { curve, locus, at: start, ranges, options: *options }.run_out(task)?
+                }
+                None => Locus {
+                    values: vec![[value, second.range.0]],
+                    orbits: vec![orbit.clone()],
+                    events: vec![None],
+                    ..locus
+                },
+            });
+        }
+        Ok(found)
+    })
 }

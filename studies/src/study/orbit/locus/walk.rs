@@ -55,7 +55,7 @@ impl Walk<'_> {
         let (mut step, mut farthest) = (FIRST.min(self.options.step), 0.0_f64);
         self.add(None, &self.at.clone());
         while self.locus.orbits.len() < self.options.count {
-            task.check_cancelled().map_err(|_| NoOrbit::Cancelled)?;
+            task.check_cancelled()?;
             (task.tick)();
             let next = self.predicted(step, &ends);
             let Some(((next, is_last), events)) = next.and_then(|next| {
