@@ -8,6 +8,7 @@ mod manifests;
 mod paper;
 mod search;
 mod studies;
+mod sweeps;
 
 use std::path::{Path, PathBuf};
 

@@ -187,7 +187,7 @@ impl Frame {
                     self.fill(figure, bar, &look);
                 }
             }
-            Marks::Spans(spans) => self.spans(figure, spans, &look),
+            Marks::Spans(spans) => self.spans(figure, spans, layer.role, theme),
             Marks::Verticals(values) => {
                 for at in values.iter().map(|x| self.across(*x)).filter(|at| at.is_finite()) {
                     figure.styled(&[(at, bottom), (at, top)], &look, self.area);
@@ -350,7 +350,7 @@ impl Frame {
     }
 
     /// Shaded spans; neighbours closer than a part of a pixel are joined.
-    fn spans(&self, figure: &mut Figure, spans: &[(f64, f64)], look: &Look) {
+    fn spans(&self, figure: &mut Figure, spans: &[(f64, f64)], role: Role, theme: &Theme) {
         let mut merged: Vec<(f64, f64)> = Vec::new();
         for (left, right) in spans.iter().map(|(from, to)| (self.across(*from), self.across(*to))) {
             match merged.last_mut() {
@@ -360,7 +360,10 @@ impl Frame {
         }
         for (left, right) in merged {
             if let Some(area) = Area::new(left, self.area.top, right, self.area.bottom).common(self.area) {
-                figure.rect(area, look.ink);
+                match role {
+                    Role::Missing => figure.missing(area, theme),
+                    role => figure.rect(area, theme.look(role).ink),
+                }
             }
         }
     }

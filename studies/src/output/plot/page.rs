@@ -4,7 +4,7 @@ use super::chart::{Chart, Layer, Marks};
 use super::figure::{Area, Figure, Text};
 use super::font;
 use super::grid::Grid;
-use super::mark::{Caption, Sample, entry};
+use super::mark::{Caption, REGIMES, Sample, entry, regime_words};
 use super::role::{Look, Role};
 use super::sheet::canvas_width;
 use super::style::{self, Theme};
@@ -212,22 +212,20 @@ impl Chart {
         for (panel, layer) in layers.filter(|(panel, layer)| panel.shows(layer)) {
             match &layer.marks {
                 Marks::Regimes(points, _) => {
-                    for (place, (name, _)) in super::mark::REGIMES.iter().enumerate() {
+                    for (place, (name, _)) in REGIMES.iter().enumerate() {
                         if points.iter().any(|point| point.1 == *name && panel.contains(point.0)) {
-                            add(Sample::Marker(theme.look(Role::Regime(place))), name);
+                            add(Sample::Marker(theme.look(Role::Regime(place))), regime_words(name));
                         }
                     }
                 }
-                Marks::Cells(cells) => {
+                Marks::Cells(cells) | Marks::Surface(cells, _) => {
                     for (role, name) in cells.entries() {
-                        let is_missing = role == Role::Missing;
-                        let patch = Sample::Patch(theme.look(role));
-                        add(if is_missing { Sample::Missing } else { patch }, &name);
+                        let look = theme.look(role);
+                        // a surface at rest has lines in place of a hatching
+                        let hatch = look.hatch.filter(|_| panel.surface().is_none());
+                        let patch = Sample::Patch(Look { hatch, ..look });
+                        add(if role == Role::Missing { Sample::Missing } else { patch }, &name);
                     }
-                }
-                // a missing value is a hole
-                Marks::Surface(cells, _) if cells.entries().iter().any(|entry| entry.0 == Role::Rest) => {
-                    add(Sample::Patch(theme.look(Role::Rest)), "at rest");
                 }
                 _ => add(sample(layer, theme), &layer.name),
             }
@@ -310,3 +308,4 @@ fn sample(layer: &Layer, theme: &Theme) -> Sample {
         | Marks::Words(_) => Sample::Line(look),
     }
 }
+        Marks::Spans(_) if layer.role == Role::Missing => Sample::Missing,
