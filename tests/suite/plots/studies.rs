@@ -38,6 +38,8 @@ fn thresholds_are_lines_and_maps() {
     assert!(
         seen.iter().any(|text| text == "mass (g)") && seen.iter().any(|text| text == "least amplitude (g)")
     );
+    let seen = texts(&plot(MELNIKOV, folder.path(), "melnikov.svg"));
+    assert!(seen.iter().any(|text| text == "threshold"), "{seen:?}");
     let gone = "threshold paper --field excitation.amplitude_g=0:1 --of release --over \
                 stops.travel_limit_mm=1:6:0.5";
     let seen = texts(&plot(gone, folder.path(), "gone.svg"));

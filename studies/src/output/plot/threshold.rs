@@ -101,7 +101,9 @@ fn lines(rows: &Table, x: &str, series: Option<&str>, least: &str, ranges: Range
     for line in &each {
         let order = &line.order;
         let point = |row: &usize| (places[*row], values[*row]);
-        panel.layer(line.role, &line.name, Marks::Path(order.iter().map(point).collect()));
+        let named = !line.name.is_empty() || melnikov.is_empty();
+        let name = if named { &line.name } else { "threshold" };
+        panel.layer(line.role, name, Marks::Path(order.iter().map(point).collect()));
         let of = |gaps: bool| -> Vec<Point> {
             order.iter().filter(|row| has_gaps(**row) == gaps).map(point).collect()
         };
