@@ -51,3 +51,20 @@ fn thresholds_are_lines_and_maps() {
     let words = texts(&plot(open, folder.path(), "open.svg"));
     assert!(words.iter().any(|word| word == "undecided between"), "{words:?}");
 }
+
+#[test]
+fn compared_scenes_have_whole_names_in_the_size_of_the_text() {
+    let folder = tempfile::tempdir().unwrap();
+    let name = "a-long-name-of-a-scene-about-a-prototype-of-a-study.ron";
+    std::fs::copy("presets/paper.ron", folder.path().join(name)).unwrap();
+    let path = folder.path().join("a.svg");
+    let mut command =
+        with_plot("compare paper --out /dev/null --quiet --plot-width-mm 85 --font-pt 8", &path);
+    command.arg(folder.path().join(name)).assert().success();
+    let svg = std::fs::read_to_string(&path).unwrap();
+    let seen: Vec<String> = texts(&path);
+    assert!(seen.concat().contains(name) && !seen.concat().contains('\u{2026}'), "{seen:?}");
+    // 26 units of the canvas, which has 8 in each
+    let of_name = svg.split("<text ").find(|text| text.contains(">a-long-")).unwrap();
+    assert!(of_name.contains("font-size=\"208\""), "{of_name}");
+}

@@ -6,6 +6,7 @@ use super::chart::{Layer, Marks, Side};
 use super::figure::{Align, Area, Figure, Point, Shape, Text, distance};
 use super::font;
 use super::mark::{REGIMES, dot, mark, marker};
+use super::page::wrapped;
 use super::role::{Look, Role};
 use super::style::{self, Theme};
 use super::thinned::{extremes, once, thinned};
@@ -91,7 +92,7 @@ impl Frame {
     }
 
     /// The frame with its ticks over everything else, and with their numbers if they are shown. Those of the
-    /// vertical axis fit into this width; long or dense ones are smaller.
+    /// vertical axis fit into this width; long words are wrapped, dense ones are smaller.
     pub fn ticks(&self, figure: &mut Figure, theme: &Theme, shows_x: bool, numbers: Option<f64>) {
         let Area { left, bottom, .. } = self.area;
         figure.outline(self.area, style::FRAME, theme.ink);
@@ -121,10 +122,18 @@ impl Frame {
             let tick = [(left - style::TICK_LENGTH, *at), (left, *at)];
             figure.line(&tick, style::FRAME, theme.ink, figure.canvas);
             if let Some(room) = numbers.filter(|_| i % every == zero % every) {
-                let share = (room / font::width(words, style::TICK, false)).min(1.0);
-                let size = (share * style::TICK).min(0.9 * apart);
-                let place = (left - style::TICK_LENGTH - 7.0, at + 0.5 * size * font::CAPITAL);
-                figure.text(Text { size, ..text(words, place, Align::Right) });
+                let lines = match self.y.is_scale() {
+                    true => vec![words.clone()],
+                    false => wrapped(words, style::TICK, false, room + 1e-6),
+                };
+                let widest =
+                    lines.iter().map(|line| font::width(line, style::TICK, false)).fold(1.0, f64::max);
+                let size = ((room / widest).min(1.0) * style::TICK).min(0.9 * apart / lines.len() as f64);
+                for (line, words) in lines.iter().enumerate() {
+                    let lower = (line as f64 - 0.5 * (lines.len() - 1) as f64) * 1.1 * size;
+                    let place = (left - style::TICK_LENGTH - 7.0, at + lower + 0.5 * size * font::CAPITAL);
+                    figure.text(Text { size, ..text(words, place, Align::Right) });
+                }
             }
         }
     }
