@@ -99,16 +99,17 @@ impl Frame {
         let ascent = style::TICK * font::CAPITAL;
         let text =
             |words: &str, at: Point, align| Text::new(words, at, style::TICK, theme.ink).aligned(align);
-        let numbered = self.numbered();
+        let (numbered, size) = self.numbered();
         for (i, (value, words)) in self.x.ticks.iter().enumerate() {
             let at = self.across(*value);
             let tick = [(at, bottom), (at, bottom + style::TICK_LENGTH)];
             figure.line(&tick, style::FRAME, theme.ink, figure.canvas);
             if shows_x && numbered(i) {
                 // at the edge of the canvas a number is shifted inwards
-                let half = 0.5 * font::width(words, style::TICK, false) + 2.0;
+                let half = 0.5 * font::width(words, size, false) + 2.0;
                 let at = at.min(figure.canvas.right - half).max(half);
-                figure.text(text(words, (at, bottom + style::TICK_LENGTH + ascent + 8.0), Align::Centre));
+                let place = (at, bottom + style::TICK_LENGTH + ascent + 8.0);
+                figure.text(Text { size, ..text(words, place, Align::Centre) });
             }
         }
         let places: Vec<f64> = self.y.ticks.iter().map(|tick| self.down(tick.0)).collect();
@@ -138,8 +139,9 @@ impl Frame {
         }
     }
 
-    /// Which ticks of the horizontal axis have a number: as many as have room, including 0.
-    fn numbered(&self) -> impl Fn(usize) -> bool + use<> {
+    /// Which ticks of the horizontal axis have a number, as many as have room, including 0; and the size of
+    /// the numbers. Words all stand there, smaller where they need it.
+    fn numbered(&self) -> (impl Fn(usize) -> bool + use<>, f64) {
         const BETWEEN: f64 = 16.0;
         let half = |words: &str| 0.5 * font::width(words, style::TICK, false);
         let ticks = self.x.ticks.iter().map(|(value, words)| (self.across(*value), half(words)));
@@ -150,7 +152,12 @@ impl Frame {
             kept.windows(2).all(|pair| pair[1].0 - pair[0].0 >= pair[0].1 + pair[1].1 + BETWEEN)
         };
         let every = (1..=ticks.len().max(1)).find(apart).unwrap_or(1);
-        move |i| i % every == zero % every
+        let room = |pair: &[(f64, f64)]| (pair[1].0 - pair[0].0) / (pair[0].1 + pair[1].1 + BETWEEN);
+        let (every, share) = match self.x.is_scale() {
+            true => (every, 1.0),
+            false => (1, ticks.windows(2).map(room).fold(1.0, f64::min)),
+        };
+        (move |i| i % every == zero % every, share * style::TICK)
     }
 
     /// Draws a layer.
