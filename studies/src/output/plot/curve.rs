@@ -1,13 +1,14 @@
 //! Pictures of a mechanism: force and potential over displacement, with equilibria, kinks and stops; and the
 //! restitution of a compliant stop.
 
-use super::axis::{PlotAxis, Ranges};
+use super::axis::{PlotAxis, Ranges, superscript};
 use super::chart::{Chart, Layer, Marks, Panel};
 use super::drawn::{Drawn, of_rows};
 use super::figure::Point;
 use super::role::Role;
 use crate::mechanics::{Hertz, Landscape, Mechanism};
-use crate::numeric::{extent, short};
+use crate::numeric::round::decade;
+use crate::numeric::{elementary, extent, short};
 use crate::study::{Table, yield_speed};
 
 /// The picture of the curve in `table` (as [`curve`](crate::study::curve) gives it), with stops at these
@@ -159,7 +160,10 @@ pub fn contact_chart(table: &Table, stop: &Hertz, mass: f64) -> Chart {
         panel.layer(Role::UnstableMotion, name, Marks::Verticals(vec![speed]));
     }
     let contact_ms = stop.contact_time(mass, 0.5 * top) * 1e3;
-    let [stiffness, loss, ms, speed] = [stop.stiffness, stop.loss, contact_ms, 0.5 * top].map(short);
-    let about = format!("one contact alone: {stiffness} N/m^1.5, loss {loss} s/m; {ms} ms at {speed} m/s");
+    let [loss, ms, speed] = [stop.loss, contact_ms, 0.5 * top].map(short);
+    let power = decade(stop.stiffness);
+    let digits = short(stop.stiffness / elementary::powi(10.0, power));
+    let stiffness = format!("{digits} \u{d7} 10{} N/m\u{b9}\u{b7}\u{2075}", superscript(power));
+    let about = format!("one contact alone: {stiffness}, loss {loss} s/m; {ms} ms at {speed} m/s");
     Chart::stack(vec![panel], about, of_rows("contact", table, &names, |_| true))
 }
