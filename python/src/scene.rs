@@ -394,12 +394,12 @@ impl Simulation {
         let table = work(py, &Way { threads, progress }, |progress| question.run(&self.inner, progress))?;
         let over = match question.over.is_empty() {
             true => None,
-            false => checked(py, self.inner.grid(&question.over))?.columns().first().cloned(),
+            false => Some(checked(py, self.inner.grid(&question.over))?),
         };
         let stops = if over.is_none() { self.inner.model().stop_positions() } else { (None, None) };
         Ok(Answer::new(py, table, self.caption()).drawn(move |rows, asked| {
             let phase_deg = if let SectionAt::Phase(degrees) = at { Some(degrees) } else { None };
-            Ok(section_chart(rows, over.as_deref(), phase_deg, stops, asked.ranges))
+            Ok(section_chart(rows, over.as_ref(), phase_deg, stops, asked.ranges))
         }))
     }
 

@@ -128,8 +128,8 @@ fn diagram(options: &Arguments, common: &Common, settings: SectionOptions) -> Re
     let mut job = GridJob::open(&document, common, outputs, picture, pool)?;
     let (tally, count) = job.stream(&sections, "runs")?;
     let grid = sections.grid();
-    let over = grid.columns().first().map(String::as_str);
-    let chart = |rows: &Table, ranges| Ok(section_chart(rows, over, phase(&settings), (None, None), ranges));
+    let chart =
+        |rows: &Table, ranges| Ok(section_chart(rows, Some(grid), phase(&settings), (None, None), ranges));
     let wall_s = job.finish(chart, |manifest| Ok(manifest.of_rows(grid, &tally, None)))?;
     if tally.cells == sections.rows() {
         let rows = counted(count as u64, "row");

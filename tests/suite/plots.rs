@@ -8,6 +8,7 @@ mod manifests;
 mod paper;
 mod search;
 mod studies;
+mod sweeps;
 
 use std::path::{Path, PathBuf};
 
@@ -80,6 +81,10 @@ fn says(line: &str, words: &[&str]) -> Vec<String> {
     }
     texts
 }
+
+/// Thresholds beside Melnikov's, of short runs.
+const MELNIKOV: &str = "threshold duffing --melnikov --set run.duration_s=100 --set run.settle_s=50 \
+    --until-settled 200 --field excitation.amplitude_g=0:0.2:0.1 --over excitation.frequency_hz=0.1,0.2";
 
 const SMALL_MAP: &str = "sweep paper --set run.settle_s=None --set run.duration_s=2 \
     --over stops.travel_limit_mm=1:7:1 \

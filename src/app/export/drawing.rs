@@ -188,9 +188,8 @@ impl Drawing<'_> {
         let options = SectionOptions { carry: Some(Carry::Both), ..SectionOptions::default() };
         let sections = Sections::new(&self.document.scene, &self.document.files, self.grid(subject)?);
         let sections = sections.with(options);
-        let over = sections.grid().columns().first().map(String::as_str);
         let rows = self.rows(&sections)?;
-        Ok(section_chart(&rows, over, Some(0.0), (None, None), Ranges::default()))
+        Ok(section_chart(&rows, Some(sections.grid()), Some(0.0), (None, None), Ranges::default()))
     }
 
     fn section(&self) -> Result<Chart> {

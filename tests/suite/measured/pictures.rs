@@ -49,6 +49,7 @@ fn the_envelope_of_a_decay_is_the_one_that_made_it() {
     let (texts, csv) = drawn("identify --of damping", &path);
     says(&texts, &["decay.csv", "damping ratio 0.02", "95 % interval", "time (s)", "displacement (mm)"]);
     says(&texts, &["measured", "identified envelope", "identify decay.csv --of damping"]);
+    says(&texts, &["of eight turning points", "95 % interval"]);
     let (t, upper) = (of_series(&csv, "upper_envelope", "t_s"), of_series(&csv, "upper_envelope", "x_m"));
     assert!(t.len() > 100);
     // the maxima of x lie below its envelope by the square of the ratio, 2e-4 of it
@@ -103,4 +104,14 @@ fn what_is_left_of_a_pull_is_its_friction() {
     assert_eq!(difference.len(), 3602);
     assert!((difference[0] + 5e-3).abs() < 1e-12 && (difference[3601] - 5e-3).abs() < 1e-12);
     assert_eq!(of_series(&csv, "computed", "force_n").len(), 3001);
+    // steep ends leave the picture, and it says so
+    let walls = (-800..=800).map(|i| f64::from(i) / 100.0);
+    let steep =
+        |x: f64| (0.01 * x * (x * x - 49.0)).clamp(-0.5, 0.5) + 100.0 * (x.abs() - 7.5).max(0.0) * x.signum();
+    let path = file(folder.path(), "walls.csv", "x_mm,f_n", walls.map(|x| (x, steep(x))));
+    for line in ["identify --of force", &format!("curve nominal-cubic {scene} --measured")] {
+        let (texts, _) = drawn(line, &path);
+        says(&texts, &["force leaves the picture ("]);
+        assert!(texts.iter().any(|text| text == "0.5" || text == "0.4"), "{texts:?}");
+    }
 }

@@ -55,6 +55,7 @@ fn over_one_field_every_value_is_where_the_closed_form_has_it() {
         design.tried.len()
     );
     assert_eq!(rows(&chart.data, "found", c), design.optimum.at);
+    assert_eq!(chart.panels().next().map(|panel| (panel.x.low, panel.x.high)), Some((2.0, 12.0)));
     assert_eq!(points(&chart, "found"), [(design.optimum.at[0], 1e3 * design.optimum.value)]);
     let best = rows(&chart.data, "tried", speed).into_iter().fold(0.0, f64::max);
     assert_eq!(best, design.optimum.value);
@@ -86,6 +87,9 @@ fn over_two_fields_the_scan_is_a_map_and_over_more_the_values_stand_in_order() {
     assert_eq!(map, scan);
     assert_eq!(points(&chart, "found"), [(design.optimum.at[0], design.optimum.at[1])]);
     assert!(panel.bar.is_some());
+    // the axes span what was searched, and the value has the unit of the bar
+    assert_eq!([panel.x.low, panel.x.high, panel.y.low, panel.y.high], [4.0, 12.0, 1.0, 3.0]);
+    assert!(chart.subtitle.ends_with(" mm/s"), "{}", chart.subtitle);
 
     asked.over.push(DesignRange::new("mass_g", (900.0, 1100.0), 2));
     let (design, chart) = charted(&asked);

@@ -38,6 +38,8 @@ fn thresholds_are_lines_and_maps() {
     assert!(
         seen.iter().any(|text| text == "mass (g)") && seen.iter().any(|text| text == "least amplitude (g)")
     );
+    let seen = texts(&plot(MELNIKOV, folder.path(), "melnikov.svg"));
+    assert!(seen.iter().any(|text| text == "threshold"), "{seen:?}");
     let gone = "threshold paper --field excitation.amplitude_g=0:1 --of release --over \
                 stops.travel_limit_mm=1:6:0.5";
     let seen = texts(&plot(gone, folder.path(), "gone.svg"));
@@ -48,4 +50,21 @@ fn thresholds_are_lines_and_maps() {
     assert_eq!(column(&stdout(&format!("{open} --quiet")), "low"), ["", "", ""]);
     let words = texts(&plot(open, folder.path(), "open.svg"));
     assert!(words.iter().any(|word| word == "undecided between"), "{words:?}");
+}
+
+#[test]
+fn compared_scenes_have_whole_names_in_the_size_of_the_text() {
+    let folder = tempfile::tempdir().unwrap();
+    let name = "a-long-name-of-a-scene-about-a-prototype-of-a-study.ron";
+    std::fs::copy("presets/paper.ron", folder.path().join(name)).unwrap();
+    let path = folder.path().join("a.svg");
+    let mut command =
+        with_plot("compare paper --out /dev/null --quiet --plot-width-mm 85 --font-pt 8", &path);
+    command.arg(folder.path().join(name)).assert().success();
+    let svg = std::fs::read_to_string(&path).unwrap();
+    let seen: Vec<String> = texts(&path);
+    assert!(seen.concat().contains(name) && !seen.concat().contains('\u{2026}'), "{seen:?}");
+    // 26 units of the canvas, which has 8 in each
+    let of_name = svg.split("<text ").find(|text| text.contains(">a-long-")).unwrap();
+    assert!(of_name.contains("font-size=\"208\""), "{of_name}");
 }

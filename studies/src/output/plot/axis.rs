@@ -64,6 +64,15 @@ impl PlotAxis {
         Self::between(low - more, high + more, label)
     }
 
+    /// Like [`around`](Self::around), with 0 among the values; without any value it has no numbers.
+    pub fn from_zero(values: impl IntoIterator<Item = f64>, margin: f64, label: &str) -> Self {
+        let known: Vec<f64> = values.into_iter().filter(|value| value.is_finite()).collect();
+        if known.is_empty() {
+            return Self::given(0.0, 1.0, Vec::new(), label);
+        }
+        Self::around(known.into_iter().chain([0.0]), margin, label)
+    }
+
     /// An axis from `low` to `high` with ticks at steps of 1, 2 or 5 times a power of ten.
     pub fn between(low: f64, high: f64, label: &str) -> Self {
         Self::linear(low, high, USUAL, label)
@@ -221,7 +230,7 @@ fn finite_range(low: f64, high: f64) -> (f64, f64) {
 }
 
 /// A whole number in superscript digits.
-fn superscript(power: i32) -> String {
+pub(super) fn superscript(power: i32) -> String {
     let digit = |c: char| match c {
         '-' => '\u{207b}',
         '1' => '\u{b9}',

@@ -7,8 +7,9 @@ use super::drawn::Drawn;
 use super::figure::Point;
 use super::quantity::suited_unit;
 use super::role::Role;
+use crate::numeric::short;
 use crate::study::{
-    BestDesign, BestQuestion, Edges, Optimum, Tried, label_and_unit, names, quantity, scan_places, with_unit,
+    BestDesign, BestQuestion, Edges, Optimum, Tried, label_and_unit, names, scan_places, with_unit,
 };
 
 /// Words of the legend.
@@ -31,11 +32,10 @@ pub fn best_chart(question: &BestQuestion, design: &BestDesign, ranges: Ranges) 
         let (words, unit) = label_and_unit(&name);
         format!("{words} {value} {unit}").trim_end().to_owned()
     });
-    let (at, value) =
-        (at.collect::<Vec<_>>().join(", "), quantity(design.optimum.value, question.maximise.name));
-    let about = format!("{} places tried; largest at {at}: {value}", design.tried.len());
+    let (at, value) = (at.collect::<Vec<_>>().join(", "), short(design.optimum.value * shown.scale));
+    let about = format!("{} places tried; largest at {at}: {value} {}", design.tried.len(), shown.unit);
     let data = shown.data(&panel);
-    Chart::stack(vec![panel], about, data)
+    Chart::stack(vec![panel], about.trim_end(), data)
 }
 
 struct Shown<'a> {
@@ -43,8 +43,9 @@ struct Shown<'a> {
     design: &'a BestDesign,
     ranges: Ranges,
     tried: &'a [Tried],
-    /// The factor from the unit of the maximised result to that of its axis.
+    /// The factor from the unit of the maximised result to that of its axis, and that unit.
     scale: f64,
+    unit: &'static str,
     /// The label of its axis.
     label: String,
 }
@@ -56,7 +57,7 @@ impl<'a> Shown<'a> {
         let (scale, unit) = suited_unit(unit, tried.iter().filter_map(|tried| tried.value));
         let mean = if question.environments.len() > 1 { "mean " } else { "" };
         let label = with_unit(format!("{mean}{}", maximised.label), unit);
-        Self { question, design, ranges, tried, scale, label }
+        Self { question, design, ranges, tried, scale, unit, label }
     }
 
     /// The value of a design in the unit of its axis; NaN if it has none.
@@ -68,13 +69,12 @@ impl<'a> Shown<'a> {
     fn field_axis(&self, field: usize, given: Option<(f64, f64)>) -> PlotAxis {
         let range = &self.question.over[field];
         let (words, unit) = label_and_unit(&names(self.question)[field]);
-        PlotAxis::around([range.low, range.high], 0.02, &with_unit(words, unit)).or_given(given)
+        PlotAxis::between(range.low, range.high, &with_unit(words, unit)).or_given(given)
     }
 
     /// The axis of the values, from 0 or below.
     fn value_axis(&self, margin: f64) -> PlotAxis {
-        let values = self.tried.iter().map(|tried| self.value(tried)).chain([0.0]);
-        PlotAxis::around(values, margin, &self.label)
+        PlotAxis::from_zero(self.tried.iter().map(|tried| self.value(tried)), margin, &self.label)
     }
 
     fn over_one_field(&self) -> Panel {
@@ -104,18 +104,14 @@ impl<'a> Shown<'a> {
         }
         let bar = self.value_axis(0.0);
         let colours = Colours::Scale(bar.clone());
-        let axis = |field: usize, edges: &Edges, given| {
-            let (low, high) = edges.ends();
-            PlotAxis::between(low, high, &self.field_axis(field, None).label).or_given(given)
-        };
-        let mut panel = Panel::new(axis(0, &across, x), axis(1, &up, y));
+        let mut panel = Panel::new(self.field_axis(0, x), self.field_axis(1, y));
         panel.bar = Some(bar);
         let cells = Cells { across, up, cells, colours: colours.clone(), missing: NO_VALUE.to_owned() };
         panel.draw(Role::Motion, Marks::Cells(cells));
         let place = |tried: &Tried| (tried.at[0], tried.at[1]);
         let valued = nearer.iter().filter(|tried| tried.keeps && tried.value.is_some());
         let valued = valued.map(|tried| (place(tried), self.value(tried))).collect();
-        panel.draw(Role::Motion, Marks::Valued(valued, colours));
+        panel.layer(Role::Motion, "tried", Marks::Valued(valued, colours));
         let broken = self.tried.iter().filter(|tried| !tried.keeps).map(place).collect();
         panel.layer_if_any(Role::Broken, BROKEN, Marks::Points(broken));
         self.found(&mut panel, |design| (design.at[0], design.at[1]));

@@ -16,11 +16,10 @@ const COLUMNS: usize = 4;
 
 /// Height of a bar relative to that of its row.
 const BAR: f64 = 0.5;
-/// Height of a row relative to a panel of height 1.
+/// Smallest height of a row relative to a panel of height 1.
 const ROW: f64 = 0.2;
-
-/// Largest number of characters of a name.
-const MAX_NAME: usize = 28;
+/// Height of a line of a name, and the letters that a line has in a narrow picture.
+const LINE: (f64, usize) = (0.14, 14);
 
 /// Position of the marker of a regime, and smallest position of its number, as shares of the axis.
 const MARKED: (f64, f64) = (0.06, 0.12);
@@ -124,12 +123,7 @@ fn names(rated: &[Rated]) -> Vec<String> {
     if names.iter().collect::<BTreeSet<_>>().len() < names.len() {
         names = rated.iter().map(|scene| scene.name.clone()).collect();
     }
-    // the end of a long name distinguishes it from others
-    let shortened = |name: String| match name.char_indices().rev().nth(MAX_NAME - 1) {
-        Some((begin, _)) if begin > 0 => format!("\u{2026}{}", &name[begin..]),
-        _ => name,
-    };
-    names.into_iter().map(shortened).collect()
+    names
 }
 
 /// The quantities that are above 0 for at least one of the scenes.
@@ -209,7 +203,9 @@ fn panel(rated: &[Rated], frequency_hz: f64, shown: &Shown, up: &PlotAxis) -> Pa
     let scaled = |value: f64| if shown.is_band { elementary::log10(value) } else { value };
     let (low, high) = (across.low, across.high);
     let best = shown.best();
-    let height = (ROW * rated.len() as f64).max(1.0);
+    let lines = up.ticks.iter().map(|tick| tick.1.chars().count().div_ceil(LINE.1)).max();
+    let row = (LINE.0 * lines.unwrap_or(0) as f64).max(ROW);
+    let height = (row * rated.len() as f64).max(1.0);
     let mut panel = Panel { height, heading: shown.title.to_owned(), ..Panel::new(across, up.clone()) };
     let bars = |chosen: &dyn Fn(usize, &Entry) -> bool| -> Vec<[f64; 3]> {
         let entries = shown.entries.iter().enumerate().filter(|(scene, entry)| chosen(*scene, entry));

@@ -1,13 +1,14 @@
 //! Pictures of a mechanism: force and potential over displacement, with equilibria, kinks and stops; and the
 //! restitution of a compliant stop.
 
-use super::axis::{PlotAxis, Ranges};
+use super::axis::{PlotAxis, Ranges, superscript};
 use super::chart::{Chart, Layer, Marks, Panel};
 use super::drawn::{Drawn, of_rows};
 use super::figure::Point;
 use super::role::Role;
 use crate::mechanics::{Hertz, Landscape, Mechanism};
-use crate::numeric::{extent, short};
+use crate::numeric::round::decade;
+use crate::numeric::{elementary, extent, short};
 use crate::study::{Table, yield_speed};
 
 /// The picture of the curve in `table` (as [`curve`](crate::study::curve) gives it), with stops at these
@@ -18,8 +19,10 @@ pub fn curve_chart(table: &Table, mechanism: &Mechanism, stops: (f64, f64), rang
     let pairs =
         |y: &[f64], scale: f64| -> Vec<Point> { x.iter().zip(y).map(|(x, y)| (*x, y * scale)).collect() };
     let landscape = &mechanism.landscape;
-    let force_range = telling(&x, column("force_n"), landscape);
-    let potential_range = telling(&x, column("potential_j"), landscape);
+    let ends = landscape.equilibria.first().zip(landscape.equilibria.last());
+    let ends = ends.map(|(left, right)| (left.x * 1e3, right.x * 1e3));
+    let force_range = telling(&pairs(column("force_n"), 1.0), ends);
+    let potential_range = telling(&pairs(column("potential_j"), 1.0), ends);
     let (force, force_unit) = scaled(force_range, &[(1.0, "N"), (1e-3, "mN")]);
     let (potential, potential_unit) = scaled(potential_range, &[(1.0, "J"), (1e-3, "mJ"), (1e-6, "\u{b5}J")]);
     let across = PlotAxis::around(x.iter().copied(), 0.0, "displacement (mm)").or_given(ranges.x);
@@ -33,12 +36,12 @@ pub fn curve_chart(table: &Table, mechanism: &Mechanism, stops: (f64, f64), rang
     let of_potential = pairs(column("potential_j"), potential);
     let (stops_mm, curve) = ((stops.0 * 1e3, stops.1 * 1e3), &mechanism.curve);
     let axes = (across.clone(), up);
-    let upper = force_panel(mechanism, axes, force, stops_mm, ("", of_force));
+    let upper = force_panel(mechanism, axes, force, stops_mm, ("", of_force.clone()));
     let energy = |mm: f64| curve.potential(mm * 1e-3) * potential;
     let mut lower = curve_panel((across.clone(), below), landscape, stops_mm, ("", of_potential), energy);
     lower.equilibria(landscape, |equilibrium| curve.potential(equilibrium.x) * potential);
     let mut words = subtitle(landscape);
-    words.extend(wall(column("x_m"), column("force_n"), &upper, force));
+    words.extend(wall(&of_force, &upper, force));
     Chart::stack(vec![upper, lower], words, drawn(table, mechanism, stops, inside))
 }
 
@@ -107,13 +110,13 @@ fn subtitle(landscape: &Landscape) -> String {
     }
 }
 
-/// A note on forces beyond the vertical axis at positions in the range: how large they become, and where.
-/// `scale` is that of the vertical axis.
-fn wall(x: &[f64], force: &[f64], panel: &Panel, scale: f64) -> Option<String> {
-    let shown = x.iter().zip(force).filter(|(x, force)| panel.x.contains(**x * 1e3) && force.is_finite());
-    let outside = shown.filter(|(_, force)| !panel.y.contains(**force * scale));
+/// A note on forces beyond the vertical axis at positions in mm in the range: how large they become, and
+/// where. `scale` is that of the vertical axis.
+pub(super) fn wall(points: &[Point], panel: &Panel, scale: f64) -> Option<String> {
+    let shown = points.iter().filter(|(x, force)| panel.x.contains(*x) && force.is_finite());
+    let outside = shown.filter(|(_, force)| !panel.y.contains(*force));
     let (x, force) = outside.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
-    let (force, x) = (short(*force), short(x * 1e3));
+    let (force, x) = (short(force / scale), short(*x));
     Some(format!(", force leaves the picture ({force} N at {x} mm)").replace('-', "\u{2212}"))
 }
 
@@ -126,17 +129,16 @@ fn scaled((low, high): (f64, f64), units: &[(f64, &'static str)]) -> (f64, &'sta
     fits.or(units.first()).map_or((1.0, ""), |(size, unit)| (1.0 / size, *unit))
 }
 
-/// The range of values of interest. A steep force beyond the outermost equilibria would flatten the rest of
-/// the curve, so it extends the range between the equilibria by at most half of it on each side.
-fn telling(x: &[f64], values: &[f64], landscape: &Landscape) -> (f64, f64) {
+/// The range of values of interest. A steep force beyond `ends`, the outermost equilibria, would flatten the
+/// rest of the curve, so it extends the range between the equilibria by at most half of it on each side.
+pub(super) fn telling(points: &[Point], ends: Option<(f64, f64)>) -> (f64, f64) {
     let range = |from: f64, to: f64| {
-        let inside = x.iter().zip(values).filter(|(x, v)| **x >= from && **x <= to && v.is_finite());
+        let inside = points.iter().filter(|(x, v)| *x >= from && *x <= to && v.is_finite());
         extent(inside.map(|(_, v)| *v))
     };
     let (low, high) = range(f64::NEG_INFINITY, f64::INFINITY);
-    let ends = landscape.equilibria.first().zip(landscape.equilibria.last());
-    let Some((left, right)) = ends.filter(|(left, right)| left.x < right.x) else { return (low, high) };
-    let (inner_low, inner_high) = range(left.x * 1e3, right.x * 1e3);
+    let Some((left, right)) = ends.filter(|(left, right)| left < right) else { return (low, high) };
+    let (inner_low, inner_high) = range(left, right);
     let more = 0.5 * (inner_high - inner_low);
     if more > 0.0 { (low.max(inner_low - more), high.min(inner_high + more)) } else { (low, high) }
 }
@@ -158,7 +160,10 @@ pub fn contact_chart(table: &Table, stop: &Hertz, mass: f64) -> Chart {
         panel.layer(Role::UnstableMotion, name, Marks::Verticals(vec![speed]));
     }
     let contact_ms = stop.contact_time(mass, 0.5 * top) * 1e3;
-    let [stiffness, loss, ms, speed] = [stop.stiffness, stop.loss, contact_ms, 0.5 * top].map(short);
-    let about = format!("one contact alone: {stiffness} N/m^1.5, loss {loss} s/m; {ms} ms at {speed} m/s");
+    let [loss, ms, speed] = [stop.loss, contact_ms, 0.5 * top].map(short);
+    let power = decade(stop.stiffness);
+    let digits = short(stop.stiffness / elementary::powi(10.0, power));
+    let stiffness = format!("{digits} \u{d7} 10{} N/m\u{b9}\u{b7}\u{2075}", superscript(power));
+    let about = format!("one contact alone: {stiffness}, loss {loss} s/m; {ms} ms at {speed} m/s");
     Chart::stack(vec![panel], about, of_rows("contact", table, &names, |_| true))
 }

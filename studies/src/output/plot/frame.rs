@@ -6,6 +6,7 @@ use super::chart::{Layer, Marks, Side};
 use super::figure::{Align, Area, Figure, Point, Shape, Text, distance};
 use super::font;
 use super::mark::{REGIMES, dot, mark, marker};
+use super::page::wrapped;
 use super::role::{Look, Role};
 use super::style::{self, Theme};
 use super::thinned::{extremes, once, thinned};
@@ -91,23 +92,24 @@ impl Frame {
     }
 
     /// The frame with its ticks over everything else, and with their numbers if they are shown. Those of the
-    /// vertical axis fit into this width; long or dense ones are smaller.
+    /// vertical axis fit into this width; long words are wrapped, dense ones are smaller.
     pub fn ticks(&self, figure: &mut Figure, theme: &Theme, shows_x: bool, numbers: Option<f64>) {
         let Area { left, bottom, .. } = self.area;
         figure.outline(self.area, style::FRAME, theme.ink);
         let ascent = style::TICK * font::CAPITAL;
         let text =
             |words: &str, at: Point, align| Text::new(words, at, style::TICK, theme.ink).aligned(align);
-        let numbered = self.numbered();
+        let (numbered, size) = self.numbered();
         for (i, (value, words)) in self.x.ticks.iter().enumerate() {
             let at = self.across(*value);
             let tick = [(at, bottom), (at, bottom + style::TICK_LENGTH)];
             figure.line(&tick, style::FRAME, theme.ink, figure.canvas);
             if shows_x && numbered(i) {
                 // at the edge of the canvas a number is shifted inwards
-                let half = 0.5 * font::width(words, style::TICK, false) + 2.0;
+                let half = 0.5 * font::width(words, size, false) + 2.0;
                 let at = at.min(figure.canvas.right - half).max(half);
-                figure.text(text(words, (at, bottom + style::TICK_LENGTH + ascent + 8.0), Align::Centre));
+                let place = (at, bottom + style::TICK_LENGTH + ascent + 8.0);
+                figure.text(Text { size, ..text(words, place, Align::Centre) });
             }
         }
         let places: Vec<f64> = self.y.ticks.iter().map(|tick| self.down(tick.0)).collect();
@@ -121,16 +123,25 @@ impl Frame {
             let tick = [(left - style::TICK_LENGTH, *at), (left, *at)];
             figure.line(&tick, style::FRAME, theme.ink, figure.canvas);
             if let Some(room) = numbers.filter(|_| i % every == zero % every) {
-                let share = (room / font::width(words, style::TICK, false)).min(1.0);
-                let size = (share * style::TICK).min(0.9 * apart);
-                let place = (left - style::TICK_LENGTH - 7.0, at + 0.5 * size * font::CAPITAL);
-                figure.text(Text { size, ..text(words, place, Align::Right) });
+                let lines = match self.y.is_scale() {
+                    true => vec![words.clone()],
+                    false => wrapped(words, style::TICK, false, room + 1e-6),
+                };
+                let widest =
+                    lines.iter().map(|line| font::width(line, style::TICK, false)).fold(1.0, f64::max);
+                let size = ((room / widest).min(1.0) * style::TICK).min(0.9 * apart / lines.len() as f64);
+                for (line, words) in lines.iter().enumerate() {
+                    let lower = (line as f64 - 0.5 * (lines.len() - 1) as f64) * 1.1 * size;
+                    let place = (left - style::TICK_LENGTH - 7.0, at + lower + 0.5 * size * font::CAPITAL);
+                    figure.text(Text { size, ..text(words, place, Align::Right) });
+                }
             }
         }
     }
 
-    /// Which ticks of the horizontal axis have a number: as many as have room, including 0.
-    fn numbered(&self) -> impl Fn(usize) -> bool + use<> {
+    /// Which ticks of the horizontal axis have a number, as many as have room, including 0; and the size of
+    /// the numbers. Words all stand there, smaller where they need it.
+    fn numbered(&self) -> (impl Fn(usize) -> bool + use<>, f64) {
         const BETWEEN: f64 = 16.0;
         let half = |words: &str| 0.5 * font::width(words, style::TICK, false);
         let ticks = self.x.ticks.iter().map(|(value, words)| (self.across(*value), half(words)));
@@ -141,7 +152,12 @@ impl Frame {
             kept.windows(2).all(|pair| pair[1].0 - pair[0].0 >= pair[0].1 + pair[1].1 + BETWEEN)
         };
         let every = (1..=ticks.len().max(1)).find(apart).unwrap_or(1);
-        move |i| i % every == zero % every
+        let room = |pair: &[(f64, f64)]| (pair[1].0 - pair[0].0) / (pair[0].1 + pair[1].1 + BETWEEN);
+        let (every, share) = match self.x.is_scale() {
+            true => (every, 1.0),
+            false => (1, ticks.windows(2).map(room).fold(1.0, f64::min)),
+        };
+        (move |i| i % every == zero % every, share * style::TICK)
     }
 
     /// Draws a layer.
@@ -187,7 +203,7 @@ impl Frame {
                     self.fill(figure, bar, &look);
                 }
             }
-            Marks::Spans(spans) => self.spans(figure, spans, &look),
+            Marks::Spans(spans) => self.spans(figure, spans, layer.role, theme),
             Marks::Verticals(values) => {
                 for at in values.iter().map(|x| self.across(*x)).filter(|at| at.is_finite()) {
                     figure.styled(&[(at, bottom), (at, top)], &look, self.area);
@@ -350,7 +366,7 @@ impl Frame {
     }
 
     /// Shaded spans; neighbours closer than a part of a pixel are joined.
-    fn spans(&self, figure: &mut Figure, spans: &[(f64, f64)], look: &Look) {
+    fn spans(&self, figure: &mut Figure, spans: &[(f64, f64)], role: Role, theme: &Theme) {
         let mut merged: Vec<(f64, f64)> = Vec::new();
         for (left, right) in spans.iter().map(|(from, to)| (self.across(*from), self.across(*to))) {
             match merged.last_mut() {
@@ -360,7 +376,10 @@ impl Frame {
         }
         for (left, right) in merged {
             if let Some(area) = Area::new(left, self.area.top, right, self.area.bottom).common(self.area) {
-                figure.rect(area, look.ink);
+                match role {
+                    Role::Missing => figure.missing(area, theme),
+                    role => figure.rect(area, theme.look(role).ink),
+                }
             }
         }
     }

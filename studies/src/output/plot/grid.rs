@@ -218,7 +218,7 @@ impl Lines {
     }
 
     /// The room that its lines take, each of this `line`.
-    fn across(&self, line: f64) -> f64 {
+    pub fn across(&self, line: f64) -> f64 {
         line * self.lines.len() as f64
     }
 }

@@ -159,7 +159,8 @@ pub(super) fn map(picture: &SweepPicture, (x, y): (&str, &str), cuts: &[Cut]) ->
             let points = order.iter().map(|&row| turned((places[row], quantity.values[row]))).collect();
             cut.draw(Role::Joined, Marks::Path(points));
         }
-        let regimes = marks(&order, places, &quantity.values, rows.words("regime"));
+        let low = if is_upright { cut.x.low } else { cut.y.low };
+        let regimes = marks(&order, places, &quantity, low, rows);
         let regimes = regimes.into_iter().map(|(point, word)| (turned(point), word)).collect();
         cut.draw(Role::Motion, Marks::Regimes(regimes, quantity.kinds.is_none()));
         if is_upright { beside.push(cut) } else { below.push(cut) }

@@ -32,6 +32,11 @@ pub const REGIMES: [(&str, Marker); 5] = [
     ("crossing", Marker::Triangle),
 ];
 
+/// The word of a regime as a picture has it.
+pub fn regime_words(name: &str) -> &str {
+    if name == "rest" { "at rest" } else { name }
+}
+
 /// Draws a marker with an outline of `edge`; `size` is half its height.
 pub fn marker(figure: &mut Figure, marker: Marker, at: Point, size: f64, ink: Ink, edge: Ink) {
     for (size, ink) in [(size + 2.0, edge), (size, ink)] {

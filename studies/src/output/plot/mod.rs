@@ -58,7 +58,7 @@ pub use chart::{Chart, Column, Layer, Marks, Note, Panel, Side};
 pub use comparison::comparison_chart;
 pub use curve::{contact_chart, curve_chart, force_panel};
 pub use figure::{Area, Figure, Shape, Text};
-pub use font::{HACK, INTER};
+pub use font::{HACK, INTER, width as text_width};
 pub use frame::Frame;
 pub use mark::Caption;
 pub use over_field::{can_show_over_field, escape_chart, exponents_chart};

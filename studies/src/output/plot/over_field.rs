@@ -6,7 +6,7 @@ use super::drawn::of_rows;
 use super::figure::Point;
 use super::role::Role;
 use super::sweep::{MAX_PICTURE_CELLS, NoPicture};
-use super::swept::{ascending, swept_axis};
+use super::swept::{ascending, spans, swept_axis};
 use crate::numeric::{elementary, short};
 use crate::scene::Scene;
 use crate::study::{EscapeOptions, Grid, Table, Until};
@@ -72,8 +72,8 @@ pub fn exponents_chart(rows: &Table, grid: &Grid, scene: &Scene, ranges: Ranges)
     let x = grid.columns()[0].as_str();
     let numbers = |name: &str| rows.numbers(name).unwrap_or_default();
     let (places, first) = (numbers(x), numbers("exponent_1_per_s"));
-    let both = first.iter().chain(numbers("exponent_2_per_s"));
-    let up = PlotAxis::around(both.copied().chain([0.0]), 0.06, "Lyapunov exponent (1/s)").or_given(ranges.y);
+    let both = first.iter().chain(numbers("exponent_2_per_s")).copied();
+    let up = PlotAxis::from_zero(both, 0.06, "Lyapunov exponent (1/s)").or_given(ranges.y);
     let mut panel = Panel::new(swept_axis(rows, x, ranges.x), up);
     let order = ascending(places, |_| true);
     let lines = [
@@ -89,18 +89,18 @@ pub fn exponents_chart(rows: &Table, grid: &Grid, scene: &Scene, ranges: Ranges)
             panel.layer(Role::Around, "standard error", Marks::Band(band.collect()));
         }
     }
-    panel.draw(Role::Reference, Marks::Horizontals(vec![0.0]));
+    if there {
+        panel.draw(Role::Reference, Marks::Horizontals(vec![0.0]));
+    }
     for (words, name, role) in lines {
         let values = numbers(&format!("{name}_per_s"));
         let points = order.iter().map(|&row| (places[row], values[row])).collect();
         panel.layer(role, if there { words } else { "" }, Marks::Path(points));
     }
-    let without = |is: fn(&f64) -> bool| {
-        let rows = order.iter().filter(|row| is(&first[**row]));
-        Marks::Ticks(rows.map(|row| places[*row]).collect(), Side::Bottom)
-    };
+    let without =
+        |is: fn(&f64) -> bool| spans(places, order.iter().copied().filter(move |row| is(&first[*row])));
     let resting = without(|value| *value == f64::NEG_INFINITY);
-    panel.layer_if_any(Role::Motion, "both \u{2212}\u{221e} (rests on a stop)", resting);
+    panel.layer_if_any(Role::Rest, "both \u{2212}\u{221e} (rests on a stop)", resting);
     panel.layer_if_any(Role::Missing, "no value", without(|value| value.is_nan()));
     let names = [x, "exponent_1_per_s", "exponent_1_se", "exponent_2_per_s", "exponent_2_se"];
     let data = of_rows("exponents", rows, &names, |row| panel.x.contains(places[row]));

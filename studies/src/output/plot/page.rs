@@ -4,7 +4,7 @@ use super::chart::{Chart, Layer, Marks};
 use super::figure::{Area, Figure, Text};
 use super::font;
 use super::grid::Grid;
-use super::mark::{Caption, Sample, entry};
+use super::mark::{Caption, REGIMES, Sample, entry, regime_words};
 use super::role::{Look, Role};
 use super::sheet::canvas_width;
 use super::style::{self, Theme};
@@ -36,7 +36,8 @@ const LOW_PANE: f64 = 600.0;
 /// Height of the panels on a sheet relative to its width, if no height is given.
 const PROPORTION: f64 = 0.625;
 
-/// Wraps `words` into lines no longer than `room`, at spaces, and within a word that is too long.
+/// Wraps `words` into lines no longer than `room`, at spaces, and a word that is too long after a
+/// hyphen or anywhere.
 pub fn wrapped(words: &str, size: f64, bold: bool, room: f64) -> Vec<String> {
     let fits = |line: &str| font::width(line, size, bold) <= room;
     let mut lines: Vec<String> = Vec::new();
@@ -54,6 +55,7 @@ pub fn wrapped(words: &str, size: f64, bold: bool, room: f64) -> Vec<String> {
             let ends = word.char_indices().map(|(begin, letter)| begin + letter.len_utf8());
             let first = ends.clone().next().unwrap_or(word.len());
             let end = ends.take_while(|end| fits(&word[..*end])).last().unwrap_or(first);
+            let end = word[..end].rfind(['-', '_']).map_or(end, |place| place + 1);
             lines.push(word[..end].to_owned());
             word = &word[end..];
         }
@@ -76,6 +78,9 @@ pub fn wrapped_to(words: &str, size: f64, bold: bool, room: f64, most: usize) ->
     lines
 }
 
+/// Smallest relative size at which a title or a subtitle is kept in one line on paper.
+const SMALLEST: f64 = 0.7;
+
 /// Largest number of lines of a title or a subtitle.
 const MAX_LINES: usize = 3;
 
@@ -87,11 +92,18 @@ pub struct Lines {
 }
 
 impl Lines {
-    /// On paper the text is made smaller before it gets a second line.
+    /// On paper the text is made smaller if it then fits in one line.
     fn new(words: &str, size: f64, bold: bool, room: f64, on_paper: bool) -> Self {
-        let share = if on_paper { (room / font::width(words, size, bold)).clamp(0.7, 1.0) } else { 1.0 };
-        let size = share * size;
-        Self { lines: wrapped_to(words, size, bold, room, MAX_LINES), size }
+        let share = room / font::width(words, size, bold);
+        let fits = on_paper && (SMALLEST..1.0).contains(&share);
+        let size = if fits { share * size } else { size };
+        // the measured width may exceed the room by a rounding error
+        Self { lines: wrapped_to(words, size, bold, room + 1e-6, MAX_LINES), size }
+    }
+
+    /// The distance of its lines, of which one of text of the size `usual` takes `step`.
+    fn step(&self, step: f64, usual: f64) -> f64 {
+        step * self.size / usual
     }
 }
 
@@ -133,8 +145,11 @@ impl Chart {
         let title = Lines::new(&caption.title, style::TITLE, true, room, sheet.is_some());
         let subtitle = Lines::new(&self.subtitle, style::SUBTITLE, false, room, sheet.is_some());
         let footer = caption.footer_lines(room);
-        let above =
-            30.0 + TITLE_LINE * title.lines.len() as f64 + SUBTITLE_LINE * subtitle.lines.len() as f64 + 8.0;
+        let captions = [
+            (&title, title.step(TITLE_LINE, style::TITLE), true, theme.ink),
+            (&subtitle, subtitle.step(SUBTITLE_LINE, style::SUBTITLE), false, theme.soft),
+        ];
+        let above = 38.0 + captions.iter().map(|(lines, step, ..)| lines.across(*step)).sum::<f64>();
         let below = 24.0 + style::FOOTER_LINE * footer.len() as f64;
         let named = self.entries(theme);
         let legend = Legend::new(&named, room, 0.0);
@@ -150,9 +165,7 @@ impl Chart {
         let mut figure = Figure::new(theme, (width, height), (above, height - below));
         figure.origin = caption.origin.clone();
         let mut y = 24.0;
-        for (lines, step, bold, ink) in
-            [(&title, TITLE_LINE, true, theme.ink), (&subtitle, SUBTITLE_LINE, false, theme.soft)]
-        {
+        for (lines, step, bold, ink) in captions {
             for line in &lines.lines {
                 let at = (edge, y + 0.78 * step);
                 figure.text(Text { bold, ..Text::new(line, at, lines.size, ink) });
@@ -212,22 +225,20 @@ impl Chart {
         for (panel, layer) in layers.filter(|(panel, layer)| panel.shows(layer)) {
             match &layer.marks {
                 Marks::Regimes(points, _) => {
-                    for (place, (name, _)) in super::mark::REGIMES.iter().enumerate() {
+                    for (place, (name, _)) in REGIMES.iter().enumerate() {
                         if points.iter().any(|point| point.1 == *name && panel.contains(point.0)) {
-                            add(Sample::Marker(theme.look(Role::Regime(place))), name);
+                            add(Sample::Marker(theme.look(Role::Regime(place))), regime_words(name));
                         }
                     }
                 }
-                Marks::Cells(cells) => {
+                Marks::Cells(cells) | Marks::Surface(cells, _) => {
                     for (role, name) in cells.entries() {
-                        let is_missing = role == Role::Missing;
-                        let patch = Sample::Patch(theme.look(role));
-                        add(if is_missing { Sample::Missing } else { patch }, &name);
+                        let look = theme.look(role);
+                        // a surface at rest has lines in place of a hatching
+                        let hatch = look.hatch.filter(|_| panel.surface().is_none());
+                        let patch = Sample::Patch(Look { hatch, ..look });
+                        add(if role == Role::Missing { Sample::Missing } else { patch }, &name);
                     }
-                }
-                // a missing value is a hole
-                Marks::Surface(cells, _) if cells.entries().iter().any(|entry| entry.0 == Role::Rest) => {
-                    add(Sample::Patch(theme.look(Role::Rest)), "at rest");
                 }
                 _ => add(sample(layer, theme), &layer.name),
             }
@@ -297,6 +308,7 @@ fn sample(layer: &Layer, theme: &Theme) -> Sample {
         Marks::Points(_) | Marks::Cloud(_) | Marks::Valued(..) | Marks::Regimes(..) => Sample::Marker(look),
         Marks::Ticks(..) => Sample::Ticks(look.ink),
         Marks::Wall(..) => Sample::Patch(Look { ink: theme.wall_fill(), ..look }),
+        Marks::Spans(_) if layer.role == Role::Missing => Sample::Missing,
         Marks::Spans(_) => Sample::Patch(Look { hatch: None, ..look }),
         Marks::Band(_) | Marks::Bars(..) | Marks::Patch | Marks::Cells(_) | Marks::Surface(..) => {
             Sample::Patch(look)
@@ -308,5 +320,28 @@ fn sample(layer: &Layer, theme: &Theme) -> Sample {
         | Marks::Verticals(_)
         | Marks::Horizontals(_)
         | Marks::Words(_) => Sample::Line(look),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_caption_on_paper_is_smaller_only_where_it_then_has_one_line() {
+        let words = "a subtitle of several words that may be too long";
+        let of = |share: f64| {
+            let room = share * font::width(words, 28.0, false);
+            let lines = Lines::new(words, 28.0, false, room, true);
+            (lines.lines.len(), (10.0 * lines.size).round(), lines.step(36.0, 28.0).round())
+        };
+        assert_eq!([of(1.1), of(0.8), of(0.75)], [(1, 280.0, 36.0), (1, 224.0, 29.0), (1, 210.0, 27.0)]);
+        assert_eq!(of(0.6), (2, 280.0, 36.0));
+    }
+
+    #[test]
+    fn a_long_word_is_wrapped_after_a_hyphen() {
+        let room = font::width("a-long-scene", 20.0, false);
+        assert_eq!(wrapped("a-long-scene-name", 20.0, false, room), ["a-long-", "scene-name"]);
     }
 }

@@ -1,8 +1,9 @@
 //! Column of a sweep that a picture shows, in suitable units.
 
 use super::axis::PlotAxis;
+use super::cells::Cell;
 use super::drawn::as_numbers;
-use super::mark::REGIMES;
+use super::mark::{REGIMES, regime_words};
 use super::role::Role;
 use super::sweep::distinct;
 use crate::numeric::extent;
@@ -42,8 +43,8 @@ pub(super) struct Quantity {
     pub unit: String,
     /// The kinds of which the values are indices, with their words, if it has kinds.
     pub kinds: Option<Vec<(Role, String)>>,
-    /// Whether every motion at rest is shown as such, not only one whose value is 0.
-    pub rests: bool,
+    /// What is shown of each row: a value, none, or rest.
+    pub cells: Vec<Cell>,
     /// The band about its values, if it has one: least and largest values.
     pub band: Option<[Vec<f64>; 2]>,
     name: String,
@@ -76,12 +77,18 @@ impl Quantity {
             Some(regime) if name == "regime" => Role::Regime(regime),
             _ => Role::Kind(place),
         };
-        let mut kinds: Option<Vec<(Role, String)>> = words.map(|words| {
-            words.iter().enumerate().map(|(i, word)| (role(i, word), (*word).to_owned())).collect()
-        });
-        if name == PERIOD {
-            kinds = Some(counted(&mut values));
-        }
+        let shown = |word: &str| match word {
+            "true" => name.to_owned(),
+            "false" => format!("not {name}"),
+            word => regime_words(word).to_owned(),
+        };
+        let kinds: Option<Vec<(Role, String)>> = match words {
+            Some(words) => {
+                let there = placed(&mut values, usize::MAX).into_iter().map(|place| place as usize);
+                Some(there.map(|i| (role(i, words[i]), shown(words[i]))).collect())
+            }
+            None => (name == PERIOD).then(|| counted(&mut values)),
+        };
         let end_of = |ending: &str, words| Some((SummaryField::find(name.strip_suffix(ending)?)?, words));
         let end = end_of("_low", ", lower end of the band").or(end_of("_high", ", upper end of the band"));
         let (words, unit) = label_and_unit(end.map_or(name, |(field, _)| field.name));
@@ -93,17 +100,29 @@ impl Quantity {
         let end = |end: &str| rows.numbers(&format!("{name}{end}")).map(scaled);
         let band = end("_low").zip(end("_high")).map(|(low, high)| [low, high]);
         let band = band.filter(|_| kinds.is_none());
-        let values = scaled(&values);
-        let rests = [RMS, PERIOD, "regime"].contains(&name);
-        Self { values, label, unit: unit.to_owned(), kinds, rests, band, name: name.to_owned() }
+        let values: Vec<f64> = scaled(&values);
+        // how a run ended is no matter of its motion
+        let rests = |value: f64| match kinds {
+            Some(_) => name != "outcome",
+            None => name == RMS || value == 0.0,
+        };
+        let (regimes, outcomes) = (rows.words("regime"), rows.words("outcome"));
+        let cell = |(row, value): (usize, &f64)| match (regimes.get(row), outcomes.get(row)) {
+            (_, Some(&"")) => Cell::Blank,
+            (Some(&"rest"), _) if rests(*value) => Cell::Rest,
+            _ if !value.is_finite() => Cell::Missing,
+            _ => Cell::Value(*value),
+        };
+        let cells = values.iter().enumerate().map(cell).collect();
+        Self { values, label, unit: unit.to_owned(), kinds, cells, band, name: name.to_owned() }
     }
 
     /// What a legend says of cells without a value: the reasons that there are.
     pub fn missing(&self, rows: &Table) -> String {
         let mut reasons: Vec<&str> = Vec::new();
-        for (outcome, _) in rows.words("outcome").iter().zip(&self.values).filter(|row| !row.1.is_finite()) {
+        let outcomes = rows.words("outcome").iter().zip(&self.cells);
+        for (outcome, _) in outcomes.filter(|row| *row.1 == Cell::Missing) {
             let reason = match *outcome {
-                "" => continue,
                 "done" => without_value(&self.name),
                 "not_converged" => "flexures not solved",
                 _ => "ended early",
@@ -127,18 +146,18 @@ impl Quantity {
     /// Its axis: from 0, or from below where there are negative values, with `margin` of the range as room;
     /// the words where it has those.
     pub fn axis(&self, margin: f64) -> PlotAxis {
-        if let Some(kinds) = &self.kinds {
+        if let Some(kinds) = self.kinds.as_ref().filter(|kinds| !kinds.is_empty()) {
             let ticks = kinds.iter().enumerate().map(|(i, kind)| (i as f64, kind.1.clone())).collect();
             return PlotAxis::given(-0.5, kinds.len() as f64 - 0.5, ticks, &self.label);
         }
-        PlotAxis::around(self.values.iter().copied().chain([0.0]), margin, &self.label)
+        PlotAxis::from_zero(self.values.iter().copied(), margin, &self.label)
     }
 
     /// Its axis with room for its band.
     pub fn axis_of_band(&self, margin: f64) -> PlotAxis {
         let Some([low, high]) = &self.band else { return self.axis(margin) };
         let all = self.values.iter().chain(low).chain(high).copied();
-        PlotAxis::around(all.chain([0.0]), margin, &self.label)
+        PlotAxis::from_zero(all, margin, &self.label)
     }
 }
 
@@ -182,18 +201,25 @@ const PERIOD: &str = "period";
 
 /// Whole numbers as kinds: each value becomes its place among them; the greatest ones are one kind.
 fn counted(values: &mut [f64]) -> Vec<(Role, String)> {
-    let finite: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
-    let mut all = distinct(&finite);
-    let rest = all.len() > MAX_COUNTS;
-    all.truncate(MAX_COUNTS);
-    for value in values.iter_mut().filter(|value| value.is_finite()) {
-        *value = all.partition_point(|known| known <= value).saturating_sub(1) as f64;
-    }
+    let greatest = extent(values.iter().copied()).1;
+    let all = placed(values, MAX_COUNTS);
     let name = |(i, value): (usize, &f64)| {
-        let least = if rest && i + 1 == MAX_COUNTS { "\u{2265} " } else { "" };
+        let least = if i + 1 == MAX_COUNTS && *value < greatest { "\u{2265} " } else { "" };
         (Role::Kind(i), format!("period {least}{value}"))
     };
     all.iter().enumerate().map(name).collect()
+}
+
+/// The values that occur, of which each becomes its place among them, but at most so many: the last one
+/// stands for all above it.
+fn placed(values: &mut [f64], most: usize) -> Vec<f64> {
+    let finite: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
+    let mut all = distinct(&finite);
+    all.truncate(most);
+    for value in values.iter_mut().filter(|value| value.is_finite()) {
+        *value = all.partition_point(|known| known <= value).saturating_sub(1) as f64;
+    }
+    all
 }
 
 #[cfg(test)]
@@ -206,6 +232,24 @@ mod tests {
         assert_eq!([of("m", 0.02), of("m", 3.0), of("m/s", 0.4)], [(1e3, "mm"), (1.0, "m"), (1e3, "mm/s")]);
         assert_eq!([of("J", -2.0), of("J", 0.0), of("W", 3e-7)], [(1.0, "J"), (1e3, "mJ"), (1e9, "nW")]);
         assert_eq!([of("W", 1e-15), of("Pa", 2e8), of("", 7.0)], [(1e12, "pW"), (1e-6, "MPa"), (1.0, "")]);
+    }
+
+    #[test]
+    fn a_category_shows_rest_whatever_its_word() {
+        let rows = [("rest", "left", "true"), ("rest", "right", "false"), ("interwell", "both", "false")];
+        let table = Table::new().each("regime", &rows, |row| row.0).each("side", &rows, |row| row.1);
+        let table = table.each("settled", &rows, |row| row.2).each("outcome", &rows, |_| "done");
+        let table = table.each("period", &rows, |row| if row.0 == "rest" { f64::NAN } else { 1.0 });
+        let table = table.each("impacts", &rows, |row| if row.1 == "right" { 1.0 } else { 0.0 });
+        let cells = |name: &str| Quantity::of(&table, name).cells;
+        for name in ["regime", "side", "settled", "period"] {
+            assert!(matches!(cells(name)[..], [Cell::Rest, Cell::Rest, Cell::Value(_)]), "{name}");
+        }
+        assert_eq!(cells("outcome"), [Cell::Value(0.0); 3]);
+        assert_eq!(cells("impacts"), [Cell::Rest, Cell::Value(1.0), Cell::Value(0.0)]);
+        let words: Vec<String> =
+            Quantity::of(&table, "settled").kinds.unwrap().into_iter().map(|kind| kind.1).collect();
+        assert_eq!(words, ["settled", "not settled"]);
     }
 
     #[test]

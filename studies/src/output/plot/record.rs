@@ -3,6 +3,7 @@
 
 use super::axis::{PlotAxis, Ranges};
 use super::chart::{Chart, Marks, Panel};
+use super::curve::{telling, wall};
 use super::drawn::Drawn;
 use super::figure::Point;
 use super::quantity::suited_unit;
@@ -30,11 +31,20 @@ struct Series {
     is_marks: bool,
 }
 
+impl Series {
+    /// The points of a line next to its first and its last zero, between them.
+    fn zeros(&self) -> Option<(f64, f64)> {
+        let zeros = || self.points.windows(2).filter(|pair| pair[0].1 * pair[1].1 <= 0.0);
+        Some((zeros().next()?[1].0, zeros().last()?[0].0))
+    }
+}
+
 enum Lower {
     /// Residuals about 0: label, and name of the series in the drawn data.
     Rest(&'static str, &'static str, Vec<Point>),
-    /// Numbers with their intervals over the same axis, and the one for all: their label and their column.
-    Intervals(&'static str, &'static str, Vec<(f64, [f64; 3])>, Option<Identity>),
+    /// Numbers with their intervals over the same axis, and the one for all: their label, their column and
+    /// what each is of.
+    Intervals([&'static str; 3], Vec<(f64, [f64; 3])>, Option<Identity>),
 }
 
 /// A picture in the units of its axes.
@@ -87,7 +97,7 @@ pub fn identified_chart(
             let rows = intervals(middle, "damping_ratio");
             (
                 vec![upper, envelope("", "lower_envelope", "lower")],
-                Lower::Intervals("damping ratio", "damping_ratio", rows, first),
+                Lower::Intervals(["damping ratio", "damping_ratio", "of eight turning points"], rows, first),
             )
         }
         _ => {
@@ -98,7 +108,7 @@ pub fn identified_chart(
                     marks(Role::Impact, "impact", "impact", impacts),
                     marks(Role::Rebound, "end of a rebound", "rebound", rebounds),
                 ],
-                Lower::Intervals("restitution", "restitution", rows, first),
+                Lower::Intervals(["restitution", "restitution", "of one impact"], rows, first),
             )
         }
     };
@@ -215,7 +225,7 @@ impl RecordPicture {
                 let label = format!("{label} ({})", self.unit);
                 (label, points.iter().map(|point| point.1).chain([0.0]).collect(), Vec::new())
             }
-            Lower::Intervals(label, _, rows, all) => {
+            Lower::Intervals([label, ..], rows, all) => {
                 let ends = all.iter().flat_map(|number| [number.interval.0, number.interval.1]);
                 let places = rows.iter().map(|row| row.0).collect();
                 let rows = rows.iter().flat_map(|row| row.1);
@@ -225,8 +235,10 @@ impl RecordPicture {
         let places = self.record.iter().map(|point| point.0).chain(places);
         let across = PlotAxis::around(places, 0.0, self.across).or_given(ranges.x);
         let drawn = self.over.iter().flat_map(|series| &series.points).filter(inside);
-        let heights = shown().chain(drawn).map(|point| point.1);
-        let up = PlotAxis::around(heights, 0.08, &format!("{} ({})", self.up, self.unit)).or_given(ranges.y);
+        let seen: Vec<Point> = shown().chain(drawn).copied().collect();
+        let (low, high) = telling(&seen, self.over.first().filter(|_| !self.rises).and_then(Series::zeros));
+        let up_label = format!("{} ({})", self.up, self.unit);
+        let up = PlotAxis::around([low, high], 0.08, &up_label).or_given(ranges.y);
         let mut upper = Panel::new(across.clone(), up);
         let is_cloud = shown().count() < DOTS;
         if !self.record.is_empty() {
@@ -249,7 +261,7 @@ impl RecordPicture {
                 lower.draw(Role::Reference, Marks::Horizontals(vec![0.0]));
                 lower.draw(Role::Measured, Marks::Cloud(points.clone()));
             }
-            Lower::Intervals(_, _, rows, all) => {
+            Lower::Intervals([.., each], rows, all) => {
                 if let Some(number) = all {
                     let (low, high) = number.interval;
                     let band = [lower.x.low, lower.x.high].map(|x| [x, low, high]);
@@ -258,19 +270,22 @@ impl RecordPicture {
                 }
                 let bars = rows.iter().filter(|row| row.1[1].is_finite() && row.1[2].is_finite());
                 let bars = bars.map(|(x, [_, low, high])| [*x, *low, *high]).collect();
-                lower.draw(Role::Measured, Marks::Intervals(bars));
+                lower.layer_if_any(Role::Measured, "95 % interval", Marks::Intervals(bars));
                 let points = rows.iter().map(|(x, [value, ..])| (*x, *value)).collect();
-                lower.draw(Role::Interval, Marks::Points(points));
+                lower.layer(Role::Interval, *each, Marks::Points(points));
             }
         }
-        Chart::stack(vec![upper, lower], words, self.data())
+        let beyond = wall(&seen, &upper, self.scales[1]).filter(|_| !self.rises);
+        Chart::stack(vec![upper, lower], words.to_owned() + &beyond.unwrap_or_default(), self.data())
     }
 
     /// What is drawn, in SI.
     fn data(&self) -> Table {
         let below = match &self.lower {
             Lower::Rest(..) => Vec::new(),
-            Lower::Intervals(_, name, ..) => ["", "_low", "_high"].map(|end| format!("{name}{end}")).into(),
+            Lower::Intervals([_, name, _], ..) => {
+                ["", "_low", "_high"].map(|end| format!("{name}{end}")).into()
+            }
         };
         let mut drawn = Drawn::new(self.columns.iter().chain(&below).map(String::as_str), &[]);
         let [k, scale] = self.scales;
@@ -281,7 +296,7 @@ impl RecordPicture {
         self.over.iter().for_each(|series| put(series.series, &series.points));
         match &self.lower {
             Lower::Rest(_, series, points) => put(series, points),
-            Lower::Intervals(_, name, rows, _) => {
+            Lower::Intervals([_, name, _], rows, _) => {
                 for (x, [y, low, high]) in rows {
                     drawn.put(name, &[x / k, f64::NAN, *y, *low, *high], &[]);
                 }

@@ -173,7 +173,10 @@ impl Theme {
             Role::Well => dashed(self.stable),
             Role::Stable => Look { size: style::MARKER + 2.0, halo: Some(self.paper), ..of(self.ink) },
             Role::Unstable => Look { hollow: true, size: style::MARKER + 2.0, ..of(self.ink) },
-            Role::Kink => Look { hollow: true, ..marked(self.ink, Marker::Diamond) },
+            // reaches out from under an equilibrium
+            Role::Kink => {
+                Look { hollow: true, size: 2.0 * style::MARKER, ..marked(self.ink, Marker::Diamond) }
+            }
             Role::Separatrix => Look { width: style::FINE_LINE, ..dashed(self.soft) },
             Role::Strobe => Look { hollow: true, size: 4.9, ..of(self.shaking) },
             Role::Reference => Look { width: style::THIN, ..of(self.soft) },
@@ -245,6 +248,13 @@ impl Theme {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_kink_is_seen_around_an_equilibrium() {
+        let [kink, stable] = [Role::Kink, Role::Stable].map(|role| Theme::LIGHT.look(role));
+        // the distance of the edge of a diamond, and the outline of a disc
+        assert!(1.25 * kink.size / 2.0_f64.sqrt() + 2.0 > stable.size + 5.0);
+    }
 
     /// A dash of one pin is at least twice as long as that of the next.
     #[test]

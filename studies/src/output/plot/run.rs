@@ -252,11 +252,11 @@ impl Seen<'_> {
         let path = x.iter().zip(v).map(|(x, v)| (x * 1e3, v * self.speed.0)).collect();
         let mut motion = vec![Layer::new(Role::Motion, "", Marks::Path(path))];
         let strobes: Vec<Point> = self.strobes().map(|[_, x, v]| (x * 1e3, v * self.speed.0)).collect();
-        if !strobes.is_empty() {
-            motion.push(Layer::new(Role::Strobe, "once a period", Marks::Points(strobes)));
-        }
         if let (Some(x), true, true) = (x.first(), is_still(x), is_still(v)) {
             motion.push(Layer::new(Role::Resting, "the mass at rest", Marks::Points(vec![(x * 1e3, 0.0)])));
+        }
+        if !strobes.is_empty() {
+            motion.push(Layer::new(Role::Strobe, "once a period", Marks::Points(strobes)));
         }
         let (of, axes) = ((self.mechanism, self.mass), (self.displacement(x), self.velocity(v)));
         let panel = portrait_panel(of, axes, self.speed.0, self.stops_mm(), motion);

@@ -7,14 +7,14 @@ use super::quantity::suited_unit;
 use super::role::Role;
 use super::swept::label;
 use crate::numeric::short;
-use crate::study::{DIRECTION, Direction, IMPACTS, Table, Values};
+use crate::study::{DIRECTION, Direction, Grid, IMPACTS, Table, Values};
 
-/// The picture of a section from all of its rows: a single one, or `over` the column of a field. The states
-/// are at the phase `phase_deg` of the drive in degrees; without it the rows are impacts. `stops` are
+/// The picture of a section from all of its rows: a single one, or those `over` the field of a grid. The
+/// states are at the phase `phase_deg` of the drive in degrees; without it the rows are impacts. `stops` are
 /// positions in m, where they are the same for all rows.
 pub fn section_chart(
     rows: &Table,
-    over: Option<&str>,
+    over: Option<&Grid>,
     phase_deg: Option<f64>,
     stops: (Option<f64>, Option<f64>),
     ranges: Ranges,
@@ -30,7 +30,8 @@ pub fn section_chart(
     };
     let kind = kind_of(rows, states);
     let numbers = |name: &str| rows.numbers(name).unwrap_or_default();
-    let across = match over {
+    let field = over.and_then(|grid| grid.columns().first()).map(String::as_str);
+    let across = match field {
         Some(field) => Along { values: numbers(field).to_vec(), label: label(rows, field) },
         None => Along::of(numbers(pair[0]), pair[0]),
     };
@@ -41,7 +42,11 @@ pub fn section_chart(
             let ticks = (0..=6).map(|i| (60.0 * f64::from(i), (60 * i).to_string())).collect();
             PlotAxis::given(0.0, 360.0, ticks, &across.label)
         }
-        false => PlotAxis::around(across.values.iter().copied(), 0.02, &across.label),
+        // a value without an impact has no row
+        false => {
+            let swept = over.iter().flat_map(|grid| &grid.axes()[0].values);
+            PlotAxis::around(across.values.iter().chain(swept).copied(), 0.02, &across.label)
+        }
     };
     let x = x.or_given(ranges.x);
     let y = PlotAxis::around(up.values.iter().copied(), 0.06, &up.label).or_given(ranges.y);
@@ -65,7 +70,7 @@ pub fn section_chart(
         true => Vec::from(Direction::ALL.map(|way| panel_of(Some(way)))),
         false => vec![panel_of(None)],
     };
-    let names: Vec<&str> = over.into_iter().chain(pair).collect();
+    let names: Vec<&str> = field.into_iter().chain(pair).collect();
     let columns: Vec<&[f64]> = names.iter().map(|name| numbers(name)).collect();
     let mut drawn = Drawn::new(names, if ways.is_empty() { &[] } else { &[DIRECTION] });
     for row in (0..rows.rows()).filter(|row| x.contains(across.values[*row])) {

@@ -42,8 +42,8 @@ pub fn shapes_chart(states: &[State], mechanism: &Mechanism, stops: (f64, f64)) 
     panel.layer(Role::Several, "proof mass", Marks::Points(mass));
     let kinds = states.first().map_or(0, |state| state.lines.len());
     let about = match kinds {
-        1 => "Centre line of the flexures",
-        _ => "Centre lines: above the mass the buckling flexures, below it the parallel ones",
+        1 => "centre line of the flexures",
+        _ => "centre lines: above the mass the buckling flexures, below it the parallel ones",
     };
     Chart::stack(vec![panel], format!("{about}; sideways stretched"), drawn(states, stops))
 }

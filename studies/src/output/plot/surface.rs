@@ -94,6 +94,29 @@ impl SurfaceFrame {
         }
     }
 
+    /// Hatching on the floor under cells without a value.
+    fn holes(&self, figure: &mut Figure, cells: &Cells, theme: &Theme) {
+        let share = |axis: &PlotAxis, edge: f64| axis.share(edge).clamp(0.0, 1.0);
+        for (i, x) in cells.across.edges.windows(2).enumerate() {
+            for (j, y) in cells.up.edges.windows(2).enumerate() {
+                if cells.at(i, j) != Cell::Missing {
+                    continue;
+                }
+                let [left, right] = [x[0], x[1]].map(|x| share(&self.x, x));
+                let [near, far] = [y[0], y[1]].map(|y| share(&self.y, y));
+                let (across, back) = (0.5 * (left + right), 0.5 * (near + far));
+                let lines = [
+                    ((left, back), (across, near)),
+                    ((left, far), (right, near)),
+                    ((across, far), (right, back)),
+                ];
+                for ((u, v), (to_u, to_v)) in lines {
+                    self.line(figure, ((u, v, 0.0), (to_u, to_v, 0.0)), style::HATCH.1, theme.soft);
+                }
+            }
+        }
+    }
+
     /// The edges that carry ticks, their numbers and labels.
     fn axes(&self, figure: &mut Figure, theme: &Theme) {
         let (near, right, left) = ((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0));
@@ -163,6 +186,7 @@ pub fn draw(
         z: z.with_ticks(5),
     };
     view.walls(figure, theme);
+    view.holes(figure, cells, theme);
     skin(figure, &view, cells, theme);
     view.axes(figure, theme);
     figure.surface = Some(view);

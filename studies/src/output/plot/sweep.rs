@@ -2,13 +2,12 @@
 
 use super::axis::PlotAxis;
 use super::cells::{Cell, Cells, Colours};
-use super::chart::{Chart, Column, Layer, Marks, Panel, Side};
-use super::figure::Point;
+use super::chart::{Chart, Column, Layer, Marks, Panel};
 use super::map::{cells_panel, map, surface};
 use super::quantity::{Quantity, quantities, words_of};
 use super::role::Role;
 use super::surface::MAX_SURFACE_CELLS;
-use super::swept::{SweepPicture, View, ascending, cells, drawn, marks, of_each, swept_axis};
+use super::swept::{SweepPicture, View, ascending, cells, drawn, marks, of_each, spans, swept_axis};
 use crate::numeric::short;
 use crate::scene::{Scene, Start, find_name};
 use crate::study::{DIRECTION, Direction, Grid, SUMMARY_FIELDS, Table};
@@ -105,10 +104,6 @@ const FEW: usize = 6;
 /// Smallest ratio of the number of values of the other field to these.
 const MANY: usize = 3;
 
-/// Largest number of values without a result that are marked by lines; more of them are marked by ticks at
-/// the lower edge.
-const MAX_LINES: usize = 20;
-
 /// Distance above which two lines are visibly separate, as a share of the vertical axis.
 const VISIBLE: f64 = 2e-3;
 
@@ -124,10 +119,10 @@ pub fn sweep_chart(picture: &SweepPicture) -> Result<Chart, NoPicture> {
     let mut chart = match (grid.columns(), few_lines(rows, grid)) {
         ([x, y], _) if picture.view == View::Surface => surface(picture, (x, y)),
         ([x, y], _) if let View::Cuts(cuts) = &picture.view => map(picture, (x, y), cuts),
-        ([x], _) if walked.len() == 2 => walked_lines(picture, x),
+        ([x], _) if walked.len() == 2 => lines(picture, x, &both_ways(rows, x)),
         ([x, y], _) if walked.len() == 2 => walked_maps(picture, (x, y)),
-        ([x], _) => lines(picture, x, None),
-        (_, Some((x, each))) => lines(picture, x, Some(each)),
+        ([x], _) => lines(picture, x, &each_line(rows, x, None)),
+        (_, Some((x, series))) => lines(picture, x, &each_line(rows, x, Some(series))),
         ([x, y], None) => map(picture, (x, y), &[]),
         (other, None) => return Err(NoPicture::Fields(other.len())),
     };
@@ -193,124 +188,85 @@ pub fn sweep_about(grid: &Grid, scene: &Scene, walked: &[Direction], until_settl
     parts.join(", ")
 }
 
-/// The quantity over the field `x`, each value marked with its regime; a line for each value of `series`.
-fn lines(picture: &SweepPicture, x: &str, series: Option<&str>) -> Chart {
+/// The quantity over the field `x`, each value marked with its regime; values between which no line has a
+/// meaning stand in a panel for each line.
+fn lines(picture: &SweepPicture, x: &str, each: &[SeriesLine]) -> Chart {
     let SweepPicture { rows, ranges, .. } = *picture;
     let places = rows.numbers(x).unwrap_or_default();
     let quantity = Quantity::of(rows, picture.quantity);
     // most quantities are never negative; the room below 0 is for the markers
     let up = quantity.axis_of_band(0.05).or_given(ranges.y);
-    let mut panel = Panel::new(swept_axis(rows, x, ranges.x), up);
-    let regimes = rows.words("regime");
-    let rests = |row: usize| quantity.rests && regimes.get(row) == Some(&"rest");
-    let without_value = |at_rest: bool| -> Vec<f64> {
-        let order = ascending(places, |row| !quantity.values[row].is_finite() && rests(row) == at_rest);
-        order.into_iter().map(|row| places[row]).collect()
-    };
-    let (missing, resting) = (without_value(false), without_value(true));
-    panel.layer_if_any(Role::Regime(0), "at rest", Marks::Ticks(resting, Side::Bottom));
-    // many full-height lines would hide everything else
-    let marks_missing = match missing.len() <= MAX_LINES {
-        true => Marks::Verticals(missing),
-        false => Marks::Ticks(missing, Side::Bottom),
-    };
-    panel.layer_if_any(Role::Missing, quantity.missing(rows), marks_missing);
+    let empty = Panel::new(swept_axis(rows, x, ranges.x), up);
     // values between two seeds or two regimes have no meaning
     let joined = !(x == "seed" || x.ends_with(".seed") || quantity.kinds.is_some());
-    let mut all = Vec::new();
-    let mut panels = Vec::new();
-    for line in each_line(rows, series) {
-        let order = ascending(places, |row| line.has(row));
-        if series.is_some() && !joined {
-            // marks without lines are distinguished by panels
-            let mut panel = Panel { heading: line.name, ..panel.clone() };
-            let marks = marks(&order, places, &quantity.values, regimes);
-            panel.draw(Role::Motion, Marks::Regimes(marks, false));
-            panels.push(panel);
-            continue;
+    let panel_of = |lines: &[SeriesLine]| {
+        let mut panel = empty.clone();
+        let all: Vec<usize> = lines.iter().flat_map(|line| line.order.iter().copied()).collect();
+        let missing = all.iter().copied().filter(|row| quantity.cells[*row] == Cell::Missing);
+        panel.layer_if_any(Role::Missing, quantity.missing(rows), spans(places, missing));
+        if let (true, [up, down @ SeriesLine { role: Role::Down, .. }]) = (joined, lines) {
+            let both = up.order.iter().zip(&down.order);
+            let between: Vec<[f64; 3]> =
+                both.map(|(&a, &b)| [places[a], quantity.values[a], quantity.values[b]]).collect();
+            let apart = |row: &[f64; 3]| (panel.y.share(row[1]) - panel.y.share(row[2])).abs() > VISIBLE;
+            if between.iter().any(apart) {
+                panel.layer(Role::Hysteresis, "hysteresis", Marks::Band(between));
+            }
         }
-        let points: Vec<Point> = order.iter().map(|&row| (places[row], quantity.values[row])).collect();
-        if joined {
+        for SeriesLine { order, name, role } in lines {
+            if !joined {
+                panel.heading.clone_from(name);
+                continue;
+            }
             if let Some([low, high]) = &quantity.band {
                 let band = order.iter().map(|&row| [places[row], low[row], high[row]]).collect();
                 panel.layer(Role::Around, "95 % of the draws", Marks::Band(band));
             }
-            let role = if series.is_some() { line.role } else { Role::Joined };
-            panel.layer(role, &line.name, Marks::Path(points));
+            let points = order.iter().map(|&row| (places[row], quantity.values[row])).collect();
+            panel.layer(if name.is_empty() { Role::Joined } else { *role }, name, Marks::Path(points));
         }
-        all.extend(marks(&order, places, &quantity.values, regimes));
-    }
-    if panels.is_empty() {
-        panel.draw(Role::Motion, Marks::Regimes(all, joined));
-        panels.push(panel);
-    }
+        let marks = marks(&all, places, &quantity, panel.y.low, rows);
+        panel.draw(Role::Motion, Marks::Regimes(marks, joined));
+        panel
+    };
+    let panels = each.chunks(if joined { each.len() } else { 1 }).map(panel_of).collect();
     Chart::stack(panels, "", drawn(picture, &[(x, ranges.x)]).table())
 }
 
-/// One of several lines: its rows, its name and its role.
-pub(super) struct SeriesLine<'a> {
-    values: Option<(&'a [f64], f64)>,
+/// One of several lines over a field: its rows in ascending order, its name and its role.
+pub(super) struct SeriesLine {
+    pub order: Vec<usize>,
     pub name: String,
     pub role: Role,
 }
 
-impl SeriesLine<'_> {
-    /// Whether a row belongs to it.
-    pub fn has(&self, row: usize) -> bool {
-        self.values.is_none_or(|(values, value)| values[row] == value)
-    }
-}
-
-/// A line for each value of `series`, or one of all rows.
-pub(super) fn each_line<'a>(rows: &'a Table, series: Option<&str>) -> Vec<SeriesLine<'a>> {
-    let Some(name) = series else {
-        return vec![SeriesLine { values: None, name: String::new(), role: Role::Curve }];
+/// A line over the field `x` for each value of `series`, or one of all rows.
+pub(super) fn each_line(rows: &Table, x: &str, series: Option<&str>) -> Vec<SeriesLine> {
+    let places = rows.numbers(x).unwrap_or_default();
+    let Some(name) = series.filter(|_| rows.rows() > 0) else {
+        return vec![SeriesLine {
+            order: ascending(places, |_| true),
+            name: String::new(),
+            role: Role::Curve,
+        }];
     };
     let values = rows.numbers(name).unwrap_or_default();
     let each = distinct(values);
     let last = each.len().saturating_sub(1).max(1) as f64;
     let line = |(i, (value, name))| {
-        let (values, role) = (Some((values, value)), Role::Step(i as f64 / last));
-        SeriesLine { values, name, role }
+        let (order, role) = (ascending(places, |row| values[row] == value), Role::Step(i as f64 / last));
+        SeriesLine { order, name, role }
     };
     each.iter().copied().zip(of_each(name, &each)).enumerate().map(line).collect()
 }
 
-/// The quantity over the field `x` on the way up and on the way down, each value marked with its regime: as
-/// two lines, or for kinds as two panels.
-fn walked_lines(picture: &SweepPicture, x: &str) -> Chart {
-    let SweepPicture { rows, ranges, .. } = *picture;
-    let places = rows.numbers(x).unwrap_or_default();
-    let quantity = Quantity::of(rows, picture.quantity);
-    let (ways, regimes) = (rows.words(DIRECTION), rows.words("regime"));
-    let mut panel = Panel::new(swept_axis(rows, x, ranges.x), quantity.axis(0.05).or_given(ranges.y));
-    let walks = [(Direction::Up, Role::Curve), (Direction::Down, Role::Down)]
-        .map(|(way, role)| (way.name(), role, ascending(places, |row| ways[row] == way.name())));
-    let data = drawn(picture, &[(x, ranges.x)]).table();
-    let marks_of = |order: &[usize]| marks(order, places, &quantity.values, regimes);
-    if quantity.kinds.is_some() {
-        let panels = walks.map(|(name, _, order)| {
-            let mut panel = Panel { heading: name.to_owned(), ..panel.clone() };
-            panel.draw(Role::Motion, Marks::Regimes(marks_of(&order), false));
-            panel
-        });
-        return Chart::stack(panels.into(), "", data);
-    }
-    let both = walks[0].2.iter().zip(&walks[1].2);
-    let between: Vec<[f64; 3]> =
-        both.map(|(&a, &b)| [places[a], quantity.values[a], quantity.values[b]]).collect();
-    let apart = |row: &[f64; 3]| (panel.y.share(row[1]) - panel.y.share(row[2])).abs() > VISIBLE;
-    if between.iter().any(apart) {
-        panel.layer(Role::Hysteresis, "hysteresis", Marks::Band(between));
-    }
-    for (name, role, order) in &walks {
-        let points = order.iter().map(|&row| (places[row], quantity.values[row])).collect();
-        panel.layer(*role, *name, Marks::Path(points));
-    }
-    for (_, _, order) in &walks {
-        panel.draw(Role::Motion, Marks::Regimes(marks_of(order), true));
-    }
-    Chart::stack(vec![panel], "", data)
+/// The line on the way up, and that on the way down.
+fn both_ways(rows: &Table, x: &str) -> [SeriesLine; 2] {
+    let (places, ways) = (rows.numbers(x).unwrap_or_default(), rows.words(DIRECTION));
+    [(Direction::Up, Role::Curve), (Direction::Down, Role::Down)].map(|(way, role)| {
+        let name = way.name();
+        SeriesLine { order: ascending(places, |row| ways[row] == name), name: name.to_owned(), role }
+    })
 }
 
 /// The quantity over two fields on the way up and on the way down, and the difference of the second from the
@@ -328,7 +284,11 @@ fn walked_maps(picture: &SweepPicture, (x, y): (&str, &str)) -> Chart {
     let unit = if quantity.unit.is_empty() { &quantity.label } else { &quantity.unit };
     let signed = PlotAxis::between(-reach, reach, &format!("down \u{2212} up ({unit})"));
     let colours = match has_kinds {
-        true => Colours::Categories(vec![(Role::Rest, String::new()), (Role::Curve, "differs".to_owned())]),
+        true => Colours::Categories(
+            [(Role::Several, "the same"), (Role::Curve, "differs")]
+                .map(|(role, name)| (role, name.into()))
+                .into(),
+        ),
         false => Colours::Signed(reach),
     };
     let difference = Cells { cells: more, colours, ..up.clone() };

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::axis::{PlotAxis, Ranges};
 use super::cells::{Cell, Cells, Colours};
+use super::chart::Marks;
 use super::drawn::{Drawn, as_numbers};
 use super::figure::Point;
 use super::quantity::Quantity;
@@ -121,15 +122,35 @@ pub(super) fn ascending(values: &[f64], shown: impl Fn(usize) -> bool) -> Vec<us
     order
 }
 
-/// Points of the rows that have values, with their regimes.
+/// Points of these rows of `rows`, with their regimes: those that have values, and at the height `low` those
+/// at rest that have none.
 pub(super) fn marks(
     order: &[usize],
     places: &[f64],
-    values: &[f64],
-    regimes: &[&'static str],
+    quantity: &Quantity,
+    low: f64,
+    rows: &Table,
 ) -> Vec<(Point, &'static str)> {
-    let finite = order.iter().filter(|row| values[**row].is_finite());
-    finite.map(|&row| ((places[row], values[row]), regimes.get(row).copied().unwrap_or(""))).collect()
+    let regimes = rows.words("regime");
+    let height = |row: usize| match (quantity.values[row], quantity.cells[row]) {
+        (value, Cell::Rest) if !value.is_finite() => low,
+        (value, _) => value,
+    };
+    let marks =
+        order.iter().map(|&row| ((places[row], height(row)), regimes.get(row).copied().unwrap_or("")));
+    marks.filter(|mark| mark.0.1.is_finite()).collect()
+}
+
+/// The cells about some of the `places`, those of these rows.
+pub(super) fn spans(places: &[f64], rows: impl Iterator<Item = usize>) -> Marks {
+    let Edges { edges, .. } = &Edges::new(places);
+    let around = |row: usize| {
+        let above = edges.partition_point(|edge| *edge <= places[row]).clamp(1, edges.len() - 1);
+        (edges[above - 1], edges[above])
+    };
+    let mut spans: Vec<Point> = rows.map(around).collect();
+    spans.sort_by(|a, b| a.0.total_cmp(&b.0));
+    Marks::Spans(spans)
 }
 
 /// The cells over the fields `x` and `y` of the rows that are `shown`.
@@ -145,17 +166,10 @@ pub(super) fn cells(
         Edges::new(&values)
     };
     let (across, up) = (of(xs), of(ys));
-    let (regimes, outcomes) = (rows.words("regime"), rows.words("outcome"));
     let mut cells = vec![Cell::Missing; across.values.len() * up.values.len()];
     for row in (0..rows.rows()).filter(|row| shown(*row)) {
         if let (Some(column), Some(level)) = (across.place(xs[row]), up.place(ys[row])) {
-            let value = quantity.values[row];
-            cells[column * up.values.len() + level] = match (regimes.get(row), outcomes.get(row)) {
-                (_, Some(&"")) => Cell::Blank,
-                (Some(&"rest"), _) if quantity.rests || value == 0.0 => Cell::Rest,
-                _ if !value.is_finite() => Cell::Missing,
-                _ => Cell::Value(value),
-            };
+            cells[column * up.values.len() + level] = quantity.cells[row];
         }
     }
     let bar = quantity.bar();

@@ -83,8 +83,8 @@ fn lines(rows: &Table, x: &str, series: Option<&str>, least: &str, ranges: Range
         .collect();
     let melnikov = MELNIKOV.iter().find_map(|name| rows.numbers(name)).unwrap_or_default();
     let ends = bars.iter().flat_map(|bar| [bar[1], bar[2]]);
-    let from_zero = values.iter().copied().chain(ends).chain(melnikov.iter().copied()).chain([0.0]);
-    let upward = PlotAxis::around(from_zero, 0.05, &label(rows, least)).or_given(ranges.y);
+    let shown = values.iter().copied().chain(ends).chain(melnikov.iter().copied());
+    let upward = PlotAxis::from_zero(shown, 0.05, &label(rows, least)).or_given(ranges.y);
     let mut panel = Panel::new(swept_axis(rows, x, ranges.x), upward);
     let (role, name) = match estimated {
         true => (Role::Interval, "95 % interval"),
@@ -97,10 +97,13 @@ fn lines(rows: &Table, x: &str, series: Option<&str>, least: &str, ranges: Range
     if any_gap {
         panel.layer(Role::Curve, "no gap found above", Marks::Points(Vec::new()));
     }
-    for line in each_line(rows, series) {
-        let order = ascending(places, |row| line.has(row));
+    let each = each_line(rows, x, series);
+    for line in &each {
+        let order = &line.order;
         let point = |row: &usize| (places[*row], values[*row]);
-        panel.layer(line.role, &line.name, Marks::Path(order.iter().map(point).collect()));
+        let named = !line.name.is_empty() || melnikov.is_empty();
+        let name = if named { &line.name } else { "threshold" };
+        panel.layer(line.role, name, Marks::Path(order.iter().map(point).collect()));
         let of = |gaps: bool| -> Vec<Point> {
             order.iter().filter(|row| has_gaps(**row) == gaps).map(point).collect()
         };
@@ -108,9 +111,9 @@ fn lines(rows: &Table, x: &str, series: Option<&str>, least: &str, ranges: Range
         panel.layer(Role::Gaps, if any_gap { "gaps above" } else { "" }, Marks::Points(of(true)));
     }
     if !melnikov.is_empty() {
-        for line in each_line(rows, series) {
-            let order = ascending(places, |row| line.has(row) && melnikov[row].is_finite());
-            let points = order.iter().map(|&row| (places[row], melnikov[row])).collect();
+        for line in &each {
+            let points = line.order.iter().map(|&row| (places[row], melnikov[row]));
+            let points = points.filter(|point| point.1.is_finite()).collect();
             panel.layer(Role::Envelope, "Melnikov's threshold", Marks::Path(points));
         }
     }
