@@ -3,8 +3,9 @@
 use eframe::egui::{self, Label, RichText, Ui, UiBuilder, vec2};
 
 use crate::app::session::Session;
-use crate::app::words::numbers::{power, power_unit, three};
+use crate::app::words::numbers::{power, three};
 use crate::dynamics::{Outcome, Summary};
+use crate::output::suited_unit;
 use crate::scene::Transducer;
 
 use super::ViewContext;
@@ -54,7 +55,7 @@ pub fn power_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let mut quantity = TraceQuantity::Power;
     if has_transducer {
         let end = axis_end(context.memory.ranges.follow(context.session).load_power());
-        let (per_watt, unit) = power_unit(end);
+        let (per_watt, unit) = suited_unit("W", std::iter::once(end));
         quantity = TraceQuantity::LoadPower { per_watt: per_watt as u32, unit };
     }
     let below = UiBuilder::new().max_rect(area.with_min_y(top));

@@ -10,10 +10,11 @@ use crate::app::ui::widgets::kind_shapes;
 use crate::app::words::fields::{mechanism_name, name_and_unit};
 use crate::app::words::meanings::{explained, meaning};
 use crate::app::words::numbers::{
-    UNKNOWN, decimals_for, exact, length_unit, power_unit, shown, three, unbroken, with_minus,
+    UNKNOWN, decimals_for, exact, length_unit, shown, three, unbroken, with_minus,
 };
 use crate::app::words::status::{Kind, mm_beside, seconds, speed, threshold};
 use crate::dynamics::{Outcome, Summary};
+use crate::output::suited_unit;
 use crate::scene::{Damping, Excitation, FieldPath, Scene, Start, Transducer, numeric_fields};
 
 use super::ViewContext;
@@ -294,7 +295,7 @@ fn number_rows(columns: &[Column], now: usize, with_threshold: bool) -> Vec<Row>
     if columns.iter().any(has_load) {
         let watt = |run: &Summary| run.harvest?.mean_load_power;
         let all = columns.iter().filter_map(|column| watt(column.settled()?));
-        let (factor, unit) = power_unit(all.fold(0.0, f64::max));
+        let (factor, unit) = suited_unit("W", all);
         let text = |_: &Card, run: &Summary| watt(run).map(|watt| three(watt * factor));
         rows.push(row("load power", unit, &text, &|run| Some(watt(run)? * factor), &decimals_for));
     }

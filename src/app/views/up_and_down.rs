@@ -6,10 +6,10 @@ use crate::app::session::Session;
 use crate::app::session::explore::WalkQuantity;
 use crate::app::session::map::label;
 use crate::app::ui::widgets::{choices_ui, tell};
-use crate::app::words::numbers::{power, power_unit, three};
+use crate::app::words::numbers::{power, three};
 use crate::dynamics::Regime;
 use crate::numeric::short;
-use crate::output::{Chart, Marks, Panel, PlotAxis, Role};
+use crate::output::{Chart, Marks, Panel, PlotAxis, Role, suited_unit};
 use crate::scene::{FieldPath, SweepAxis, column_names};
 use crate::study::{Direction, Table, Visit};
 
@@ -167,7 +167,7 @@ fn picture_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axis: &SweepAxis, area
     let of_field = walks.found.question().is_some_and(|question| question.axis.field == axis.field);
     let branches = branches(if of_field { parts } else { &[] });
     let powers = branches.iter().flatten().map(|visit| load_power(visit));
-    let (per_watt, unit) = power_unit(powers.filter(|power| power.is_finite()).fold(0.0, f64::max));
+    let (per_watt, unit) = suited_unit("W", powers);
     let shown = (quantity, per_watt);
     let vertical = match quantity {
         WalkQuantity::Strobes => "displacement once a period (mm)".to_owned(),

@@ -89,17 +89,9 @@ pub fn three(value: f64) -> String {
     format!("{value:.0$}", numeric::decimals(size, 3))
 }
 
-/// Powers in W that are given in mW, wherever they stand.
-const MILLIWATTS: std::ops::Range<f64> = 1e-5..1.0;
-
-/// The factor from W to the unit that suits powers up to `largest` in W, and the name of that unit.
-pub fn power_unit(largest: f64) -> (f64, &'static str) {
-    if MILLIWATTS.contains(&largest) { (1e3, "mW") } else { suited_unit("W", std::iter::once(largest)) }
-}
-
 /// A power in W as text with a unit.
 pub fn power(watt: f64) -> String {
-    let (factor, unit) = power_unit(watt.abs());
+    let (factor, unit) = suited_unit("W", std::iter::once(watt.abs()));
     format!("{} {unit}", three(watt * factor))
 }
 

@@ -30,7 +30,8 @@ fn differences(model: &Model, seconds: f64, start: MapState) -> Jacobian {
         let si = [start.x, start.v, start.electrical];
         let start = std::array::from_fn(|i| (dd(si[i]) + by[i]) * dd(units[i]));
         let span = map.span(&clock, (0.0, 1.0));
-        with_drive!(&drive, drive => passage::trace(&map.model, &equation, clock, drive, start, span)).end
+        with_drive!(&drive, drive => passage::trace(&map.model, &equation, clock, drive, start, span, None))
+            .end
     };
     let zero = dd(0.0);
     let slope = |j: usize| -> [f64; 3] {

@@ -174,6 +174,9 @@ fn without_value(name: &str) -> &'static str {
     }
 }
 
+/// Powers in W that are given in mW, wherever they stand.
+const MILLIWATTS: std::ops::Range<f64> = 1e-5..1.0;
+
 /// The factor from the SI unit `unit` to a unit in which these values are short numbers, and its name.
 /// Lengths and speeds below 2 are shown in thousandths.
 pub fn suited_unit(unit: &'static str, values: impl Iterator<Item = f64>) -> (f64, &'static str) {
@@ -189,6 +192,7 @@ pub fn suited_unit(unit: &'static str, values: impl Iterator<Item = f64>) -> (f6
         "m" if greatest < 2.0 => (1e3, "mm"),
         "m/s" if greatest < 2.0 => (1e3, "mm/s"),
         "J" => prefixed([(1.0, "J"), (1e3, "mJ"), (1e6, "\u{b5}J"), (1e9, "nJ"), (1e12, "pJ")]),
+        "W" if MILLIWATTS.contains(&greatest) => (1e3, "mW"),
         "W" => prefixed([(1.0, "W"), (1e3, "mW"), (1e6, "\u{b5}W"), (1e9, "nW"), (1e12, "pW")]),
         "Pa" if greatest >= 1e6 => (1e-6, "MPa"),
         "Pa" if greatest >= 1e3 => (1e-3, "kPa"),
