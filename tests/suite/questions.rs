@@ -51,6 +51,7 @@ fn a_fault_names_the_argument_and_its_value() {
     };
     let uncertain = |law: &str| Sweep::over("mass_g", 15.0..=16.0, 2).uncertain(law);
     let sampled = |sampling| scene.record(&sampling, None, &Progress::none());
+    let beyond = Curve { positions: Some(vec![99.0]) }.run(&Simulation::preset("paper").unwrap());
     for (found, expected) in [
         (fault(branch("mass_g", 1.0, 1.0)), ("range", "1:1")),
         (fault(branch("mass", 1.0, 2.0)), ("field", "mass")),
@@ -64,7 +65,7 @@ fn a_fault_names_the_argument_and_its_value() {
         (fault(identify(WhatToIdentify::Force, [None, Some(2.0)])), ("to", "2")),
         (fault(sampled(Sampling::Every(0.0))), ("dt", "0")),
         (fault(sampled(Sampling::At(vec![99.0]))), ("at", "99")),
-        (fault(Curve { positions: Some(vec![99.0]) }.run(&scene)), ("positions", "99")),
+        (fault(beyond), ("positions", "99")),
     ] {
         assert_eq!((&*found.0, &*found.1), expected);
     }

@@ -183,10 +183,10 @@ fn one_direction_is_said_to_be_one_and_too_little_is_refused() {
 
 #[test]
 fn a_curve_has_as_many_points_as_its_samples_allow() {
-    let (x, measured) = pull((1e-6, 1e-4), 400, 7);
+    let (x, measured) = pull((1e-6, 1e-4), 200, 7);
     let found = force(&x, &measured, None).unwrap();
     let points = found.rows.rows();
-    assert!((50..FORCE_POINTS).contains(&points), "{points}");
+    assert!((30..FORCE_POINTS).contains(&points), "{points}");
     assert_eq!(force(&x, &measured, Some(points)), Ok(found));
     for more in points + 1..=FORCE_POINTS {
         assert_eq!(force(&x, &measured, Some(more)), Err(Unidentified::FewSamples(x.len(), more)));
