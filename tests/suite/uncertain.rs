@@ -358,7 +358,7 @@ fn uncertain_inputs_that_cannot_be_are_refused() {
         ("stops.restitution", &["--uncertain stops.restitution", "FIELD=VALUE+-SIGMA"][..]),
         ("stops.restitution=0.02", &["FIELD=VALUE+-SIGMA"]),
         ("stops.restitution=+-x", &["FIELD=VALUE+-SIGMA"]),
-        ("stops.restitution=+-nan", &["FIELD=VALUE+-SIGMA"]),
+        ("stops.restitution=+-nan", &["not finite", "give a number from 0 up"]),
         ("stops.restitution=x+-0.1", &["--uncertain stops.restitution=x+-0.1", "`x` is not a number"]),
         ("stops.restitution=1.2+-0.1", &["--uncertain stops.restitution=1.2+-0.1", "0 to 1"]),
         ("stops.restitution=+--0.1", &["-0.1 is negative", "give 0 or more"]),
