@@ -4,7 +4,7 @@ use eframe::egui::{self, Align2, CursorIcon, Painter, Rect, Sense, Shape, Stroke
 
 use crate::app::session::Session;
 use crate::app::session::sliders::reach;
-use crate::app::ui::style::GRAB;
+use crate::app::ui::style::{BALL, GRAB};
 use crate::app::ui::widgets::arrows;
 use crate::app::words::fields::info;
 use crate::app::words::numbers::{decimal, decimals, shown, with_minus};
@@ -44,9 +44,9 @@ fn shown_stops(session: &Session, drawn: Drawn) -> ([Option<f64>; 2], bool) {
     (then, are_equal(then[0], present[0]) && are_equal(then[1], present[1]))
 }
 
-/// The displacement of a stop in mm, to the resolution of a drag.
+/// The displacement of a stop in mm, with the decimals of its field.
 fn limit_number(session: &Session, mm: f64) -> String {
-    with_minus(&shown(mm, decimals(FINE * key_step(session))))
+    with_minus(&shown(mm, decimals(key_step(session))))
 }
 
 /// Writes the travel limits over `rect` beside the faces of the stops; what is drawn is `taken`.
@@ -62,8 +62,8 @@ pub(super) fn travel_limits(painter: &Painter, context: &ViewContext<'_>, rect: 
         taken.lines.push(vec![pos2(*x, rect.top()), pos2(*x, rect.bottom())]);
     }
     for (x, side, text) in &limits {
-        // outside of the wall, where the mass does not come
-        let places = [(WALL + 4.0, -side), (-4.0, *side)].map(|(aside, towards)| {
+        // outside of the wall, clear of the mass at it
+        let places = [(BALL + 5.0, -side), (-4.0, *side)].map(|(aside, towards)| {
             let align = if towards > 0.0 { Align2::RIGHT_TOP } else { Align2::LEFT_TOP };
             (text.as_str(), pos2(x + side * aside, rect.top() + 4.0), align)
         });

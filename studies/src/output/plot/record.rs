@@ -35,7 +35,7 @@ impl Series {
     /// The points of a line next to its first and its last zero, between them.
     fn zeros(&self) -> Option<(f64, f64)> {
         let zeros = || self.points.windows(2).filter(|pair| pair[0].1 * pair[1].1 <= 0.0);
-        Some((zeros().next()?[1].0, zeros().last()?[0].0))
+        Some((zeros().next()?[1].0, zeros().next_back()?[0].0))
     }
 }
 
