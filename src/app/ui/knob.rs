@@ -365,7 +365,10 @@ mod tests {
             assert_eq!(parsed(text), Err(format!("“{text}” {why}")));
         }
         assert_eq!(parsed(""), Err("No number was typed: amplitude stays 0.9 g.".to_owned()));
-        assert_eq!(parsed("1e9"), Err("1e9 g was not taken: amplitude may be -10 to 10 g.".to_owned()));
+        assert_eq!(
+            parsed("1e9"),
+            Err("1e9 g was not taken: amplitude may be \u{2212}10 to 10 g.".to_owned())
+        );
         // infinity is accepted if it is in the range
         assert!(parsed("inf").is_err());
         let load = Knob { typed: (0.0, f64::INFINITY), ..knob() };
