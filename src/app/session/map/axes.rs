@@ -12,12 +12,16 @@ const AMPLITUDES_G: (f64, f64, f64) = (0.0, 2.0, 0.02);
 /// Number of steps of an axis whose range is derived from the present value.
 const STEPS: f64 = 40.0;
 
+/// Where the runs of a map start: at rest, or where the scene does if nothing shakes it.
+pub fn start(scene: &Scene) -> Start {
+    if scene.excitation == Excitation::None { scene.start } else { Start::Rest }
+}
+
 /// The scene that a map is made of, which has the fields of the axes: from rest, or from its start where
 /// nothing shakes it, and with the stops `when_on` if it has none and an axis is over a field of the stops.
 pub fn ground(scene: &Scene, when_on: Stops, axes: &[SweepAxis]) -> Scene {
-    let is_still = scene.excitation == Excitation::None;
     let mut ground = Scene {
-        start: if is_still { scene.start } else { Start::Rest },
+        start: start(scene),
         title: String::new(),
         notes: String::new(),
         sweep: Vec::new(),

@@ -21,7 +21,7 @@ use crate::scene::{Axis, FieldPath, Scene, Stops, SweepAxis};
 use crate::study::{Cell, Grid, RMS_VELOCITY, STANDARD_COLUMNS, SummaryField, Sweep, SweepOptions, Task};
 
 pub use crate::numeric::short;
-pub use axes::{ground, is_amplitude, label, over, part};
+pub use axes::{ground, is_amplitude, label, over, part, start};
 pub use cells::Map;
 
 /// Time in s without a change after which a map is begun in the middle of a gesture.

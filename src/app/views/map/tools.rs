@@ -3,12 +3,12 @@
 use eframe::egui::{self, ComboBox, Rect, RichText, Ui, UiBuilder};
 
 use crate::app::panels::controls;
-use crate::app::session::map::Mapping;
+use crate::app::session::map::{Mapping, start};
 use crate::app::ui::knob::refuse;
 use crate::app::ui::widgets::{choices_ui, tell};
 use crate::app::words::columns::{COLUMNS, title};
 use crate::output::words_of;
-use crate::scene::{Excitation, Start, SweepAxis};
+use crate::scene::{Start, SweepAxis};
 use crate::study::SummaryField;
 
 use super::super::axes::{field_ui, range_id, range_row_ui};
@@ -60,10 +60,9 @@ pub fn tools_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
 
 /// From where the runs of the map start.
 fn start_in_words(context: &ViewContext<'_>) -> &'static str {
-    let scene = context.session.scene();
-    match scene.excitation == Excitation::None && scene.start != Start::Rest {
-        true => "from its start",
-        false => "from rest",
+    match start(context.session.scene()) {
+        Start::Rest => "from rest",
+        Start::At { .. } => "from the scene's start",
     }
 }
 
