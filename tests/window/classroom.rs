@@ -6,6 +6,7 @@ use egui_kittest::kittest::Queryable as _;
 use interwell::app::ui::settings::Settings;
 use interwell::app::views::View;
 use interwell::app::window::Command;
+use interwell::app::words::lesson::bold_words;
 use interwell::app::words::meanings::{GLOSSARY, UNDERLINED, meaning};
 use interwell::scene::lesson::{LESSONS, Step};
 
@@ -37,6 +38,50 @@ fn the_strip_of_a_lesson_has_one_height_from_its_first_step_to_its_last() {
             }
         }
     }
+}
+
+#[test]
+fn the_first_view_that_a_step_names_is_in_front() {
+    let named = |harness: &Shown| {
+        let lesson = harness.state().lesson().filter(|lesson| !lesson.is_covering())?;
+        let words = bold_words(lesson.step().text()).collect::<Vec<_>>();
+        let views = words
+            .iter()
+            .filter_map(|word| View::ALL.into_iter().find(|view| view.name().to_lowercase() == *word));
+        views.into_iter().find(|view| harness.state().tiling.shows(*view))
+    };
+    let mut count = 0;
+    for entry in LESSONS {
+        let mut harness = opened(entry.name, PROJECTED);
+        while let Some(number) = harness.state().lesson().map(|lesson| lesson.number()) {
+            harness.run_steps(2);
+            if let Some(view) = named(&harness) {
+                count += 1;
+                let place = harness.state().tiling.place_of(view);
+                assert!(place.is_some(), "{} {number}: {}", entry.name, view.name());
+            }
+            go_on(&mut harness);
+        }
+    }
+    assert!(count > 15, "{count}");
+}
+
+#[test]
+fn where_nothing_shakes_the_mass_a_step_plays_its_motion_from_the_start() {
+    let mut harness = opened("two-wells-and-a-hill", WIDE);
+    let time = |harness: &Shown| harness.state().session.player.time();
+    harness.state_mut().session.player.speed = 1.0;
+    harness.run_steps(60);
+    let before = time(&harness);
+    go_on(&mut harness);
+    assert!(before > 3.0 && time(&harness) < 0.5, "{before} {}", time(&harness));
+    // a motion that is shaken goes on
+    let mut harness = opened("letting-go-is-not-crossing", WIDE);
+    harness.state_mut().session.player.speed = 1.0;
+    harness.run_steps(60);
+    let before = time(&harness);
+    go_on(&mut harness);
+    assert!(before > 0.3 && time(&harness) >= before, "{before} {}", time(&harness));
 }
 
 #[test]

@@ -142,6 +142,32 @@ fn a_stop_dragged_in_the_force_curve_is_one_step() {
 }
 
 #[test]
+fn a_stop_that_is_taken_by_its_side_moves_as_far_as_the_hand() {
+    let limit =
+        |harness: &Harness<'static, Window>| harness.state().session.scene().stops.travel_limit_mm().unwrap();
+    let moved = [-6.0, 0.0, 6.0].map(|aside| {
+        let mut harness = window("paper", WIDE);
+        for view in View::ALL {
+            command(&mut harness, Command::Show(view, view == View::Well));
+        }
+        let before = limit(&harness);
+        let wall = harness.get_by_role_and_label(Role::Slider, "right stop").rect();
+        let at = wall.center() + eframe::egui::vec2(aside, 0.0);
+        harness.drag_at(at);
+        harness.run_steps(2);
+        for step in 1..=5 {
+            harness.hover_at(at + eframe::egui::vec2(4.0 * step as f32, 0.0));
+            harness.run_steps(1);
+        }
+        harness.drop_at(at + eframe::egui::vec2(20.0, 0.0));
+        harness.run_steps(2);
+        limit(&harness) - before
+    });
+    // to the resolution of a drag
+    assert!(moved[1] > 0.2 && moved.iter().all(|by| (by - moved[1]).abs() < 0.011), "{moved:?}");
+}
+
+#[test]
 fn the_energy_view_says_what_the_ledger_says() {
     let mut harness = study("paper", [1920.0, 1080.0]);
     harness.state_mut().session.player.speed = 1.0;

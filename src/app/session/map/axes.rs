@@ -182,6 +182,14 @@ mod tests {
     }
 
     #[test]
+    fn runs_start_at_rest_where_the_mass_is_shaken() {
+        let scene = |name: &str| Document::load(name).unwrap().scene;
+        let (shaken, falling) = (scene("paper"), scene("bouncing-ball"));
+        assert_eq!(ground(&Scene { start: falling.start, ..shaken }, ON, &[]).start, Start::Rest);
+        assert!(falling.start != Start::Rest && ground(&falling, ON, &[]).start == falling.start);
+    }
+
+    #[test]
     fn every_axis_that_is_offered_can_be_swept() {
         for preset in crate::scene::PRESETS {
             let document = Document::load(preset.name).unwrap();
