@@ -134,10 +134,8 @@ pub(super) fn readout_ui(
         ui.horizontal_wrapped(|ui| {
             (ui.spacing_mut().item_spacing, ui.spacing_mut().interact_size.y) = (vec2(14.0, 0.0), 0.0);
             for part in [each(0), each(1), last] {
-                ui.add(
-                    Label::new(RichText::new(with_minus(&part)).font(style.small()).color(style.ink()))
-                        .extend(),
-                );
+                let text = RichText::new(with_minus(&part)).font(style.small()).color(style.ink());
+                ui.add(Label::new(text).extend());
             }
         });
     });

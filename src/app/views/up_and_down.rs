@@ -253,11 +253,8 @@ fn differ(a: &Visit, b: &Visit, height: f64) -> bool {
     let crosses = |visit: &Visit| visit.summary.regime == Regime::Interwell;
     let stays = |visit: &Visit| visit.summary.crossings == 0;
     let is_irregular = |visit: &Visit| visit.summary.settled == Some(false) && !visit.summary.is_transient();
-    let one_of_each =
-        |is: &dyn Fn(&Visit) -> bool, other: &dyn Fn(&Visit) -> bool| is(a) && other(b) || other(a) && is(b);
-    one_of_each(&crosses, &stays)
-        || one_of_each(&repeats, &is_irregular)
-        || repeats(a) && repeats(b) && rms_differs
+    let are_of_two_kinds = |a: &Visit, b: &Visit| crosses(a) && stays(b) || repeats(a) && is_irregular(b);
+    are_of_two_kinds(a, b) || are_of_two_kinds(b, a) || repeats(a) && repeats(b) && rms_differs
 }
 
 /// The stroboscopic displacements of a run that are drawn: those of one period if it repeats.

@@ -18,8 +18,10 @@ const COLUMNS: usize = 4;
 const BAR: f64 = 0.5;
 /// Smallest height of a row relative to a panel of height 1.
 const ROW: f64 = 0.2;
-/// Height of a line of a name, and the letters that a line has in a narrow picture.
-const LINE: (f64, usize) = (0.14, 14);
+/// Height of a line of a name relative to a panel of height 1.
+const LINE: f64 = 0.14;
+/// Letters of a name that a line has in a narrow picture.
+const LETTERS: usize = 14;
 
 /// Position of the marker of a regime, and smallest position of its number, as shares of the axis.
 const MARKED: (f64, f64) = (0.06, 0.12);
@@ -203,8 +205,8 @@ fn panel(rated: &[Rated], frequency_hz: f64, shown: &Shown, up: &PlotAxis) -> Pa
     let scaled = |value: f64| if shown.is_band { elementary::log10(value) } else { value };
     let (low, high) = (across.low, across.high);
     let best = shown.best();
-    let lines = up.ticks.iter().map(|tick| tick.1.chars().count().div_ceil(LINE.1)).max();
-    let row = (LINE.0 * lines.unwrap_or(0) as f64).max(ROW);
+    let lines = up.ticks.iter().map(|tick| tick.1.chars().count().div_ceil(LETTERS)).max();
+    let row = (LINE * lines.unwrap_or(0) as f64).max(ROW);
     let height = (row * rated.len() as f64).max(1.0);
     let mut panel = Panel { height, heading: shown.title.to_owned(), ..Panel::new(across, up.clone()) };
     let bars = |chosen: &dyn Fn(usize, &Entry) -> bool| -> Vec<[f64; 3]> {
