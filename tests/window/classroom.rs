@@ -11,6 +11,7 @@ use interwell::app::words::meanings::{GLOSSARY, UNDERLINED, meaning};
 use interwell::scene::lesson::{LESSONS, Step};
 
 use crate::lessons::{OWN, Shown, go_on, go_to, is_anywhere, number, opened, opened_own, until, written};
+use crate::pictures::axes;
 use crate::support::{
     LONG, PROJECTED, WIDE, click_on, command, is_painted, painted, press, press_with_ctrl, window_with,
 };
@@ -82,6 +83,24 @@ fn where_nothing_shakes_the_mass_a_step_plays_its_motion_from_the_start() {
     let before = time(&harness);
     go_on(&mut harness);
     assert!(before > 0.3 && time(&harness) >= before, "{before} {}", time(&harness));
+}
+
+/// Lesson 8 takes the preload from 2.7 to 1.0 mm, and the hill is drawn as much lower.
+#[test]
+fn the_axis_of_energy_holds_from_step_to_step_of_a_lesson() {
+    let mut harness = opened("design-it", WIDE);
+    let millijoule = |harness: &Shown| {
+        let [up, _] = axes(harness, "energy (mJ)");
+        (up[0].1 - up[1].1) / (up[0].0 - up[1].0) as f32
+    };
+    harness.run_steps(40);
+    let before = millijoule(&harness);
+    assert!(go_to(&mut harness, |step| matches!(step, Step::Predict { .. })));
+    go_on(&mut harness);
+    harness.run_steps(40);
+    assert!(harness.state().session.number("mechanism.preload_mm") == Some(1.0));
+    let after = millijoule(&harness);
+    assert!((after / before - 1.0).abs() < 0.02, "{before} {after}");
 }
 
 #[test]

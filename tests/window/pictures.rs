@@ -7,7 +7,6 @@ use egui_kittest::Harness;
 use interwell::app::views::View;
 use interwell::app::window::{Command, Window};
 use interwell::scene::Excitation;
-use interwell::scene::lesson::Step;
 
 use crate::support::{PROJECTED, WIDE, command, is_painted, painted, window};
 
@@ -41,7 +40,7 @@ fn is_title(text: &(String, Rect, Rect), name: &str) -> bool {
 
 /// The numbers of the vertical axis of the picture that is called so at its side, with their heights; and
 /// those of the axis below it.
-fn axes(harness: &Harness<'static, Window>, name: &str) -> [Vec<(f64, f32)>; 2] {
+pub fn axes(harness: &Harness<'static, Window>, name: &str) -> [Vec<(f64, f32)>; 2] {
     let all = painted(harness);
     let title =
         all.iter().find(|text| is_title(text, name)).unwrap_or_else(|| panic!("{name}: {all:?}")).clone();
@@ -458,24 +457,6 @@ fn a_force_on_the_mass_is_drawn_in_newtons_and_moves_no_base() {
     let expected = session.shown().mass() * session.player.state().base_accel.abs();
     assert!((newtons - expected).abs() <= 0.005 + 1e-9, "{newtons}, not {expected}");
     assert!(!is_painted(&harness, "base"), "nothing is said of a base that stands still");
-}
-
-/// Lesson 8 takes the preload from 2.7 to 1.0 mm, and the hill is drawn as much lower.
-#[test]
-fn the_axis_of_energy_holds_from_step_to_step_of_a_lesson() {
-    let mut harness = crate::lessons::opened("design-it", WIDE);
-    let millijoule = |harness: &Harness<'static, Window>| {
-        let [up, _] = axes(harness, "energy (mJ)");
-        (up[0].1 - up[1].1) / (up[0].0 - up[1].0) as f32
-    };
-    harness.run_steps(40);
-    let before = millijoule(&harness);
-    assert!(crate::lessons::go_to(&mut harness, |step| matches!(step, Step::Predict { .. })));
-    crate::lessons::go_on(&mut harness);
-    harness.run_steps(40);
-    assert!(harness.state().session.number("mechanism.preload_mm") == Some(1.0));
-    let after = millijoule(&harness);
-    assert!((after / before - 1.0).abs() < 0.02, "{before} {after}");
 }
 
 /// The numbers of the travel limits stand outside of the walls, where the mass does not cover them.
