@@ -68,11 +68,9 @@ pub fn column_ui(ui: &mut Ui, session: &mut Session, more: &mut bool) {
         fields_ui(ui, session, &LOAD, width);
     }
     ui.add_space(14.0);
-    let name = RichText::new(if *more { "Less" } else { "More" }).strong();
-    ui.toggle_value(more, name).on_hover_text(MORE_HOVER);
-    if *more {
-        fields_below_ui(ui, session, width);
-    }
+    let header = egui::CollapsingHeader::new(RichText::new("More").strong()).open(Some(*more));
+    let header = header.show_unindented(ui, |ui| fields_below_ui(ui, session, width));
+    *more ^= header.header_response.on_hover_text(MORE_HOVER).clicked();
 }
 
 /// What opens beside the views in a compact window, whose row has no room for the frequency and the load.

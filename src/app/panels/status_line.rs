@@ -1,10 +1,10 @@
 //! Status line under the menu: what the mass does, with its accuracy beside it; its announcements.
 
-use eframe::egui::{self, Id, RichText, Role, Sense, Ui, Vec2, accesskit::Live};
+use eframe::egui::{self, FontId, Id, RichText, Role, Sense, Ui, Vec2, accesskit::Live};
 
 use crate::app::session::{OFFER_TO_STOP, Session};
-use crate::app::ui::style::{SMALL, STATUS, Style, strong_family};
-use crate::app::ui::widgets::{fitting, kind_shapes, parts_ui};
+use crate::app::ui::style::{BODY, COMPACT_BELOW, SMALL, STATUS, Style, strong_family};
+use crate::app::ui::widgets::{fitting, kind_shapes, parts_ui, tell};
 use crate::app::words::kind::Kind;
 use crate::app::words::meanings::meaning;
 use crate::app::words::status::Sentence;
@@ -49,18 +49,26 @@ pub fn status_ui(ui: &mut Ui, session: &mut Session, announcer: &mut Announcer, 
         let (kind, color) = (sentence.kind, style.kind(sentence.kind));
         ui.painter().extend(kind_shapes(kind, rect.center(), STATUS * 0.42, color));
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            stop_ui(ui, session);
-            if has_column {
-                beside_ui(ui, session, style);
+            match has_column {
+                true => beside_ui(ui, session, style),
+                false => stop_ui(ui, session),
             }
             ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
                 let text = sentence.whole();
-                let room = ui.available_size();
-                // the name of the motion is read first
+                // the name of the motion is read first, in larger letters where there is room
                 let (name, rest) = text.split_at(text.find(':').map_or(0, |at| at + 1));
+                let is_compact = ui.ctx().content_rect().width() < COMPACT_BELOW;
+                let (large, name, rest) = if is_compact { ("", name, rest) } else { (name, "", rest.trim()) };
+                if !large.is_empty() {
+                    let font = FontId::new(STATUS, strong_family());
+                    let galley = ui.painter().layout_no_wrap(large.to_owned(), font, style.ink());
+                    let (place, _) = ui.allocate_exact_size(galley.size(), Sense::hover());
+                    ui.painter().galley(place.min, galley, style.ink());
+                }
                 let parts = [(name, strong_family()), (rest, egui::FontFamily::Proportional)];
-                let (size, _) = fitting(ui, &parts, room, STATUS);
+                let (size, _) = fitting(ui, &parts, ui.available_size(), BODY);
                 let label = parts_ui(ui, &parts, size);
+                tell(&label, Role::Label, &text);
                 if label.hovered() {
                     let kind = meaning(&sentence.text).map_or_else(String::new, |text| format!("{text}\n\n"));
                     let trust = session.trust().filter(|_| !has_column);
@@ -73,7 +81,7 @@ pub fn status_ui(ui: &mut Ui, session: &mut Session, announcer: &mut Announcer, 
     });
 }
 
-/// Offers to cancel background work that has taken long.
+/// Offers to cancel background work that has taken long, in a link.
 fn stop_ui(ui: &mut Ui, session: &mut Session) {
     let Some(worked) = session.working() else { return };
     if worked < OFFER_TO_STOP {
@@ -82,32 +90,35 @@ fn stop_ui(ui: &mut Ui, session: &mut Session) {
     }
     let hover = "The background has worked for so long on what this settles to, what it would take to cross \
                  and how accurate the motion is. The motion goes on without it; the next change asks anew.";
-    let text = format!("Stop computing ({} s)", worked.as_secs());
+    let text = RichText::new(format!("Stop computing ({} s)", worked.as_secs())).size(SMALL);
     ui.ctx().request_repaint_after_secs(1.0);
-    if ui.button(text).on_hover_text(hover).clicked() {
+    if ui.link(text).on_hover_text(hover).clicked() {
         session.stop_working();
     }
 }
 
-/// The column beside the sentence: how accurate the motion is and, below, whether the mass was moved.
-fn beside_ui(ui: &mut Ui, session: &Session, style: &Style) {
+/// The column beside the sentence, which is as wide whatever it says: how accurate the motion is, whether the
+/// mass was moved, and the offer to stop computing.
+fn beside_ui(ui: &mut Ui, session: &mut Session, style: &Style) {
     let trust = session.trust();
     let moved = session.was_set_on_stop().then_some("The mass was set on the stop");
-    if trust.is_none() && moved.is_none() {
-        return;
-    }
-    let height = if trust.is_some() && moved.is_some() { 2.0 * LINE } else { LINE };
-    ui.allocate_ui_with_layout(Vec2::new(BESIDE, height), egui::Layout::top_down(egui::Align::Max), |ui| {
-        ui.spacing_mut().item_spacing.y = 0.0;
-        let mut line = |text: &str| {
+    let offers_stop = session.working().is_some_and(|worked| worked >= OFFER_TO_STOP);
+    let count = u8::from(trust.is_some()) + u8::from(moved.is_some()) + u8::from(offers_stop);
+    let size = Vec2::new(BESIDE, LINE * f32::from(count.clamp(1, 2)));
+    ui.allocate_ui_with_layout(size, egui::Layout::top_down(egui::Align::Max), |ui| {
+        ui.set_min_width(BESIDE);
+        (ui.spacing_mut().item_spacing.y, ui.spacing_mut().interact_size.y) = (0.0, LINE);
+        let line = |ui: &mut Ui, text: &str| {
             ui.add(egui::Label::new(RichText::new(text).size(SMALL).color(style.faint())).extend())
         };
+        stop_ui(ui, session);
         if let Some((short, long)) = trust {
             let meaning = meaning(&short).map_or_else(String::new, |meaning| format!("{meaning}\n\n"));
-            line(&short).on_hover_text(format!("{meaning}{long}"));
+            line(ui, &short).on_hover_text(format!("{meaning}{long}"));
         }
-        if let Some(moved) = moved {
-            line(moved).on_hover_text("A stop that was moved or switched on would have gone through it.");
+        if let Some(moved) = moved.filter(|_| count < 3) {
+            let hover = "A stop that was moved or switched on would have gone through it.";
+            line(ui, moved).on_hover_text(hover);
         }
     });
 }
@@ -118,7 +129,7 @@ pub fn covered_ui(ui: &mut Ui, by_lesson: bool) {
         true => "Covered until you choose: what do you expect?",
         false => "Covered: what do you expect? C shows it again.",
     };
-    ui.horizontal_centered(|ui| ui.label(RichText::new(text).size(STATUS)));
+    ui.horizontal_centered(|ui| ui.label(RichText::new(text).heading().size(STATUS)));
 }
 
 /// Time in s for which a sentence has to stay unchanged before it is spoken.

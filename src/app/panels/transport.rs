@@ -92,7 +92,7 @@ pub fn transport_ui(ui: &mut Ui, session: &mut Session, style: &Style, covered: 
 /// Height in points of the time above a note.
 const ONE_LINE: f32 = 17.0;
 
-/// The time and, below it, the note.
+/// The time and, below it, the note or else the length of the run.
 fn two_lines_ui(ui: &mut Ui, session: &mut Session, style: &Style, (note, covered): (&str, bool)) {
     ui.set_width(TIME.1);
     ui.spacing_mut().item_spacing.y = 0.0;
@@ -104,8 +104,15 @@ fn two_lines_ui(ui: &mut Ui, session: &mut Session, style: &Style, (note, covere
         to_present_ui(ui, session, "to now");
     });
     if !(note.is_empty() && skip_ui(ui, session, covered)) {
-        note_ui(ui, style, note);
+        let length = format!("of {}", length_words(session));
+        note_ui(ui, style, if note.is_empty() { &length } else { note });
     }
+}
+
+/// The length of the run, which may have been passed.
+fn length_words(session: &Session) -> String {
+    let end = session.end_of_run().max(session.player.watch().time());
+    if end < 10.0 { format!("{end:.1} s") } else { format!("{end:.0} s") }
 }
 
 fn clock_ui(ui: &mut Ui, session: &Session) {
@@ -184,11 +191,11 @@ fn length_of_bar(run: f64, seen: f64) -> f64 {
     length.max(seen)
 }
 
-/// The run as a bar, as far as it has been seen with signs of its events, and its length. Dragging, or the
-/// arrow keys while the bar has the focus, shows an earlier time. With a `note` there is a row below the bar:
-/// the meanings of the signs, and the note.
+/// The run as a bar, as far as it has been seen with signs of its events. Dragging, or the arrow keys while
+/// the bar has the focus, shows an earlier time. With a `note` the length of the run stands at the end of the
+/// bar, and there is a row below it: the meanings of the signs, and the note.
 fn scrub_ui(ui: &mut Ui, session: &mut Session, style: &Style, covered: bool, note: Option<&str>) {
-    let width = (ui.available_width() - LENGTH).max(40.0);
+    let width = (ui.available_width() - if note.is_some() { LENGTH } else { 0.0 }).max(40.0);
     let height = if note.is_some() { SIGNS + BELOW } else { SIGNS };
     let (whole, _) = ui.allocate_exact_size(vec2(width, height), Sense::hover());
     let rect = whole.with_max_y(whole.top() + SIGNS);
@@ -216,14 +223,15 @@ fn scrub_ui(ui: &mut Ui, session: &mut Session, style: &Style, covered: bool, no
             present[row(event.kind)] = true;
         }
     }
-    let length = if end < 10.0 { format!("{end:.1} s") } else { format!("{end:.0} s") };
     let mut at = pos2(bar.right() + 12.0, bar.center().y);
     if !is_whole {
         let dots = [5.0, 10.0, 15.0].map(|x| bar.right_center() + vec2(x, 0.0));
         dots.into_iter().for_each(|dot| _ = painter.circle_filled(dot, 1.5, style.edge()));
         at.x += DOTS;
     }
-    painter.text(at, Align2::LEFT_CENTER, length, style.small(), style.faint());
+    if note.is_some() {
+        painter.text(at, Align2::LEFT_CENTER, length_words(session), style.small(), style.faint());
+    }
     let now = pos2(screen_from_time(session.player.time()), bar.center().y);
     painter.circle(now, 7.0, style.mass(), Stroke::new(1.5, style.mass_edge()));
     let by_key = if response.has_focus() { arrows(ui, response.id) } else { 0.0 };

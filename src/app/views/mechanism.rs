@@ -19,7 +19,7 @@ use super::ghosts::ghosts;
 use super::labels::{Taken, ago};
 use super::mass::{OUTLINE, body_ui, was_dragged};
 use super::memory::Ring;
-use super::pane::GUTTER;
+use super::pane::{GUTTER, RIGHT};
 use super::schematic::Schematic;
 use super::stops::{WALL, stops_ui};
 use super::{Cover, Drawn, LegendRow, ViewContext};
@@ -29,6 +29,10 @@ const CLEAR: f32 = 6.0;
 
 /// Length in points of an arrow's head.
 const ARROW_HEAD: f32 = 12.0;
+/// Distance in points of the arrow from the body.
+const BESIDE_BODY: f32 = 6.0;
+/// Length in points of the arrow of the largest push, however near the stops are.
+const LEAST_ARROW: f64 = 30.0;
 
 /// The foot of a flexure is its part next to the clamp, one in `FOOT` of its points.
 const FOOT: usize = 5;
@@ -40,7 +44,7 @@ pub fn mechanism_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let (rect, _) = ui.allocate_exact_size(ui.available_size(), Sense::hover());
     // above the picture of the well; a true scale changes the x axis of this view only
     let shared = context.span;
-    context.span = shared.beside(GUTTER, rect);
+    context.span = shared.beside((GUTTER, RIGHT), rect);
     drawing_ui(ui, context, rect);
     context.span = shared;
 }
@@ -198,17 +202,22 @@ impl Sketch {
     }
 
     /// Draws the push -m a_b on the mass as an arrow, relative to the largest push. It lies at the height of
-    /// the mass on the inner side of the body, clear of flexures and stops.
+    /// the mass on the inner side of the body, clear of flexures; from a body on a stop the largest push does
+    /// not reach the other stop.
     fn push_arrow(&self, context: &ViewContext<'_>, body: Rect, base_accel: f64) {
         let model = context.drawn.model(context.session);
-        let full = f64::from(self.rect.width()) * 0.16;
+        let (left, right) = model.stop_positions();
+        let between = left.zip(right).map(|(left, right)| (right - left) * context.span.scale(self.rect));
+        let free = between.map_or(f64::INFINITY, |points| points - 2.0 * f64::from(BESIDE_BODY));
+        let full = (f64::from(self.rect.width()) * 0.16).min(free.max(LEAST_ARROW));
         let room = model.largest_base_acceleration().max(1e-9);
         let push = (-base_accel / room * full) as f32;
         if !model.is_shaken() || push.abs() <= 3.0 {
             return;
         }
-        let inner = if body.center().x > self.rect.center().x { -1.0 } else { 1.0 };
-        let near = body.center().x + inner * (body.width() * 0.5 + 6.0);
+        let zero = context.span.screen_from_world(0.0, self.rect);
+        let inner = if body.center().x > zero { -1.0 } else { 1.0 };
+        let near = body.center().x + inner * (body.width() * 0.5 + BESIDE_BODY);
         let far = near + inner * push.abs();
         let (y, stroke) = (body.center().y, self.style.arrow_stroke());
         let (tail, tip) = if push * inner > 0.0 { (near, far) } else { (far, near) };

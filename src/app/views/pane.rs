@@ -27,6 +27,9 @@ pub const UNIT: f32 = SMALL / TICK as f32;
 /// Width in points from the left edge of a view to its frame, where it stands in line with others.
 pub const GUTTER: f32 = 62.0;
 
+/// Width in points from the frame of such a view to its right edge.
+pub const RIGHT: f32 = 8.0;
+
 pub const LEGEND: f32 = LegendRow::HEIGHT;
 
 /// Width in points to the left of a legend below the titles of its card.
@@ -55,6 +58,7 @@ impl Place {
     /// A place in line with those above and below it, on a ground that the view has painted. It leaves these
     /// widths and heights in points free: beside the legend, and between it and the picture.
     pub fn in_line(ui: &Ui, area: Rect, sense: Sense, (beside, between): (f32, f32)) -> Self {
+        let area = area.with_max_x(area.right() - RIGHT);
         let unit = |points: f32| f64::from(points / UNIT);
         let row = LegendRow::of(ui, area);
         // in line with the frame where it shares the row of the card, else in rows as long as there are

@@ -7,7 +7,7 @@
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-use eframe::egui::{self, Color32, Sense, Stroke, Ui, vec2};
+use eframe::egui::{self, Color32, Pos2, Sense, Stroke, Ui, vec2};
 
 use crate::app::task::Identity;
 use crate::app::ui::widgets::{kind_shapes, tell};
@@ -47,8 +47,9 @@ const MAX_STROBES: f64 = 300.0;
 
 /// Radius in points of the mark of the present state.
 const STATE: f32 = 6.0;
-/// Radius in points of the dot of a start.
+/// Radius in points of the dot of a start, and that of one among many.
 const START: f32 = 2.0;
+const LEAST_START: f32 = 1.0;
 /// Width in points of the button beside the legend.
 const BUTTON: f32 = 88.0;
 
@@ -139,10 +140,14 @@ fn still(model: &Model, axes: (PlotAxis, PlotAxis), points_only: bool) -> Chart 
 
 /// Dots at the starts of which a lesson speaks; the axis upward has a velocity in m/s times `per_speed`.
 pub(super) fn starts(painter: &egui::Painter, context: &ViewContext<'_>, pane: &Pane, per_speed: f64) {
-    for (x, v) in &context.memory.starts {
-        let Some(at) = pane.place(0, (x * 1e3, v * per_speed)) else { continue };
+    let starts = context.memory.starts.iter();
+    let places: Vec<Pos2> = starts.filter_map(|(x, v)| pane.place(0, (x * 1e3, v * per_speed))).collect();
+    // dots side by side do not touch
+    let apart = places.windows(2).map(|pair| pair[0].distance(pair[1])).fold(f32::INFINITY, f32::min);
+    let radius = START.min(0.4 * apart).max(LEAST_START);
+    for at in places {
         // seen on the colour of any basin
-        painter.circle(at, START, Color32::WHITE, Stroke::new(1.0, Color32::BLACK));
+        painter.circle(at, radius, Color32::WHITE, Stroke::new(0.3 * radius, Color32::BLACK));
     }
 }
 
@@ -154,11 +159,11 @@ fn points_ui(ui: &mut Ui, area: egui::Rect, points_only: &mut bool) {
     let builder = egui::UiBuilder::new().max_rect(row).layout(layout);
     ui.scope_builder(builder, |ui| {
         ui.spacing_mut().interact_size.y = LEGEND - 4.0;
-        ui.spacing_mut().button_padding.y = 0.0;
+        ui.spacing_mut().icon_width = 12.0;
         let text = egui::RichText::new("points only").small();
         let hover = "One point a forcing period, always at the same phase, and no path: motion that repeats \
                      is a few points, chaos is many.";
-        ui.toggle_value(points_only, text).on_hover_text(hover);
+        ui.checkbox(points_only, text).on_hover_text(hover);
     });
 }
 

@@ -83,10 +83,10 @@ impl Span {
         Self { low: end(left, seen.0.min(0.0), self.low), high: end(right, seen.1.max(0.0), self.high) }
     }
 
-    /// The range over the whole of `rect` in which this one begins `left` points from its left edge.
-    pub fn beside(self, left: f32, rect: Rect) -> Self {
-        let scale = (self.high - self.low) / f64::from((rect.width() - left).max(1.0));
-        Self { low: self.low - f64::from(left) * scale, high: self.high }
+    /// The range over the whole of `rect` in which this one lies between these margins in points.
+    pub fn beside(self, (left, right): (f32, f32), rect: Rect) -> Self {
+        let scale = (self.high - self.low) / f64::from((rect.width() - left - right).max(1.0));
+        Self { low: self.low - f64::from(left) * scale, high: self.high + f64::from(right) * scale }
     }
 
     /// Screen position of a displacement in m, over `rect`.

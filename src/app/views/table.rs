@@ -27,6 +27,9 @@ const ROW_GAP: (f32, f32) = (6.0, 1.0);
 const COLUMN_GAP: f32 = 8.0;
 /// Share of the width that the column of names has, and its limits in points.
 const NAMES: (f32, f32, f32) = (0.36, 92.0, 150.0);
+/// Width in points of the column of names in small letters, if the others are at least as wide as the second
+/// number, so that the name of a motion stands beside its symbol.
+const SMALL_NAMES: (f32, f32) = (116.0, 78.0);
 /// Smallest width in points of a column of values.
 const MIN_COLUMN: f32 = 44.0;
 /// Width in points from which on a column has text of full size beside the symbols.
@@ -87,7 +90,11 @@ pub(super) fn table_ui(
     let ((share, least, most), room) = (NAMES, ui.available_width());
     let width_beside = |names: f32| (room - names) / columns.len() as f32 - COLUMN_GAP;
     let names = (share * room).clamp(least, most);
-    let names = if width_beside(names) >= WIDE_COLUMN { names } else { least };
+    let names = match width_beside(names) {
+        width if width >= WIDE_COLUMN => names,
+        _ if width_beside(SMALL_NAMES.0) >= SMALL_NAMES.1 => SMALL_NAMES.0,
+        _ => least,
+    };
     let width = width_beside(names).max(MIN_COLUMN);
     let small = width < WIDE_COLUMN;
     ui.spacing_mut().interact_size.y = ROW;
@@ -154,7 +161,7 @@ pub(super) fn table_ui(
                     let text = format!("ended at {}, stays there", seconds(at));
                     ui.add(Label::new(RichText::new(text).font(style.small())).wrap());
                 }
-                None => regime_ui(ui, context, column.settled(), small),
+                None => regime_ui(ui, context, column.settled(), width),
             });
         }
         ui.end_row();
@@ -383,13 +390,11 @@ fn start(scene: &Scene) -> String {
     }
 }
 
-/// Symbol and name of the regime; if `small`, the name stands below the symbol in small text.
-fn regime_ui(ui: &mut Ui, context: &ViewContext<'_>, settled: Option<&Summary>, small: bool) {
+/// Symbol and name of the regime, one below the other in a narrow column.
+fn regime_ui(ui: &mut Ui, context: &ViewContext<'_>, settled: Option<&Summary>, width: f32) {
     let Some(settled) = settled else { return drop(ui.label(UNKNOWN)) };
     if settled.outcome != Outcome::Done {
-        let text = RichText::new("the run ended early");
-        ui.add(Label::new(if small { text.font(context.style.small()) } else { text }).wrap());
-        return;
+        return drop(ui.add(Label::new("the run ended early").wrap()));
     }
     let kind = Kind::from(settled.regime);
     let name = match kind {
@@ -397,16 +402,16 @@ fn regime_ui(ui: &mut Ui, context: &ViewContext<'_>, settled: Option<&Summary>, 
         Kind::Intrawell if settled.releases > 0 => "hopping",
         kind => kind.name(),
     };
-    ui.horizontal(|ui| {
+    let contents = |ui: &mut Ui| {
         let (rect, _) = ui.allocate_exact_size(Vec2::splat(16.0), Sense::hover());
         ui.painter().extend(kind_shapes(kind, rect.center(), 5.0, context.style.kind(kind)));
-        if !small {
-            explained(ui.label(name), name);
-        }
-    });
-    if small {
-        explained(ui.label(RichText::new(name).font(context.style.small())), name);
-    }
+        explained(ui.add(Label::new(name).wrap()), name);
+    };
+    if width >= SMALL_NAMES.1 {
+        ui.horizontal(contents)
+    } else {
+        ui.vertical(contents)
+    };
 }
 
 #[cfg(test)]

@@ -269,6 +269,9 @@ impl Window {
             }
             LessonAction::Reveal => lesson.reveal(),
             LessonAction::Finish => return self.finish_lesson(),
+            LessonAction::Vote(..) if !lesson.is_covering() => {
+                return self.messages.notify("The answer is shown: votes are no longer counted");
+            }
             LessonAction::Vote(option, more) => {
                 lesson.vote(option, more);
                 Turn::Stay
@@ -359,14 +362,17 @@ impl Window {
         if matches!(lesson.step(), Step::Do { .. }) {
             keys.extend(lesson.offered_hint().map(|_| plain(Key::H, LessonAction::Hint)));
         }
-        if lesson.is_covering() {
-            for option in 0..lesson.options().len() {
-                let names = [letter(option).to_string(), (option + 1).to_string()];
-                let pair = names.iter().filter_map(|name| Key::from_name(name));
-                keys.extend(pair.clone().map(|key| plain(key, LessonAction::Choose(option))));
-                let vote = LessonAction::Vote(option, 1);
-                keys.extend(pair.take(1).map(|key| (Modifiers::SHIFT, key, vote)));
-            }
+        let covers = lesson.is_covering();
+        if covers && ctx.memory(|memory| memory.focused().is_none()) {
+            keys.push(plain(Key::Enter, LessonAction::Next));
+        }
+        for option in 0..lesson.options().len() {
+            let names = [letter(option).to_string(), (option + 1).to_string()];
+            let pair = names.iter().filter_map(|name| Key::from_name(name));
+            let chosen = pair.clone().filter(|_| covers);
+            keys.extend(chosen.map(|key| plain(key, LessonAction::Choose(option))));
+            let vote = LessonAction::Vote(option, 1);
+            keys.extend(pair.take(1).map(|key| (Modifiers::SHIFT, key, vote)));
         }
         // those with Shift first: a key without it would take them too
         keys.sort_by_key(|key| !key.0.shift);

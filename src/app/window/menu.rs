@@ -135,8 +135,8 @@ impl Menus<'_> {
 
     fn settings_ui(&mut self, ui: &mut Ui) {
         for (setting, name, hover) in [
-            (Setting::Projector, "Projector", "Light, larger, thicker lines (P)"),
-            (Setting::Dark, "Dark", "Light letters on a dark ground (D)"),
+            (Setting::Projector, "Projector  (P)", "Light, larger, thicker lines"),
+            (Setting::Dark, "Dark  (D)", "Light letters on a dark ground"),
             (Setting::ReduceMotion, "Reduce motion", "No rings at impacts"),
         ] {
             let command = Command::Toggle(setting);

@@ -4,14 +4,15 @@ use eframe::egui::{self, Align2, Area, Id, Order, Ui, accesskit::Live, vec2};
 
 use crate::app::export::WriteResult;
 use crate::app::session::player::Reached;
-use crate::app::ui::widgets::{close_ui, dialog_ui, dialog_width, prose_ui};
+use crate::app::ui::style::GAP;
+use crate::app::ui::widgets::{close_ui, dialog_ui, prose_ui};
 
 pub(super) const CANNOT_OPEN: &str = "This scene cannot be opened";
 
 /// Time in s for which a notice is shown.
 const SHOWN_FOR: f64 = 4.0;
-/// Distance in points of a notice from the lower edge of the window.
-const ABOVE: f32 = 72.0;
+/// Width in points of the menus, beside which a notice stands.
+const MENUS: f32 = 400.0;
 
 /// A notice, and the time in s since which it has been shown.
 #[derive(Debug)]
@@ -63,10 +64,11 @@ impl Messages {
         let Some(notice) = &mut self.notice else { return };
         let now = ui.input(|input| input.time);
         let left = *notice.since.get_or_insert(now) + SHOWN_FOR - now;
-        let area = Area::new(Id::unique("told")).anchor(Align2::CENTER_BOTTOM, vec2(0.0, -ABOVE));
+        let area = Area::new(Id::unique("told")).anchor(Align2::RIGHT_TOP, vec2(-GAP, 0.0));
         let shown = area.order(Order::Tooltip).interactable(false).show(ui.ctx(), |ui| {
-            egui::Frame::popup(ui.style()).show(ui, |ui| {
-                ui.set_max_width(dialog_width(ui, 900.0));
+            let frame = egui::Frame::popup(ui.style()).inner_margin(egui::Margin::symmetric(8, 4));
+            frame.show(ui, |ui| {
+                ui.set_max_width((ui.ctx().content_rect().width() - MENUS).max(0.6 * MENUS));
                 let label = ui.label(&notice.text);
                 ui.ctx().accesskit_node_builder(label.id, |node| node.set_live(Live::Polite));
             });

@@ -15,7 +15,7 @@ use crate::app::session::lesson::Records;
 use crate::app::ui::settings::Settings;
 pub use crate::app::ui::style::install as prepare;
 use crate::app::ui::style::{CONTROL, GAP, Style};
-use crate::app::ui::widgets::{bare, panel_frame};
+use crate::app::ui::widgets::bare;
 use crate::app::views::{Drawn, ViewContext};
 use crate::app::words::lesson::numbered;
 use crate::scene::lesson::LESSONS;
@@ -118,8 +118,6 @@ impl Window {
         }
         let mut commands = self.bars_ui(ui, &style, compact);
         self.follow_lesson(&ctx);
-        // where room is short, a guide line that is asked for lies over the views
-        let mut is_over_views = false;
         if self.filled.is_some() {
             // the view has the whole window
         } else if self.lessons.open.is_some() {
@@ -127,23 +125,14 @@ impl Window {
         } else {
             commands.extend(self.controls_ui(ui, compact));
             self.session.follow_best();
-            is_over_views = compact && !self.hint.has_line;
-            if !is_over_views {
+            if !compact || self.hint.has_line {
                 let panel = bare(Panel::top("guide"), 12, 0).exact_size(GUIDE);
                 let line = panel.show(ui, |ui| self.guide_line_ui(ui, &style));
                 commands.extend(line.inner);
             }
         }
-        let views = ui.available_rect_before_wrap();
         let cards = egui::Frame::new().inner_margin(MARGIN);
         CentralPanel::no_frame().frame(cards).show(ui, |ui| self.views_ui(ui, style));
-        if is_over_views && (self.ways || self.session.best.is_shown()) && !self.covered {
-            let line = egui::UiBuilder::new().max_rect(views.with_min_y(views.bottom() - GUIDE));
-            ui.scope_builder(line, |ui| {
-                let line = panel_frame(12, 0).fill(style.panel());
-                line.show(ui, |ui| self.guide_line_ui(ui, &style));
-            });
-        }
         self.pointing_ui(&ctx, &style);
         self.memory.grab = false;
         commands.extend(self.memory.pin.take().map(Command::Pin));
@@ -204,18 +193,30 @@ impl Window {
         let covered = self.motion_is_covered();
         let status = bare(Panel::top("status"), 12, 2).exact_size(status_line::height(ui));
         let leads = compact && has_column(ui) && self.lessons.open.is_some();
-        status.show(ui, |ui| {
+        // a compact window has no guide line of the scene: what was asked for stands in place of the sentence
+        let asked = self.ways || self.session.best.is_shown();
+        let guides = asked && compact && !self.hint.has_line && self.lessons.open.is_none();
+        let chosen = status.show(ui, |ui| {
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 if leads {
                     self.lesson_navigation_ui(ui, style);
                 }
-                ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| match covered {
-                    true => covered_ui(ui, !self.covered),
-                    false => status_ui(ui, &mut self.session, &mut self.announcer, style, !leads),
+                let row = ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
+                    match covered {
+                        true => covered_ui(ui, !self.covered),
+                        false if guides => {
+                            self.announcer.say(ui, &self.session.sentence());
+                            return self.guide_line_ui(ui, style);
+                        }
+                        false => status_ui(ui, &mut self.session, &mut self.announcer, style, !leads),
+                    }
+                    None
                 });
-            });
+                row.inner
+            })
+            .inner
         });
-        bar.inner
+        bar.inner.into_iter().chain(chosen.inner).collect()
     }
 
     /// The controls: in a compact window a row, else a column with the notes. Returns the chosen command.
@@ -269,7 +270,7 @@ impl Window {
         }
         if self.ways && !self.covered {
             let ways = self.session.ways();
-            let back = if hinted { "H: back to the lesson" } else { "H closes this" };
+            let back = if hinted { "H: back to what to try" } else { "H closes this" };
             guide_ui(ui, ("", &ways, ink), |ui| ui.label(RichText::new(back).color(faint)));
             return None;
         }

@@ -41,7 +41,7 @@ impl Kind {
             Self::Interwell => "interwell",
             Self::Crossing => "crossing",
             // with one well or none
-            Self::Other | Self::Fault => "no barrier",
+            Self::Other | Self::Fault => "without a barrier",
         }
     }
 }
