@@ -159,7 +159,7 @@ fn a_fault_is_one_sentence_and_loses_nothing() {
     let dialog = harness.state_mut().columns.as_mut().unwrap();
     dialog.choose(1, (2, Unit::of_word("mN", Quantity::Force)));
     read(&mut harness);
-    harness.get_by_label_contains("A force over time has no computed counterpart");
+    harness.get_by_label_contains("A force over time has nothing to be compared with");
     // over the position its times do not matter
     let dialog = harness.state_mut().columns.as_mut().unwrap();
     dialog.choose(0, (1, Unit::of_word("mm", Quantity::Displacement)));

@@ -21,12 +21,12 @@ const KEPT: usize = 64;
 
 /// Thresholds of earlier scenes, oldest first: a scene that comes back by an undo or in a lesson needs no
 /// search.
-fn known_thresholds() -> MutexGuard<'static, Vec<(Scene, Arc<Mechanism>, Thresholds)>> {
+fn earlier() -> MutexGuard<'static, Vec<(Scene, Arc<Mechanism>, Thresholds)>> {
     static FOUND: Mutex<Vec<(Scene, Arc<Mechanism>, Thresholds)>> = Mutex::new(Vec::new());
     FOUND.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// The thresholds of an unshaken scene, from [`known_thresholds`] or searched.
+/// The thresholds of an unshaken scene, from [`earlier`] or searched.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ThresholdsQuestion(pub Prepared);
 
@@ -36,13 +36,10 @@ impl Question for ThresholdsQuestion {
 
     fn answer(&self, cancel: &AtomicBool, _: Each<Thresholds>) -> Option<Thresholds> {
         let Prepared { of: SceneWithFiles { scene, .. }, mechanism, .. } = &self.0;
-        let known = known_thresholds()
-            .iter()
-            .find(|kept| kept.0 == *scene && kept.1 == *mechanism)
-            .map(|kept| kept.2);
+        let known = earlier().iter().find(|kept| kept.0 == *scene && kept.1 == *mechanism).map(|kept| kept.2);
         known.or_else(|| {
             let thresholds = study::thresholds(scene, mechanism, &Task { tick: &|| (), cancel })?;
-            let mut all = known_thresholds();
+            let mut all = earlier();
             if all.len() == KEPT {
                 all.remove(0);
             }

@@ -171,11 +171,9 @@ impl Session {
         let values = Axis::from_scene(&axis, &ground).map(|axis| axis.values);
         let values = values.map_err(|(part, problem)| format!("{part}: {problem}"))?;
         if !self.model().repeats() {
-            return Err(
-                "Each run continues from the state of the run before at phase 0 of the drive, which \
-                        needs shaking that repeats, such as a sine."
-                    .into(),
-            );
+            return Err("Each run continues the one before, from phase 0 of the drive, which needs a drive \
+                        that repeats, such as a sine."
+                .into());
         }
         let mut scene = ground.clone();
         let is_set = FieldPath::new(&axis.field).set(&mut scene, axis.from);

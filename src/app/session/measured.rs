@@ -45,11 +45,9 @@ impl MeasuredRecord {
             [Quantity::Time, Quantity::Displacement | Quantity::Velocity | Quantity::Acceleration]
             | [Quantity::Displacement, Quantity::Force] => {}
             [Quantity::Time, _] => {
-                return Err(
-                    "A force over time has no computed counterpart: choose its position as the column \
-                            across, or displacement, velocity or acceleration as the values."
-                        .to_owned(),
-                );
+                return Err("A force over time has nothing to be compared with: choose its position as the \
+                            column across, or displacement, velocity or acceleration as the values."
+                    .to_owned());
             }
             _ => {
                 return Err("Over a position a force is compared with the force curve: choose the force as \

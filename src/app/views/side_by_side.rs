@@ -21,8 +21,8 @@ pub fn side_by_side_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let area = ui.max_rect();
     let count = context.session.pins.all().len();
     if count == 0 {
-        let text = "Nothing is pinned. A pinned motion continues here beside the present one, in step with the \
-                    drive.";
+        let text = "Nothing is pinned. A pinned motion continues here beside the present one, \
+                    in step with the drive.";
         let name = match context.session.scene().stops {
             Stops::None => "Beside it with stops",
             _ => "Beside it without stops",

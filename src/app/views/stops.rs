@@ -49,8 +49,7 @@ fn limit_number(session: &Session, mm: f64) -> String {
     with_minus(&shown(mm, decimals(key_step(session))))
 }
 
-/// Writes the travel limits over `rect` beside the faces of the stops, clear of `taken`, to which they are
-/// added.
+/// Writes the travel limits over `rect` beside the stops, clear of `taken`, to which it adds them.
 pub(super) fn travel_limits(painter: &Painter, context: &ViewContext<'_>, rect: Rect, taken: &mut Taken) {
     let look = (context.style.small(), context.style.ink());
     let (stops, _) = shown_stops(context.session, context.drawn);

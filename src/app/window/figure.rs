@@ -163,9 +163,7 @@ impl Figures {
             View::Well | View::ForceCurve => "Force and potential over displacement.",
             View::Mechanism => "The centre lines of the flexures where the mass was when this dialog opened.",
             View::Measured => "The record over the run of the scene from its start, or over its force.",
-            View::Map | View::UpAndDown | View::Basins => {
-                "All runs are computed again, which may take a while."
-            }
+            View::Map | View::UpAndDown | View::Basins => "All runs are computed again. This takes a while.",
             _ => "",
         }
         .to_owned();

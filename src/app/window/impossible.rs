@@ -47,9 +47,7 @@ impl Window {
             }
             C::RemoveMeasured => (session.measured.over.is_none(), "No measured data is shown"),
             C::SaveAs(Wanted::Map) => (!has_whole_map, "There is no whole map yet: show the Map first"),
-            C::Unpin(letter) => {
-                (session.pins.get(*letter).is_none(), "No motion is pinned under this letter")
-            }
+            C::Unpin(letter) => (session.pins.get(*letter).is_none(), "No motion is pinned as this letter"),
             C::CopyMapCommand => (session.map.map().is_none(), "There is no map yet: show the Map first"),
             C::PasteScene => (cfg!(target_arch = "wasm32"), "A page cannot paste by itself: press Ctrl+V"),
             C::Undo => (!session.editor.can_undo(), "There is nothing to undo"),

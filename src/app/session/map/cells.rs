@@ -19,9 +19,8 @@ const MAX_CELLS: u64 = 200_000;
 
 /// Why a map of this number of cells is refused; `None` if it is not.
 pub(super) fn too_many(cells: u64) -> Option<String> {
-    let problem =
-        || format!("{cells} cells are more than the window computes ({MAX_CELLS}): take longer steps");
-    (cells > MAX_CELLS).then(problem)
+    let refusal = || format!("the window computes at most {MAX_CELLS} cells, not {cells}: take longer steps");
+    (cells > MAX_CELLS).then(refusal)
 }
 
 /// A map as far as it is known.

@@ -157,10 +157,7 @@ fn hint(scheme: Scheme) -> &'static str {
             "Velocity first, then displacement by the new velocity: the simplest that keeps a swing alive. \
              Half the step, half the error."
         }
-        Scheme::VelocityVerlet => {
-            "The method of molecular dynamics and of games. Half the step, a quarter \
-                                   of the error."
-        }
+        Scheme::VelocityVerlet => "Usual for molecules and games. Half the step, a quarter of the error.",
         Scheme::RungeKutta4 => {
             "The classical method of Runge and Kutta, four evaluations of the force a step. Half the step, a \
              sixteenth of the error, except at impacts."
