@@ -38,7 +38,7 @@ pub fn run(spec: Option<&str>, refused: impl FnOnce(CannotRun)) -> Result<(), Ap
         .with_icon(icon())
         .with_inner_size([1280.0, 720.0])
         .with_min_inner_size([640.0, 400.0]);
-    // no gradients are drawn that would need it, and it costs a processor that paints much of its time
+    // nothing in the window has a gradient that needs dithering, which is slow where the processor paints
     let dithering = false;
     let options = eframe::NativeOptions { viewport, dithering, ..eframe::NativeOptions::default() };
     let spec = spec.map(str::to_owned);
@@ -61,7 +61,7 @@ fn icon() -> egui::IconData {
     eframe::icon_data::from_png_bytes(include_bytes!("../../assets/icon.png")).unwrap_or_default()
 }
 
-/// Whether there is a display; assumed where the environment does not tell (outside Unix, and on macOS).
+/// Whether the environment names a display; on macOS and outside Unix one is assumed.
 fn has_display() -> bool {
     let unix = cfg!(all(unix, not(target_os = "macos")));
     let set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());

@@ -1,8 +1,8 @@
 //! Background questions: a question that can be compared, and its answer, which a thread computes in parts.
 //!
 //! The newest answer stays until it is replaced. A question that is replaced is cancelled, and parts of its
-//! answer that come later are dropped. A [`Question`] is data, so that another program can answer it; what
-//! concerns the machine of the user alone is a job, a function.
+//! answer that come later are dropped. A [`Question`] is data, so that a worker can answer it; work on the
+//! user's machine, such as writing a file, is a job, a function.
 
 #[cfg(target_arch = "wasm32")]
 mod workers;
@@ -285,8 +285,8 @@ impl<Q: PartialEq, P: Send + 'static> Background<Q, P> {
         }
     }
 
-    /// Asks a question that an event of the page will answer: `begin` gets what takes the answer, if there is
-    /// one.
+    /// Asks a question that an event of the page will answer: `begin` gets the callback for the answer, if
+    /// there is one.
     #[cfg(target_arch = "wasm32")]
     pub fn ask_page(&mut self, question: Q, wake: &Wake, begin: impl FnOnce(Box<dyn FnOnce(Option<P>)>)) {
         let ((sender, parts), wake) = (channel(), Arc::clone(wake));
@@ -323,7 +323,7 @@ impl<Q: PartialEq, P: Send + 'static> Background<Q, P> {
         self.end_job(Work::Paused);
     }
 
-    /// Cancels the job, as the user wishes: [`want`](Self::want) does not begin the question again.
+    /// Cancels the job at the user's request: [`want`](Self::want) does not begin the question again.
     pub fn stop(&mut self) {
         self.end_job(Work::Done);
     }

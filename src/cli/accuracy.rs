@@ -17,7 +17,7 @@ use super::{Common, Failure, Output, Outputs, Picture, PlotOptions, interrupt, r
 
 #[derive(Debug, Args)]
 pub struct Arguments {
-    /// Scene file or built-in scene whose run is looked at; without one the program's own problems and cases
+    /// Scene file or built-in scene whose run is examined; without one the built-in problems and cases
     #[arg(value_name = "SCENE", conflicts_with_all = ["case", "list", "picture"])]
     pub scene: Option<String>,
 

@@ -22,7 +22,7 @@ Examples:
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Arguments {
-    /// Scene file or built-in scene; its own start does not matter
+    /// Scene file or built-in scene; its start is not used
     #[arg(value_name = "SCENE", default_value = "paper")]
     pub scene: String,
 
@@ -34,7 +34,7 @@ pub struct Arguments {
     #[arg(long, value_name = "A:B:N", allow_hyphen_values = true)]
     pub v: Option<String>,
 
-    /// Draw so many starts uniformly from the two ranges A:B, in place of a grid: the shares of the
+    /// Number of starts drawn uniformly from the two ranges A:B, in place of a grid; the shares of the
     /// attractors are then their basin stability
     #[arg(long, value_name = "N", allow_hyphen_values = true)]
     pub random: Option<String>,
@@ -106,8 +106,8 @@ fn forecast(basins: &Basins) -> Option<String> {
     let periods = Basins::PATIENCE as f64;
     (steps * periods > MANY_STEPS).then(|| {
         format!(
-            "a forcing period takes some {} steps: a start that is followed for {periods} of them, the most, \
-             takes some {} of a core; one that takes far more than others ends early",
+            "a forcing period takes some {} steps: a start is followed for at most {periods} of them, \
+             which takes some {} of a core; a start that takes far more than the others ends early",
             short(steps),
             duration(seconds * periods)
         )

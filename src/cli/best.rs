@@ -9,7 +9,7 @@ use interwell::scene::Document;
 use interwell::study::{NoBest, Task, best, names, place, quantity, scan_runs};
 use interwell::system::files::is_file;
 
-use super::support::{inputs, load, pool, waits, warn};
+use super::support::{inputs, load, pool, settle_limit, warn};
 use super::{ChartOptions, Common, Failure, Output, Outputs, Picture, bar, interrupt, say};
 
 const EXAMPLES: &str = "\
@@ -30,27 +30,27 @@ pub struct Arguments {
     #[arg(value_name = "SCENE", default_value = "paper")]
     pub scene: String,
 
-    /// A field of the design and its range (repeatable, at most four); a step is that of the first scan
+    /// A field of the design and its range (repeatable, at most four); STEP is that of the first scan
     /// [default: a 256th of the range; of two fields a 32nd, of three a 12th, of four an 8th]
     #[arg(long, value_name = "FIELD=A:B[:STEP]", allow_hyphen_values = true)]
     pub over: Vec<String>,
 
-    /// What is to be largest: a number of the summary, whose name may lack its unit. mean_power_w, the power
+    /// Column to maximise: a number of the summary, whose name may lack its unit. mean_power_w, the power
     /// into the load, needs a scene with a transducer
     #[arg(long, value_name = "COLUMN", default_value = "rms_velocity_m_per_s", visible_alias = "maximize")]
     pub maximise: String,
 
-    /// What every environment must keep to, such as 'max_abs_x_m<=0.003' (repeatable)
+    /// Bound that holds in every environment, such as 'max_abs_x_m<=0.003' (repeatable)
     #[arg(long, value_name = "COLUMN<=VALUE|COLUMN>=VALUE")]
     pub subject_to: Vec<String>,
 
-    /// What the design is for, in place of the scene's own excitation: the excitation and run of another
-    /// scene, a record (CSV), or values of a field; *WEIGHT after one is its weight, otherwise 1
-    /// (repeatable; the weighted mean over all is what is to be largest)
+    /// Environment of the design, in place of the scene's excitation: excitation and run of another scene, a
+    /// record (CSV), or values of a field; *WEIGHT after an environment is its weight, otherwise 1
+    /// (repeatable; the weighted mean over all is maximised)
     #[arg(long, value_name = "SCENE|FILE|FIELD=a,b,c", allow_hyphen_values = true)]
     pub environment: Vec<String>,
 
-    /// A tolerance of a field: writes the worst of 200 samples and what all but a twentieth of them reach
+    /// A tolerance of a field: writes the worst of 200 samples and the value that 95 % of them reach
     /// (repeatable)
     #[arg(long, value_name = "FIELD=+-1%|+-0.05", allow_hyphen_values = true)]
     pub vary: Vec<String>,
@@ -81,7 +81,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         environment: options.environment.clone(),
         vary: options.vary.clone(),
         seed: options.seed,
-        until_settled: waits(options.until_settled.as_deref())?,
+        until_settled: settle_limit(options.until_settled.as_deref())?,
     };
     let question = asked.question(&document)?;
     warn(&document, common, &warnings, None);

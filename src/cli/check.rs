@@ -35,7 +35,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
             Err(error) => wrong.push(error),
         }
     }
-    // a file with the right ones alone would pass for the report of all
+    // a file with the valid scenes alone would look like a complete report
     if wrong.is_empty() || outputs.is_stdout(Output::DATA) {
         outputs.finish()?;
     }

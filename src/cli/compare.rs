@@ -95,7 +95,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
 }
 
 /// The scenes of the arguments, each with its name in the table and its argument. The manifest of a
-/// comparison stands for all scenes of that.
+/// comparison stands for all scenes of that comparison.
 fn named<'a>(specs: &'a [String], common: &Common) -> Result<Vec<(String, &'a str, Document)>, Failure> {
     let mut all = Vec::new();
     for spec in specs {

@@ -54,7 +54,7 @@ pub struct Arguments {
     #[arg(long, value_name = "FILE", allow_hyphen_values = true, group = "picture")]
     pub shapes_plot: Option<PathBuf>,
 
-    /// Of a compliant stop: write what one impact on it does over the impact speed as CSV, speed_m_per_s,
+    /// Of a compliant stop: write the effect of one impact over the impact speed as CSV, speed_m_per_s,
     /// restitution, rigid_restitution, contact_time_s, depth_m, peak_force_n, peak_pressure_pa, in closed
     /// form
     #[arg(long, value_name = "FILE", allow_hyphen_values = true)]

@@ -85,7 +85,7 @@ fn about(table: &Table) -> String {
     if early > 0 {
         text += &format!(
             "; {early} ended before their time without an escape (they left the table of the force, or used \
-             up a budget), so that the rate is that of the time up to there"
+             up a budget), so that the rate counts their time up to there"
         );
     }
     let mut fails: Vec<&str> =

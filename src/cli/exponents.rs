@@ -21,7 +21,7 @@ Examples:
   interwell --headless exponents duffing --over excitation.amplitude_g=0.02:0.068:0.0005 --plot e.png
   interwell --headless exponents paper --over stops.travel_limit_mm=3:7:1 --over stops.restitution=0.3,0.9
 
-A motion that rests on a stop forgets where it came from: all exponents are then minus infinity, -inf.";
+A rest on a stop ends every dependence on the earlier motion: all exponents are then minus infinity, -inf.";
 
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
@@ -34,13 +34,13 @@ pub struct Arguments {
     #[arg(long, value_name = "FIELD=FROM:TO:STEP|a,b,c", allow_hyphen_values = true)]
     pub over: Vec<String>,
 
-    /// Forcing periods that a motion is averaged over which does not repeat, 1 to 10000000; without a drive
+    /// Forcing periods over which a motion that does not repeat is averaged, 1 to 10000000; without a drive
     /// periods of small oscillations [default: 1000]
     #[arg(long, value_name = "N", allow_hyphen_values = true,
           value_parser = whole::<u32>(1..=10_000_000))]
     pub periods: Option<u32>,
 
-    /// Let the motion go on, window after window, until it repeats, or up to this time in s, before anything
+    /// Follow the motion, window after window, until it repeats, or up to this time in s, before anything
     /// is averaged [default: 1000 forcing periods after the scene's run]
     #[arg(long, value_name = "MAX_S", allow_hyphen_values = true)]
     pub until_settled: Option<String>,
@@ -103,7 +103,7 @@ fn about(found: &Exponents, forced: bool) -> String {
         None if found.is_irregular() => {
             format!("{over}, in which the motion is irregular: the first exponent is clearly above 0")
         }
-        None => format!("{over}, in which no growth tells that the motion is irregular"),
+        None => format!("{over}, in which no growth shows that the motion is irregular"),
     }
 }
 

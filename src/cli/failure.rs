@@ -10,7 +10,7 @@ use interwell::scene::{ArgumentError, SceneError};
 use interwell::study::accuracy::UnknownCase;
 use interwell::study::{GridError, OutsideCurve, SweepEnd, TimesError};
 
-/// Returns from the function with a wrong argument, whose message is formatted like that of `format!`.
+/// Returns the error of a wrong argument from the function; the message is formatted as by `format!`.
 macro_rules! refuse {
     ($($message:tt)*) => {
         return Err($crate::cli::Failure::argument(format_args!($($message)*)))

@@ -30,7 +30,7 @@ impl<'a> GridJob<'a> {
         pool: Pool,
     ) -> Result<Self, Failure> {
         let mut outputs = outputs.with_picture(picture)?;
-        // It is opened again to be written, since a killed process would leave an unfinished file behind.
+        // The manifest is opened only when it is written, since a killed process would leave it unfinished.
         outputs.leave(Output::MANIFEST);
         Ok(Self { outputs, shown: Table::new(), document, common, picture, pool })
     }

@@ -35,15 +35,15 @@ pub struct Arguments {
     #[arg(long, value_name = "WHAT", value_parser = ["damping", "restitution", "force"])]
     pub of: Option<String>,
 
-    /// Leave out what was recorded before this time in s
+    /// Leave out samples before this time in s
     #[arg(long, value_name = "S", allow_hyphen_values = true)]
     pub from: Option<f64>,
 
-    /// Leave out what was recorded after this time in s
+    /// Leave out samples after this time in s
     #[arg(long, value_name = "S", allow_hyphen_values = true)]
     pub to: Option<f64>,
 
-    /// Of restitution: the rows are impacts, and their times are all that is known
+    /// Of restitution: each row is an impact of which only the time is known
     #[arg(long)]
     pub impact_times: bool,
 

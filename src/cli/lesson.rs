@@ -27,11 +27,11 @@ pub struct Arguments {
     pub lesson: Option<String>,
 
     /// Run it, or all built-in ones: every start must fail its task, every solution pass, and of every
-    /// prediction exactly one option hold. A bound that turns a verdict where it is moved by 1 % is a warning
+    /// prediction exactly one option hold. A bound whose change by 1 % changes a verdict is a warning
     #[arg(long)]
     pub check: bool,
 
-    /// Write a lesson to begin one's own from
+    /// Write a template of a lesson
     #[arg(long, value_name = "FILE", conflicts_with_all = ["lesson", "check"])]
     pub new: Option<PathBuf>,
 }

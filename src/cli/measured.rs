@@ -1,5 +1,5 @@
-//! Measured records: the options that choose their columns, and those of `simulate` and `curve` that lay a
-//! record over what is computed.
+//! Measured records: the options that choose their columns, and those of `simulate` and `curve` that compare
+//! a record with the computed motion or force.
 
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
@@ -30,7 +30,7 @@ pub struct ColumnOptions {
     #[arg(long, value_name = "UNIT")]
     pub time_unit: Option<String>,
 
-    /// Column of the values [default: the one whose name ends with such a unit, as x_mm, a_g, force_n]
+    /// Column of the values [default: the one whose name ends with a unit, such as x_mm, a_g, force_n]
     #[arg(long, value_name = "COLUMN")]
     pub column: Option<String>,
 
@@ -58,7 +58,7 @@ fn no_record<T, const N: usize>(
 ) -> Result<Option<T>, Failure> {
     match options.iter().zip(chosen).find(|(_, column)| column.is_some()) {
         None => Ok(None),
-        Some((option, _)) => refuse!("{option} is of a record: name that by --measured FILE"),
+        Some((option, _)) => refuse!("{option} is for a record: name the record by --measured FILE"),
     }
 }
 

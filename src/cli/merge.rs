@@ -32,7 +32,7 @@ struct Part {
 }
 
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
-    let mut parts = all(&options.parts)?;
+    let mut parts = open_all(&options.parts)?;
     let read = parts.iter().flat_map(|part| [part.path.clone(), manifest_path(&part.path)]);
     let inputs: Vec<PathBuf> = read.collect();
     let mut outputs = Outputs::new(&inputs).with_rows(Some(common.out()))?;
@@ -66,7 +66,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
 
 /// Opens all shards of one sweep and orders them. An error names the files that do not belong together, or
 /// the missing shards with the commands that compute them.
-fn all(paths: &[PathBuf]) -> Result<Vec<Part>, Failure> {
+fn open_all(paths: &[PathBuf]) -> Result<Vec<Part>, Failure> {
     let (mut parts, mut unfinished): (Vec<Part>, Vec<String>) = (Vec::new(), Vec::new());
     for path in paths {
         match Part::open(path)? {
@@ -80,7 +80,7 @@ fn all(paths: &[PathBuf]) -> Result<Vec<Part>, Failure> {
             refuse!("merge: name the files of all shards, {example}");
         }
         refuse!(
-            "{}; name the rows of every shard, beside which a manifest stands when it is whole",
+            "{}; name the file of every shard; a finished shard has a manifest beside it",
             unfinished.join(", ")
         );
     };
@@ -109,9 +109,9 @@ fn all(paths: &[PathBuf]) -> Result<Vec<Part>, Failure> {
     if missing.is_empty() {
         return Ok(parts);
     }
-    let not = if unfinished.is_empty() { String::new() } else { format!("{}; ", unfinished.join(", ")) };
+    let others = if unfinished.is_empty() { String::new() } else { format!("{}; ", unfinished.join(", ")) };
     let (number, commands) = (missing.len(), missing.join("\n"));
-    refuse!("{not}{number} of {count} shards are missing; these commands compute them:\n{commands}")
+    refuse!("{others}{number} of {count} shards are missing; these commands compute them:\n{commands}")
 }
 
 /// The reason why the file at `path` is not a shard.

@@ -40,7 +40,6 @@ use clap::error::ErrorKind;
 pub use failure::Failure;
 pub use options::{Options, command_names};
 
-// what most commands use
 use failure::refuse;
 use options::{ChartOptions, Common, PlotOptions, Word, whole};
 use outputs::{Output, Outputs, write_alone};

@@ -62,7 +62,7 @@ pub struct Options {
     pub common: Common,
 }
 
-/// What stands in the place of a command.
+/// A command of `--headless`, or a page for packages.
 #[derive(Debug, Subcommand)]
 pub enum Word {
     #[command(flatten)]
@@ -135,7 +135,7 @@ commands! {
     simulate Simulate " [SCENE]" ignores "jobs";
     /// Run a grid of scenes: CSV with a row for each cell
     sweep Sweep " [SCENE]";
-    /// Put the parts of a sweep together that `sweep --shard` computed
+    /// Join the parts of a sweep that `sweep --shard` computed
     merge Merge " PART..." refuses "set" "tolerance" "jobs";
     /// The state once a forcing period or at every impact; over a field the bifurcation diagram
     section Section " [SCENE]";
@@ -143,13 +143,13 @@ commands! {
     threshold Threshold " [SCENE]";
     /// Scenes side by side under one sine: least amplitudes, speed, reach, band of frequencies, sensitivity
     compare Compare " [SCENE]..";
-    /// The place in some fields where a result is largest, for one environment or several, with its margins
+    /// The values of some fields at which a result is largest, in one environment or several, with margins
     best Best " [SCENE] --over FIELD=A:B";
     /// Amplitude and power spectral density of the settled motion over frequency: CSV
     spectrum Spectrum " [SCENE]" ignores "jobs";
     /// The attractor that each of many starts goes to: CSV with a row for each start
     basins Basins " [SCENE] --x-mm A:B:N --v A:B:N";
-    /// The periodic motion near a run's own, with its multipliers; or a branch of them over a field
+    /// The periodic motion near that of a run, with its multipliers; or a branch of motions over a field
     orbit Orbit " [SCENE]" ignores "jobs";
     /// Lyapunov exponents of the settled motion, with their standard errors, sum and dimension
     exponents Exponents " [SCENE]";
@@ -159,8 +159,8 @@ commands! {
     identify Identify " FILE --of damping|restitution|force" refuses "set" "tolerance" ignores "jobs";
     /// List the lessons; print, check or begin one
     lesson Lesson " [LESSON]" refuses "set" "tolerance";
-    /// Of a scene: the error of its run, what digits cost, what a fixed step makes of it. Without one: speed
-    /// against error beside other methods, and the hard cases with the digits that they allow and reach
+    /// Of a scene: the error of its run, its cost over the tolerance, its error in fixed steps. Without a
+    /// scene: speed against error beside other methods, and the hard cases with digits allowed and reached
     accuracy Accuracy " [SCENE]" ignores "jobs";
 }
 
@@ -191,7 +191,7 @@ pub fn whole<T: TryFrom<u64>>(
     }
 }
 
-/// What every command takes, before its name or after it.
+/// The options of every command, before its name or after it.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Common options")]
 pub struct Common {
@@ -213,7 +213,7 @@ pub struct Common {
           value_parser = whole::<u16>(1..=1024))]
     pub jobs: Option<u16>,
 
-    /// Say nothing on standard error but errors
+    /// Print only errors on standard error
     #[arg(long)]
     pub quiet: bool,
 }
@@ -233,8 +233,8 @@ impl Common {
         }
     }
 
-    /// Adds the options given `before` the command to those given after it. The error is the name of one
-    /// that may be given once and was given in both places.
+    /// Adds the options given `before` the command to those given after it. The error is the name of an
+    /// option that may be given once and was given in both places.
     ///
     /// clap's global arguments would drop a `--set` before the command if another one follows the command.
     pub fn put_before(&mut self, before: Self) -> Result<(), &'static str> {
@@ -265,7 +265,7 @@ impl Common {
     }
 }
 
-/// What the commands take that can draw.
+/// The options of the commands that can draw.
 #[derive(Debug, Args)]
 #[command(group = ArgGroup::new("picture").multiple(true))]
 pub struct PlotOptions {
@@ -311,7 +311,7 @@ pub struct PlotOptions {
     pub no_title: bool,
 }
 
-/// What the commands take whose pictures have axes with ranges.
+/// The options of the commands whose pictures have axes with ranges.
 #[derive(Debug, Args)]
 pub struct ChartOptions {
     #[command(flatten)]

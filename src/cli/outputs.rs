@@ -20,7 +20,7 @@ const BINARY_TABLES: [&str; 18] = [
     "pkl", "pq", "xls", "xlsx", "zarr",
 ];
 
-/// What a command writes, by the option that says where it goes.
+/// An output of a command, called as the option that names its file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Output(&'static str);
 
@@ -175,7 +175,7 @@ impl Outputs {
         sink.put_bytes(text.as_ref()).map_err(|error| Failure::writing(sink.name(), error))
     }
 
-    /// Writes text and flushes it. Returns whether more is wanted: not if the reader of a pipe has gone.
+    /// Writes text and flushes it. Returns `false` without this output or once the reader of a pipe has gone.
     pub fn stream(&mut self, output: Output, text: &str) -> Result<bool, Failure> {
         self.write(output, text)?;
         let Some(sink) = self.sink(output) else { return Ok(false) };
@@ -183,8 +183,8 @@ impl Outputs {
         Ok(!sink.is_closed())
     }
 
-    /// Writes the manifest of the rows, if they have one, as `text` makes it. `document` is what was run, if
-    /// the command reads a scene, on `jobs` threads. A manifest that was closed is opened again.
+    /// Writes the manifest of the rows, if they have one, as `text` makes it. `document` is the scene, if the
+    /// command reads one, and `jobs` the number of threads. A manifest that was closed is opened again.
     pub fn manifest(
         &mut self,
         document: Option<&Document>,
@@ -205,8 +205,8 @@ impl Outputs {
         self.write(Output::MANIFEST, text)
     }
 
-    /// Writes the manifest of rows that one run of the command made of `document`, if it reads a scene, and
-    /// gives the outputs their names.
+    /// Writes the manifest of rows that were computed on `jobs` threads from `document`, if the command reads
+    /// a scene, and gives the outputs their names.
     pub fn finish_rows<'a>(
         mut self,
         document: impl Into<Option<&'a Document>>,

@@ -1,4 +1,4 @@
-//! `completions` and `manual`: what a shell and `man` are given, made of the table of commands.
+//! `completions` and `manual`: shell completions and manual pages, made from the table of commands.
 
 use std::io::Write;
 use std::sync::LazyLock;

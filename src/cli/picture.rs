@@ -32,7 +32,7 @@ impl<'a> Picture<'a> {
         Self::of(Output::PLOT, options.plot.as_deref(), options, common)
     }
 
-    /// The same, with the ranges of its axes; errors name the horizontal one `across`.
+    /// Like [`new`](Self::new), with the ranges of its axes; errors name the horizontal axis `across`.
     pub fn of_chart(
         options: &'a ChartOptions,
         across: &'static str,
@@ -93,7 +93,7 @@ impl<'a> Picture<'a> {
 }
 
 impl Outputs {
-    /// Opens those of a picture and of its numbers, where they are requested.
+    /// Opens the outputs of a picture and of its numbers, if they are requested.
     pub fn with_picture(self, picture: Option<Picture>) -> Result<Self, Failure> {
         let Some(picture) = picture else { return Ok(self) };
         self.with(picture.output, Some(picture.path))?.with(Output::PLOT_DATA, picture.data)

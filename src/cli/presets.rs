@@ -15,7 +15,7 @@ pub struct Arguments {
     #[arg(long, value_name = "DIR")]
     pub write: Option<PathBuf>,
 
-    /// With --write: replace files that are there and differ
+    /// With --write: replace existing files that differ
     #[arg(long, requires = "write")]
     pub force: bool,
 }
@@ -48,9 +48,9 @@ fn write(folder: &Path, force: bool) -> Result<String, Failure> {
     let differing = all.iter().filter(|(name, text)| differs(name, text)).map(|(name, _)| name.as_str());
     let differing: Vec<&str> = differing.collect();
     if !differing.is_empty() && !force {
-        let are = if differing.len() == 1 { "is" } else { "are" };
+        let differ = if differing.len() == 1 { "exists and differs" } else { "exist and differ" };
         refuse!(
-            "--write {}: {} {are} there and not as built in; nothing was written: choose another folder, or \
+            "--write {}: {} {differ} from what is built in; nothing was written: choose another folder, or \
              replace with --force",
             folder.display(),
             differing.join(", ")

@@ -48,12 +48,12 @@ pub struct Arguments {
           value_parser = whole::<u64>(0..=1_000_000_000))]
     pub skip: Option<u64>,
 
-    /// Forcing periods of the settled window after those, in place of run.duration_s; needs --skip
+    /// Forcing periods of the settled window after the skipped ones, in place of run.duration_s; needs --skip
     #[arg(long, value_name = "N", allow_hyphen_values = true, requires = "skip",
           value_parser = whole::<u64>(1..=MAX_SECTION))]
     pub keep: Option<u64>,
 
-    /// Let each run go on, window after window, until its motion repeats, or up to this time in s
+    /// Follow each run, window after window, until its motion repeats, or up to this time in s
     #[arg(long, value_name = "MAX_S", allow_hyphen_values = true)]
     pub until_settled: Option<String>,
 

@@ -28,8 +28,9 @@ pub struct Arguments {
     #[arg(long, value_name = "T1,T2,..", allow_hyphen_values = true)]
     pub at: Option<String>,
 
-    /// Go on, window after window, until the motion repeats, or up to this time in s. Samples and averages
-    /// are then of the longer run; its window is the last one. Needs a drive that repeats
+    /// Follow the motion, window after window, until it repeats, or up to this time in s. Samples and
+    /// averages are then those of the longer run, whose settled window is its last. Needs a drive that
+    /// repeats
     #[arg(long, value_name = "MAX_S", allow_hyphen_values = true, conflicts_with = "measured")]
     pub until_settled: Option<String>,
 
@@ -156,9 +157,9 @@ fn remark(model: &Model, outcome: Outcome) -> Option<String> {
     let reason = match outcome {
         Outcome::Done => return None,
         Outcome::LeftTable { .. } => "the mass left the range of the force curve".to_owned(),
-        Outcome::ImpactBudget { count, .. } => format!("{count} impacts are all that one run may make"),
+        Outcome::ImpactBudget { count, .. } => format!("it reached {count} impacts, the limit of one run"),
         Outcome::StepBudget { count, .. } => {
-            format!("{count} steps took all the work that one run may take; {remedy}")
+            format!("its {count} steps reached the limit of work of one run; {remedy}")
         }
         Outcome::NotFinite { .. } => format!("a number was no longer finite; {remedy}"),
         Outcome::Inaccurate { residual } => {
@@ -169,7 +170,7 @@ fn remark(model: &Model, outcome: Outcome) -> Option<String> {
                 short(residual)
             ));
         }
-        Outcome::Cancelled { .. } => "it was told to stop".to_owned(),
+        Outcome::Cancelled { .. } => "it was cancelled".to_owned(),
     };
     let mut at = String::new();
     push_number(&mut at, outcome.ended_at()?);

@@ -6,7 +6,7 @@ use interwell::output::{SpectrumQuantity, spectrum_chart};
 use interwell::questions::{Progress, Spectrum};
 use interwell::study::Signal;
 
-use super::support::{load_simulation, number, outputs, waits};
+use super::support::{load_simulation, number, outputs, settle_limit};
 use super::{ChartOptions, Common, Failure, Output, Picture, interrupt, refuse};
 
 const EXAMPLES: &str = "\
@@ -16,8 +16,8 @@ Examples:
   interwell --headless spectrum paper-unconstrained --set excitation.amplitude_g=1.2 --until-settled 300
   interwell --headless spectrum random-shaking --of accel --taper none --rate-hz 4096
 
-What lies above half the rate is folded back below it; impacts make a spectrum that never ends, so compare
-with a higher --rate-hz.";
+Frequencies above half the rate are folded back below it; impacts excite all frequencies, so compare with a
+higher --rate-hz.";
 
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
@@ -26,7 +26,7 @@ pub struct Arguments {
     #[arg(value_name = "SCENE", default_value = "paper")]
     pub scene: String,
 
-    /// Of what: displacement x, velocity v, or acceleration of the base
+    /// Signal: displacement x, velocity v, or acceleration of the base
     #[arg(long, value_name = "SIGNAL", default_value = "x", value_parser = ["x", "v", "accel"])]
     pub of: String,
 
@@ -35,13 +35,13 @@ pub struct Arguments {
     #[arg(long, value_name = "TAPER", default_value = "auto", value_parser = ["auto", "hann", "none"])]
     pub taper: String,
 
-    /// Samples a second, made more until a whole number falls into a forcing period [default: 128 or more
+    /// Samples a second, increased until a forcing period has a whole number of them [default: 128 or more
     /// in the shortest period of excitation and mechanism]
     #[arg(long, value_name = "HZ", allow_hyphen_values = true)]
     pub rate_hz: Option<String>,
 
-    /// Go on, window after window, until the motion repeats, or up to this time in s; the spectrum is that
-    /// of the last window. Needs a drive that repeats
+    /// Follow the motion, window after window, until it repeats, or up to this time in s; the spectrum is of
+    /// the last window. Needs a drive that repeats
     #[arg(long, value_name = "MAX_S", allow_hyphen_values = true)]
     pub until_settled: Option<String>,
 
@@ -72,7 +72,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
             _ => None,
         },
         rate_hz: options.rate_hz.as_deref().map(rate_hz).transpose()?,
-        until_settled: waits(options.until_settled.as_deref())?,
+        until_settled: settle_limit(options.until_settled.as_deref())?,
     };
     let simulation = load_simulation(&options.scene, common)?;
     let document = simulation.document();

@@ -55,8 +55,8 @@ pub fn load(spec: &str, common: &Common) -> Result<(Document, Vec<String>), Scen
     Ok((document, warnings))
 }
 
-/// Loads the scene with its grid: of the fields of `--over`, or of the scene alone without those, where the
-/// sweep in the scene is ignored.
+/// Loads the scene with its grid: the values of the fields of `--over`, or without `--over` the scene alone,
+/// whose sweep is ignored.
 pub fn load_over(
     spec: &str,
     over: &[String],
@@ -79,7 +79,7 @@ pub fn check(document: &mut Document, over: Option<&[String]>) -> Result<Vec<Str
     Ok(moved.into_iter().chain(first_cell.check()?).collect())
 }
 
-/// The scene without the check. It holds its files if a manifest stands beside the rows.
+/// Loads the scene without checking it. It keeps the bytes of its files if the rows get a manifest.
 pub fn read(spec: &str, common: &Common) -> Result<Document, SceneError> {
     let mut document = Document::of_argument(spec)?;
     change(&mut document, common)?;
@@ -142,7 +142,7 @@ pub fn load_with_mechanism(spec: &str, common: &Common) -> Result<(Document, Arc
     Ok((document, mechanism))
 }
 
-/// The same as [`load_simulation`], as its parts.
+/// Like [`load_simulation`], but returns the document and the model.
 pub fn load_model(spec: &str, common: &Common) -> Result<(Document, Model), Failure> {
     let simulation = load_simulation(spec, common)?;
     Ok((simulation.document().clone(), simulation.model().clone()))
@@ -205,13 +205,13 @@ pub fn range(option: &str, text: &str, form: &str) -> Result<(f64, f64), Failure
 }
 
 /// The time in s of `--until-settled`, if given.
-pub fn waits(text: Option<&str>) -> Result<Option<f64>, Failure> {
+pub fn settle_limit(text: Option<&str>) -> Result<Option<f64>, Failure> {
     text.map(|text| finite("--until-settled", text, "not a time; give seconds, such as 300")).transpose()
 }
 
 /// The time in s of `--until-settled`, if given; an error if runs of `model` cannot go on to that time.
 pub fn until_settled(text: Option<&str>, document: &Document, model: &Model) -> Result<Option<f64>, Failure> {
-    let until = waits(text)?;
+    let until = settle_limit(text)?;
     if let Some((until, text)) = until.zip(text) {
         check_until_settled(until, text, document, model)?;
     }
@@ -225,7 +225,7 @@ pub fn until_settled_on_grid(
     document: &Document,
     first: Option<&Model>,
 ) -> Result<Option<f64>, Failure> {
-    first.map_or_else(|| waits(text), |model| until_settled(text, document, model))
+    first.map_or_else(|| settle_limit(text), |model| until_settled(text, document, model))
 }
 
 /// The pool of `--jobs` threads.

@@ -40,7 +40,7 @@ pub struct Arguments {
     #[arg(default_value = "excitation.amplitude_g=0:2")]
     pub field: String,
 
-    /// What begins there: release (the mass leaves the stop it rests on), crossing (the settled motion
+    /// Onset: release (the mass leaves the stop it rests on), crossing (the settled motion
     /// crosses at all) or interwell (its crossings repeat)
     #[arg(long, value_name = "ONSET", default_value = "crossing",
           value_parser = ["release", "crossing", "interwell"])]
@@ -86,7 +86,7 @@ pub struct Arguments {
     pub chart: ChartOptions,
 }
 
-/// What is searched: its range and resolution, and what is asked of runs under noise.
+/// The searched field with its range and resolution, and the probability to reach under noise.
 fn search(
     options: &Arguments,
     of: Onset,

@@ -365,7 +365,7 @@ fn a_range_that_cannot_be_is_refused_where_it_was_typed() {
     let mut many = axes((0.002, 0.002));
     many[0].to = 3.0;
     let (_, part, why) = harness.state().session.map_problem(&many).unwrap();
-    assert!(part == "step" && why.contains("are more than the window makes"), "{why}");
+    assert!(part == "step" && why.contains("the window computes at most 200000 cells"), "{why}");
 }
 
 #[test]

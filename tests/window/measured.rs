@@ -159,7 +159,7 @@ fn a_fault_is_one_sentence_and_loses_nothing() {
     let dialog = harness.state_mut().columns.as_mut().unwrap();
     dialog.choose(1, (2, Unit::of_word("mN", Quantity::Force)));
     read(&mut harness);
-    harness.get_by_label_contains("A force over time has no curve to lie over");
+    harness.get_by_label_contains("A force over time has nothing to be compared with");
     // over the position its times do not matter
     let dialog = harness.state_mut().columns.as_mut().unwrap();
     dialog.choose(0, (1, Unit::of_word("mm", Quantity::Displacement)));
@@ -206,7 +206,7 @@ fn a_measured_acceleration_can_shake_the_base() {
     read(&mut harness);
     harness.get_by_label("Shake the base with it").click();
     harness.run_steps(4);
-    harness.get_by_label_contains("A scene knows its record by the file alone");
+    harness.get_by_label_contains("A scene names only the file of its record");
     assert_eq!(*harness.state().session.scene(), before);
     // over the acceleration of the base it lies all the same
     harness.get_by_label("Lay it over").click();

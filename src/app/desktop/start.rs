@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 pub const NO_DISPLAY: &str =
     "neither DISPLAY nor WAYLAND_DISPLAY is set: start it on a desktop or through ssh -X";
 
-/// What the crates of the window say, and what that means: the first that is in the text holds.
+/// Parts of the error messages of the crates below, each with a cause and a remedy; the first match counts.
 const REMEDIES: &[(&str, &str)] = &[
     (
         "libxkbcommon",
@@ -49,7 +49,7 @@ impl Started {
         self.0.load(Ordering::Relaxed)
     }
 
-    /// Runs the window; a panic before it has come up is an error like any other.
+    /// Runs the window; a panic before it has come up is returned as an error.
     pub fn guard(&self, run: impl FnOnce() -> Result<(), String>) -> Result<(), String> {
         let reason = Arc::new(Mutex::new(String::new()));
         let usual = Arc::new(panic::take_hook());
@@ -71,7 +71,7 @@ impl Started {
     }
 }
 
-/// What is wrong and what to do, of what the crates of the window say.
+/// The cause and the remedy of an error message, or its first line if neither is known.
 pub fn remedy(reason: &str) -> String {
     let known = REMEDIES.iter().find(|(words, _)| reason.contains(words));
     let first = || reason.lines().next().unwrap_or_default().trim_end_matches('.');

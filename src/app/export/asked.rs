@@ -1,4 +1,4 @@
-//! All questions by their names, as they travel to a worker as messages, and their answers as messages.
+//! Answers to all questions in messages, which are told apart by their names.
 
 use std::sync::atomic::AtomicBool;
 

@@ -29,8 +29,8 @@ use crate::system::threads::Pool;
 
 use super::figure::{FigureOrder, Subject};
 
-const CHANGED: &str = "The file of this scene is no longer what was opened, and the figure's command begins \
-                       with it: save the scene first (Ctrl+S), or open it anew.";
+const CHANGED: &str = "The file of this scene has changed since it was opened, and the figure's command \
+                       reads it: save the scene first (Ctrl+S), or open it again.";
 
 /// Draws the figure. Returns `None` if cancelled.
 pub(super) fn draw(order: &FigureOrder, cancel: &AtomicBool) -> Result<Option<Figure>> {

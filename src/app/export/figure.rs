@@ -99,7 +99,7 @@ pub struct Place {
     pub data: Option<PathBuf>,
 }
 
-const NOT_SEEN: &str = "Show this view first: the figure has its ranges.";
+const NOT_SEEN: &str = "Show this view first: the figure takes its ranges.";
 
 impl Subject {
     pub fn walks(session: &Session) -> Result<Self, String> {
@@ -136,16 +136,16 @@ impl Subject {
     /// The flexures with the mass at `x` in m.
     pub fn shapes(session: &Session, x: f64) -> Result<Self, String> {
         if session.model().mechanism().flexures.is_none() {
-            return Err("There is no figure of a mechanism that is a force without flexures: File, Save a \
-                        picture of the window has its sketch as it stands."
+            return Err("This mechanism is a force without flexures, of which there is no figure: File, \
+                        Save a picture of the window shows its sketch."
                 .to_owned());
         }
         Ok(Self::Shapes((x * 1e7).round() / 1e4))
     }
 
-    /// The record as it lies over the computed.
+    /// The record with its shift, scale and offset in the view.
     pub fn measured(session: &Session) -> Result<Self, String> {
-        let none = "There is no record to lie over the computed: open one first (Ctrl+M).";
+        let none = "There is no measured record: open one first (Ctrl+M).";
         Ok(Self::Measured(session.measured.over.clone().ok_or(none)?))
     }
 
@@ -259,8 +259,8 @@ impl FigureOrder {
         if let Subject::Measured(over) = &subject {
             read.push(over.record.path.clone());
         }
-        let there: Vec<PathBuf> = read.iter().filter_map(|path| files::canonical(path)).collect();
-        let is_read = |path: &&PathBuf| files::canonical(path).is_some_and(|path| there.contains(&path));
+        let inputs: Vec<PathBuf> = read.iter().filter_map(|path| files::canonical(path)).collect();
+        let is_read = |path: &&PathBuf| files::canonical(path).is_some_and(|path| inputs.contains(&path));
         if let Some(path) = place.data.iter().chain([&place.path]).find(is_read) {
             return Err(format!("{} is read by this scene: give the figure another name.", path.display()));
         }

@@ -115,7 +115,7 @@ fn uneven_ui(ui: &mut Ui, session: &mut Session, width: f32) {
     let mut uneven = matches!(stops, Stops::Uneven { .. });
     let tick = egui::Checkbox::new(&mut uneven, "different stops left and right");
     let rigid = matches!(stops, Stops::Rigid { .. } | Stops::Uneven { .. });
-    let hover = "Each side has a distance and a restitution of its own, or is open.";
+    let hover = "Each side has its own distance and restitution, or is open.";
     let response = ui.add_enabled(rigid, tick).on_hover_text(hover);
     let why = match stops {
         Stops::None => "There are no stops: switch them on first.",
@@ -160,7 +160,7 @@ fn other_kind(stops: Stops) -> Stops {
     }
 }
 
-/// The distance in mm from x = 0 of a stop that comes opposite a stop at this distance on the other side.
+/// The distance in mm from x = 0 of a new stop opposite a stop at this distance on the other side.
 fn opposite(other_mm: Option<f64>) -> f64 {
     match other_mm {
         Some(mm) if mm > 0.0 => mm,
@@ -179,8 +179,8 @@ fn run_ui(ui: &mut Ui, session: &mut Session, width: f32) {
             ui.selectable_value(&mut wanted, value, format!("{value:e}"));
         }
     });
-    let hover = "Error allowed in a step. Smaller: a little slower; a motion without rhythm takes another \
-                 course, and its averages stay.";
+    let hover = "Error allowed in a step. Smaller: a little slower; an irregular motion takes another path \
+                 with the same averages.";
     combo.response.labelled_by(name.id).on_hover_text(hover);
     if wanted != present {
         session.edit_once(|scene| scene.run.tolerance = wanted);

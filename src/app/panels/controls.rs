@@ -29,8 +29,8 @@ const BESIDE_SLIDER: f32 = 136.0;
 const LEAST_SLIDER: f32 = 60.0;
 const WIDEST_SLIDER: f32 = 280.0;
 
-const MORE_HOVER: &str = "Restitution, preload, damping and mass; spring, magnets and transducer, where \
-                          there are such.";
+const MORE_HOVER: &str = "Restitution, preload, damping and mass; spring, magnets and transducer, if there \
+                          are any.";
 
 const SEARCH_HOVER: &str = "Looks for the distance of the stops with which the scene as it stands, from \
                             rest, moves fastest, or where there is a transducer gives most power, and how \
@@ -73,7 +73,7 @@ pub fn column_ui(ui: &mut Ui, session: &mut Session, more: &mut bool) {
     *more ^= header.header_response.on_hover_text(MORE_HOVER).clicked();
 }
 
-/// What opens beside the views in a compact window, whose row has no room for the frequency and the load.
+/// The controls under More in a compact window, whose row has no room for the frequency and the load.
 pub fn beside_ui(ui: &mut Ui, session: &mut Session, width: f32) {
     fields_ui(ui, session, &FREQUENCY, width);
     fields_ui(ui, session, &LOAD, width);
@@ -221,7 +221,7 @@ fn fields_below_ui(ui: &mut Ui, session: &mut Session, width: f32) {
     }
     fields_ui(ui, session, &["damping.xi", "damping.c_n_s_per_m", "mass_g"], width);
     ui.add_space(8.0);
-    let hover = "What is changed seldom: sizes of the flexures, kind of shaking, uneven stops, run.";
+    let hover = "Seldom changed: sizes of the flexures, kind of shaking, uneven stops, run.";
     let heading = RichText::new("Advanced").strong();
     let advanced = egui::CollapsingHeader::new(heading).id_salt("advanced").show_unindented(ui, |ui| {
         fields_ui(ui, session, &CIRCUIT, width);
@@ -244,21 +244,19 @@ fn restitution_ui(ui: &mut Ui, session: &mut Session, width: f32) {
     absent_ui(ui, "restitution", why);
 }
 
-/// A button labelled `name` that starts the search; there is none in a lesson, and where nothing shakes the
-/// mass.
+/// A button labelled `name` that starts the search; it is absent in a lesson and without shaking.
 pub fn best_stops_ui(ui: &mut Ui, session: &mut Session, name: &str) {
     if session.best.is_off || !session.model().is_shaken() {
         return;
     }
-    let why = session.best.is_running().then_some("It is being looked for.");
+    let why = session.best.is_running().then_some("The search is running.");
     let response = ui.add_enabled(why.is_none(), egui::Button::new(name)).on_hover_text(SEARCH_HOVER);
     if response.on_disabled_hover_text(why.unwrap_or_default()).clicked() {
         session.find_best_stops();
     }
 }
 
-/// What can be done with the search for the best stops, from right to left: stop it, forget it, or move the
-/// stops there.
+/// Links for the search for the best stops, from right to left: stop it, forget it, or move the stops there.
 pub fn best_stops_answer_ui(ui: &mut Ui, session: &mut Session) {
     if session.best.is_running() {
         if ui.link("Stop looking").clicked() {

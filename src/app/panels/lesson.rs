@@ -45,9 +45,9 @@ pub enum LessonAction {
     NextLesson(&'static str),
 }
 
-/// Draws the strip, as high in every step of the lesson, with the dots of the steps and the buttons unless
-/// `urged` is `None`; else it moves the keyboard focus to the button that goes on. Returns the action that
-/// was chosen.
+/// Draws the strip, which has the same height in every step, with the dots of the steps and the buttons
+/// unless `urged` is `None`; if it is true, the button that continues gets the keyboard focus. Returns the
+/// chosen action.
 pub fn lesson_ui(
     ui: &mut Ui,
     lesson: &mut OpenLesson,
@@ -100,8 +100,8 @@ pub fn votes_ui(ui: &mut Ui, lesson: &OpenLesson) -> Option<LessonAction> {
     action
 }
 
-/// Height in points of the strip in a step, with all that can come below its text, which is this wide and
-/// over options has this least height.
+/// Height in points of the strip in a step, with everything that may appear below its text. The text has this
+/// width and, above options, this least height.
 fn height_of(ui: &Ui, style: &Style, step: &Step, (width, least): (f32, f32)) -> f32 {
     let of = |heading: &str, text: &str| {
         let mut job = job(style, heading, text);
@@ -273,7 +273,7 @@ fn reason_ui(ui: &mut Ui, lesson: &mut OpenLesson, style: &Style) {
     ui.add(field.hint_text("if you like")).labelled_by(name.id);
 }
 
-/// The steps as dots: filled once they are settled and behind, with a ring around the present one.
+/// The steps as dots: filled once they are settled and passed, with a ring around the present one.
 fn dots_ui(ui: &mut Ui, lesson: &OpenLesson, style: &Style) {
     let count = lesson.lesson().steps.len();
     let spacing = DOT_SPACING.min((NAVIGATION - 2.0 * DOT) / count as f32);
@@ -324,7 +324,7 @@ fn buttons_ui(ui: &mut Ui, lesson: &OpenLesson, urged: bool) -> Option<LessonAct
         action = Some(chosen);
     }
     if lesson.is_covering() {
-        // with an id of its own: Back, which stands there afterwards, would have its keyboard focus
+        // with a separate id: Back, which takes its place, would inherit the keyboard focus
         let reveal = ui.push_id("reveal", |ui| ui.button("Reveal")).inner;
         let reveal = reveal.on_hover_text("Shows what it does, without a choice");
         urge(&reveal, urged);
@@ -339,8 +339,8 @@ fn buttons_ui(ui: &mut Ui, lesson: &OpenLesson, urged: bool) -> Option<LessonAct
     action
 }
 
-/// Moves the keyboard focus to a button, so that Enter presses it, until it has been pressed: the button that
-/// then stands in its place must not have it.
+/// Gives a button the keyboard focus if `urged`, so that Enter presses it. A pressed button loses the focus,
+/// which the button that takes its place would inherit.
 fn urge(button: &Response, urged: bool) {
     if button.clicked() {
         button.surrender_focus();
@@ -349,7 +349,7 @@ fn urge(button: &Response, urged: bool) {
     }
 }
 
-/// Number of rows of so many options.
+/// Number of rows of `count` options.
 fn rows_of(count: usize) -> usize {
     count.div_ceil(SIDE_BY_SIDE).max(1)
 }

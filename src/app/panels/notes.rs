@@ -76,7 +76,7 @@ pub fn glossary_ui(ui: &Ui) -> bool {
     !(is_read || is_closed || toggled)
 }
 
-/// What was done in the lecturer's notes.
+/// Input in the window of the lecturer's notes.
 #[derive(Debug, Default)]
 pub struct Lectured {
     pub action: Option<LessonAction>,
@@ -160,7 +160,7 @@ fn lecturer_notes_ui(ui: &mut Ui, open: &OpenLesson) -> Option<LessonAction> {
     action
 }
 
-/// What to do, with a column of times; the line of now is marked.
+/// The lecturer's script, with a column of times; the line of the present time is marked.
 fn script_ui(ui: &mut Ui, open: &OpenLesson) {
     let lines = script(&open.lesson().lecturer);
     let now = open.open_for(ui.input(|input| input.time));

@@ -24,13 +24,13 @@ const ROW: f32 = 17.0;
 const MARGIN: f32 = 5.0;
 /// Width in points of a long sentence in one row.
 const LONG: f32 = 1050.0;
-/// Most rows of the line, in a window that is no wider than a column.
-const MOST_ROWS: f32 = 5.0;
+/// Greatest number of rows, in a window that is no wider than a column.
+const MAX_ROWS: f32 = 5.0;
 
 /// Height in points of the line, which no sentence changes: two rows, or more where the window is narrow.
 pub fn height(ui: &Ui) -> f32 {
     let beside = if has_column(ui) { BESIDE + 76.0 } else { 60.0 };
-    let rows = (LONG / (ui.available_width() - beside).max(1.0)).ceil().clamp(2.0, MOST_ROWS);
+    let rows = (LONG / (ui.available_width() - beside).max(1.0)).ceil().clamp(2.0, MAX_ROWS);
     rows * ROW + MARGIN
 }
 
@@ -39,7 +39,7 @@ pub fn has_column(ui: &Ui) -> bool {
     ui.ctx().content_rect().width() >= NARROW
 }
 
-/// Draws the line; without a column beside the sentence, hover text has what that would say.
+/// Draws the line; without a column beside the sentence, the hover text has the accuracy.
 pub fn status_ui(ui: &mut Ui, session: &mut Session, announcer: &mut Announcer, style: &Style, column: bool) {
     let has_column = column && has_column(ui);
     let sentence = session.sentence();
@@ -88,8 +88,8 @@ fn stop_ui(ui: &mut Ui, session: &mut Session) {
         ui.ctx().request_repaint_after(OFFER_TO_STOP - worked);
         return;
     }
-    let hover = "The background has worked for so long on what this settles to, what it would take to cross \
-                 and how accurate the motion is. The motion goes on without it; the next change asks anew.";
+    let hover = "Time spent in the background on the settled motion, on what it would take to cross and on \
+                 the accuracy. The motion continues without these results; the next change starts anew.";
     let text = RichText::new(format!("Stop computing ({} s)", worked.as_secs())).size(SMALL);
     ui.ctx().request_repaint_after_secs(1.0);
     if ui.link(text).on_hover_text(hover).clicked() {

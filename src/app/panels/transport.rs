@@ -30,8 +30,8 @@ const BELOW: f32 = 16.0;
 
 /// Length in s from which on a run is long: its bar ends earlier while little of it has been seen.
 const LONG: f64 = 200.0;
-/// The share of a long run's bar, and the time in s, that are to have been seen; where less has been, the bar
-/// is shorter by the last number.
+/// While less than this share of a long run's bar has been seen, counting at least this time in s, the length
+/// of the bar is divided by the last number.
 const SEEN: (f64, f64, f64) = (0.1, 5.0, 4.0);
 /// Width in points of the dots behind a bar that ends before the run does.
 const DOTS: f32 = 18.0;
@@ -79,7 +79,7 @@ pub fn transport_ui(ui: &mut Ui, session: &mut Session, style: &Style, covered: 
             ui.allocate_ui_with_layout(vec2(TIME.0, SIGNS), left, |ui| clock_ui(ui, session));
             scrub_ui(ui, session, style, covered, Some(&note));
         } else {
-            // not so high as to make the bar higher
+            // at most as high as the bar
             let (place, _) = ui.allocate_exact_size(vec2(TIME.1, ui.available_height()), Sense::hover());
             let lines = egui::Layout::top_down(egui::Align::Min);
             let mut beside = ui.new_child(UiBuilder::new().max_rect(place).layout(lines));
@@ -168,7 +168,7 @@ fn sign(kind: EventKind, at: Pos2, style: &Style) -> Shape {
     }
 }
 
-/// The signs of the events that there are, and their meanings, in a row.
+/// The signs that occur, with their meanings, in a row.
 fn legend(painter: &Painter, style: &Style, row: Rect, present: [bool; 3]) {
     let mut x = row.left() + 10.0;
     let signs =
@@ -180,8 +180,8 @@ fn legend(painter: &Painter, style: &Style, row: Rect, present: [bool; 3]) {
     }
 }
 
-/// The length in s of the bar of a run of this length, of which so much has been seen: the whole run, or
-/// while little of a long one has been seen a part of it, so that what has been seen is more than a sliver.
+/// The length in s of the bar of a run of this length, of which so much has been seen: the whole run, or,
+/// while little of a long run has been seen, a part of it, so that the part that has been seen is visible.
 fn length_of_bar(run: f64, seen: f64) -> f64 {
     let (share, least, factor) = SEEN;
     let mut length = run;
@@ -254,7 +254,7 @@ fn scrub_ui(ui: &mut Ui, session: &mut Session, style: &Style, covered: bool, no
     });
 }
 
-/// What is told of the time that is shown: its event, or the goal.
+/// The note on the time that is shown: its event, or the goal.
 fn note(session: &Session, covered: bool) -> String {
     let player = &session.player;
     match player.goal() {
@@ -274,7 +274,7 @@ fn note_ui(ui: &mut Ui, style: &Style, note: &str) {
 
 /// A link back to the present, if the past is shown.
 fn to_present_ui(ui: &mut Ui, session: &mut Session, text: &str) {
-    let hover = "The past is shown, with the shaking and the stops of then. A click goes back to now.";
+    let hover = "The past is shown, with the shaking and the stops of that time. A click goes back to now.";
     let is_past = session.player.is_past();
     if is_past && ui.link(RichText::new(text).small()).on_hover_text(hover).clicked() {
         session.player.to_present();

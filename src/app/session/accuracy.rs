@@ -26,7 +26,7 @@ const FRAME: f64 = 1.0 / 60.0;
 /// Length of the next comparison, as a multiple of the time since the run began.
 const SPAN_FACTOR: f64 = 2.0;
 
-/// A run of the motion, from a live time on; as a question, what it settles to.
+/// A run of the motion from a live time on; as a question it asks for the settled motion.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct LiveRun {
     pub model: SharedModel,
@@ -44,7 +44,7 @@ impl Question for LiveRun {
 }
 
 pub struct Accuracy {
-    /// The run that moves; `None` if its error cannot be known.
+    /// The run on the screen; `None` if its error cannot be known.
     run: Option<LiveRun>,
     pub(super) trust: Background<PathQuestion, Trust>,
     /// The selected method of fixed step.
@@ -111,7 +111,7 @@ fn short(trust: &Trust, from: f64, is_regular: bool) -> String {
     let reliable = |until: f64| format!("path reliable up to {}", moment(from + until));
     match trust.course {
         Course::Kept => format!("Path error {}", small_length(trust.error, trust.travel)),
-        // a motion that comes to repeat was chaotic for a time alone
+        // a motion that settles to a periodic one was chaotic only for a time
         Course::Chaotic { until, .. } if !is_regular => format!("Chaotic: {}", reliable(until)),
         Course::Chaotic { until, .. } | Course::Sensitive { until } | Course::Coarse { until } => {
             capital(&reliable(until))
@@ -124,10 +124,10 @@ fn long(trust: &Trust, from: f64) -> String {
     let regime = match (trust.course, trust.same_regime) {
         (Course::Kept, _) => "",
         (_, true) => {
-            " This is about the path, where the mass is at an instant: both runs come to the same regime, \
-             which does not hang on it."
+            " This is about the path, the position at each instant: both runs come to the same regime, \
+             which does not depend on it."
         }
-        (_, false) => " The two runs also come to different regimes, so that the regime hangs on it.",
+        (_, false) => " The two runs also come to different regimes, so that the regime depends on it.",
     };
     format!("{}{regime}", trust.long(from))
 }
@@ -147,7 +147,7 @@ impl Default for Accuracy {
 }
 
 impl Accuracy {
-    /// Begins with another run, or with `None` where its error cannot be known.
+    /// Begins anew with another run, or with `None` if its error cannot be known.
     pub(super) fn begin(&mut self, run: Option<LiveRun>) {
         (self.run, self.is_stopped) = (run, false);
         self.trust.clear();
@@ -159,7 +159,7 @@ impl Accuracy {
         times.into_iter().flatten().max()
     }
 
-    /// Stops all computations; what they would have found stays unknown.
+    /// Stops all computations; their results stay unknown.
     pub(super) fn stop(&mut self) {
         self.trust.stop();
         self.tolerances.stop();
@@ -204,7 +204,7 @@ impl Accuracy {
         self.stepped.want(question, still, wake);
     }
 
-    /// The cost of each digit, and whether it is that in `model`.
+    /// The cost of each digit, and whether it was computed for `model`.
     pub fn tolerances(&self, model: &Model) -> Option<(&Tolerances, bool)> {
         let same = std::ptr::eq(&*self.tolerances.question()?.0, model);
         Some((self.tolerances.newest()?, same && self.tolerances.answer().is_some()))

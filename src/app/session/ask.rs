@@ -19,14 +19,14 @@ use super::prepared::{Prepared, SceneWithFiles};
 /// Number of thresholds that are kept.
 const KEPT: usize = 64;
 
-/// Thresholds found so far, oldest first: a scene that comes back, by an undo or in a lesson, has its own at
-/// once.
-fn found() -> MutexGuard<'static, Vec<(Scene, Arc<Mechanism>, Thresholds)>> {
+/// Thresholds of earlier scenes, oldest first: a scene that comes back by an undo or in a lesson needs no
+/// search.
+fn earlier() -> MutexGuard<'static, Vec<(Scene, Arc<Mechanism>, Thresholds)>> {
     static FOUND: Mutex<Vec<(Scene, Arc<Mechanism>, Thresholds)>> = Mutex::new(Vec::new());
     FOUND.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// The thresholds of an unshaken scene, from [`found`] or searched.
+/// The thresholds of an unshaken scene, from [`earlier`] or searched.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ThresholdsQuestion(pub Prepared);
 
@@ -36,10 +36,10 @@ impl Question for ThresholdsQuestion {
 
     fn answer(&self, cancel: &AtomicBool, _: Each<Thresholds>) -> Option<Thresholds> {
         let Prepared { of: SceneWithFiles { scene, .. }, mechanism, .. } = &self.0;
-        let known = found().iter().find(|kept| kept.0 == *scene && kept.1 == *mechanism).map(|kept| kept.2);
+        let known = earlier().iter().find(|kept| kept.0 == *scene && kept.1 == *mechanism).map(|kept| kept.2);
         known.or_else(|| {
             let thresholds = study::thresholds(scene, mechanism, &Task { tick: &|| (), cancel })?;
-            let mut all = found();
+            let mut all = earlier();
             if all.len() == KEPT {
                 all.remove(0);
             }
@@ -53,7 +53,7 @@ impl Question for ThresholdsQuestion {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct StopsQuestion {
     pub of: Prepared,
-    /// That of all stops.
+    /// The restitution of all stops.
     pub restitution: Uncompared<f64>,
 }
 
@@ -96,7 +96,8 @@ impl Session {
         }
     }
 
-    /// Drops what it would take to cross. The thresholds stay if only the amplitude was changed.
+    /// Drops the answers about what it would take to cross. The thresholds stay if only the amplitude was
+    /// changed.
     pub(super) fn forget_ways(&mut self) {
         let scene = unshaken(&self.built);
         if self.fault.is_some() || self.thresholds.question().is_none_or(|asked| asked.0.of.scene != scene) {

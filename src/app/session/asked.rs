@@ -1,4 +1,4 @@
-//! The questions of a session by their names, as they travel to a worker as messages, with their answers.
+//! Answers to the questions of a session in messages, which are told apart by their names.
 
 use std::sync::atomic::AtomicBool;
 

@@ -147,7 +147,7 @@ impl Session {
         let axis = SweepAxis { field: LIMIT.to_owned(), ..SweepAxis::default() };
         let mut scene = ground(self.scene(), self.remembered_stops(), std::slice::from_ref(&axis));
         if !FieldPath::new(LIMIT).set(&mut scene, reach.low) {
-            return Err("The stops that would come do not stand equally far out.");
+            return Err("The stops that would be switched on do not stand equally far out.");
         }
         let range = DesignRange::new(LIMIT, (reach.low, reach.high), INTERVALS[0]);
         let duration_s = (!self.model().repeats()).then_some(scene.run.duration_s);

@@ -110,7 +110,7 @@ impl Editor {
         self.document.scene != self.saved
     }
 
-    /// Whether nothing was changed but what one plays with: shaking, stops and start of a built-in scene.
+    /// Whether the scene is a built-in one of which only shaking, stops and start were changed.
     pub fn is_play(&self) -> bool {
         let (scene, mut played) = (&self.document.scene, self.saved.clone());
         (played.stops, played.start) = (scene.stops, scene.start);
@@ -190,7 +190,7 @@ impl Editor {
         let has_link = |scene: &Scene| {
             let mut document = self.document.clone();
             document.scene.clone_from(scene);
-            document.link().is_ok_and(|its| its == link)
+            document.link().is_ok_and(|other| other == link)
         };
         let place = |scenes: &[Scene]| scenes.iter().rev().position(has_link);
         match (place(&self.undo), place(&self.redo)) {
@@ -251,7 +251,7 @@ pub(in crate::app) fn keep_start_inside(scene: &mut Scene) {
     }
 }
 
-/// Writes a file that is read again.
+/// Writes a file, and keeps its content where it could not be read again.
 fn write_kept(path: &Path, bytes: &[u8]) -> Result<(), String> {
     write_file(path, bytes)?;
     system::files::keep_written(path, bytes);

@@ -94,7 +94,7 @@ pub struct WalkQuestion {
     pub scene: Scene,
     #[serde(with = "crate::app::task::as_text")]
     pub axis: SweepAxis,
-    /// The scene, from rest, with the value of the field that it has.
+    /// The scene, from rest, with its present value of the field.
     ground: Uncompared<Prepared>,
     values: Uncompared<Vec<f64>>,
     /// The strides and directions of the walks, the coarse ones first.
@@ -171,8 +171,8 @@ impl Session {
         let values = Axis::from_scene(&axis, &ground).map(|axis| axis.values);
         let values = values.map_err(|(part, problem)| format!("{part}: {problem}"))?;
         if !self.model().repeats() {
-            return Err("Each run goes on from the state of the one before at the drive's phase 0: that \
-                        needs shaking that repeats, such as a sine."
+            return Err("Each run continues the one before, from phase 0 of the drive, which needs a drive \
+                        that repeats, such as a sine."
                 .into());
         }
         let mut scene = ground.clone();
@@ -221,11 +221,11 @@ impl Question for BasinsQuestion {
 pub struct Level {
     /// The attractors, and the attractor that each start goes to.
     pub answer: Answer,
-    /// What each attractor is, in words that no other one has.
+    /// A description of each attractor that distinguishes it from the others.
     pub words: Vec<String>,
     /// Their picture, in which a start that has not been run shows the answer of a neighbour.
     pub chart: Chart,
-    /// How many units of its velocities are 1 m/s.
+    /// 1 m/s in the unit of the chart's velocities.
     pub per_speed: f64,
     /// Range of displacements in m that the mass may have.
     pub room: (f64, f64),

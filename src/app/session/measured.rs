@@ -19,7 +19,7 @@ use super::prepared::{SceneWithFiles, SharedModel};
 /// A measured record with its two chosen columns.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MeasuredRecord {
-    /// Its file, and the name of that.
+    /// The path of its file, and the name of the file.
     pub path: PathBuf,
     pub name: String,
     /// The units of its two columns as their files have them; not a part of a question.
@@ -45,8 +45,8 @@ impl MeasuredRecord {
             [Quantity::Time, Quantity::Displacement | Quantity::Velocity | Quantity::Acceleration]
             | [Quantity::Displacement, Quantity::Force] => {}
             [Quantity::Time, _] => {
-                return Err("A force over time has no curve to lie over: choose its position as the column \
-                            across, or displacement, velocity or acceleration as the values."
+                return Err("A force over time has nothing to be compared with: choose its position as the \
+                            column across, or displacement, velocity or acceleration as the values."
                     .to_owned());
             }
             _ => {
@@ -267,14 +267,14 @@ impl Session {
         let name = absolute.to_str().ok_or("The name of the file is not valid UTF-8: rename it.")?;
         let record = read_record(&absolute).map_err(|problem| {
             format!(
-                "A scene knows its record by the file alone, and has to find the columns of time and \
+                "A scene names only the file of its record, and has to find the columns of time and \
                  acceleration by the units at the ends of their names, such as `t_s` and `a_g`. The file \
                  {problem}"
             )
         })?;
-        let mismatch = "A scene knows its record by the file alone, and reads other columns than those that \
-                     are chosen here, or in other units: name the two columns `t_s` and `accel_m_per_s2`, \
-                     or end their names with their units, and no other ones with such units.";
+        let mismatch = "A scene names only the file of its record, and reads other columns than those that \
+                        are chosen here, or in other units: name the two columns `t_s` and `accel_m_per_s2`, \
+                        or end their names with their units, and no other ones with such units.";
         if (&record.times, &record.accelerations) != (&shown.across.values, &shown.values.values) {
             return Err(mismatch.to_owned());
         }

@@ -63,7 +63,7 @@ pub struct Card {
 
 pub struct Session {
     pub editor: Editor,
-    /// The model that moves: that of the scene, or of its last version that could be run.
+    /// The model of the motion: that of the scene, or of its last version that could be run.
     pub(in crate::app) model: SharedModel,
     /// Why the present scene cannot be run.
     fault: Option<String>,

@@ -1,4 +1,4 @@
-//! Pinned motions: each continues with its own scene, at the same live time and drive phase as the session's.
+//! Pinned motions: each continues with its scene, at the live time and drive phase of the session's motion.
 
 use std::time::Duration;
 
@@ -48,7 +48,7 @@ pub struct Pin {
     pub since: f64,
     /// What it settles to, if that was known when it was pinned.
     known: Option<Summary>,
-    /// What it settles to, if it had to be asked.
+    /// The answer what it settles to, if that was not known when it was pinned.
     settled: Background<LiveRun, Summary>,
     /// Its thresholds, if they were searched for the open scene.
     pub thresholds: Option<Thresholds>,
@@ -185,7 +185,7 @@ impl Session {
         self.edit_once(|edited| *edited = scene)
     }
 
-    /// Notes the thresholds of the open scene at the pins whose scenes have the same.
+    /// Copies the thresholds of the open scene to the pins whose scenes have the same thresholds.
     pub(super) fn note_thresholds(&mut self) {
         let (Some(asked), Some(found)) = (self.thresholds.question(), self.thresholds.answer()) else {
             return;

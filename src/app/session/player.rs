@@ -66,7 +66,7 @@ const CHECK_INTERVAL: f64 = 2.0;
 pub enum Goal {
     /// To this time in s.
     Time(f64),
-    /// To this time in s, from which on the motion has settled; it then goes on at its own speed.
+    /// To this time in s, from which on the motion has settled; it then plays on at the chosen speed.
     Settled(f64),
     /// To the first event of this kind, if it comes before this time in s.
     First(EventKind, f64),
@@ -120,7 +120,7 @@ impl Player {
         }
     }
 
-    /// Whether time goes on.
+    /// Whether the time that is shown advances.
     pub fn is_playing(&self) -> bool {
         let plays = self.playing && (self.past.is_some() || self.watch.ended().is_none());
         !self.held && (plays || self.goal.is_some())

@@ -1,5 +1,5 @@
-//! Scenes, mechanisms and models in questions: shared in this program, and written as what they are built
-//! from.
+//! Scenes, mechanisms and models in questions: shared within the program, and written in messages as the data
+//! from which they are built.
 
 use std::collections::BTreeMap;
 use std::ops::Deref;
@@ -84,7 +84,7 @@ const KEPT: usize = 4;
 /// What a mechanism was built from, and the mechanism.
 type Kept = (scene::Mechanism, Files, f64, Arc<Mechanism>);
 
-/// The mechanism of a scene that has come as text: that of a question before if it is the same.
+/// The mechanism of a scene that has come as text, taken from an earlier question if that had the same.
 fn solved(of: &SceneWithFiles, tolerance: f64) -> Result<Arc<Mechanism>, String> {
     static SOLVED: Mutex<Vec<Kept>> = Mutex::new(Vec::new());
     let mut solved = SOLVED.lock().unwrap_or_else(PoisonError::into_inner);
@@ -119,7 +119,7 @@ impl SharedModel {
         Self { model: Identity(Arc::new(model)), of: Arc::new(of) }
     }
 
-    /// The model, or else this one, which continues a motion of it.
+    /// The model that continues a motion of this one, or this one without it.
     pub fn or(&self, continued: Option<Model>) -> Self {
         let model = Identity(Arc::new(continued.unwrap_or_else(|| (**self).clone())));
         Self { model, of: Arc::clone(&self.of) }
@@ -142,7 +142,7 @@ impl TryFrom<(Arc<Prepared>, Beginning)> for SharedModel {
     }
 }
 
-/// What is wrong first; empty without faults.
+/// The problem of the first fault; empty without faults.
 pub(super) fn first_problem(faults: &[Fault]) -> String {
     faults.first().map_or_else(String::new, |fault| fault.problem.clone())
 }

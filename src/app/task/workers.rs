@@ -15,17 +15,17 @@ pub struct Workers {
     pub ask: fn(&str, &[u8]) -> u32,
     /// Cancels the question of this number.
     pub cancel: fn(u32),
-    /// Number of questions into which a long one is divided.
+    /// Number of questions into which a long question is divided.
     pub share: usize,
 }
 
 static WORKERS: OnceLock<Workers> = OnceLock::new();
 
-/// What takes a part of an answer.
+/// Callback for a part of an answer.
 type Take = Box<dyn Fn(&[u8])>;
 
 thread_local! {
-    /// What takes the parts of the questions under way.
+    /// Callbacks for the parts of the questions that are being answered.
     static UNDER_WAY: RefCell<HashMap<u32, (Take, Wake)>> = RefCell::default();
 }
 
@@ -34,7 +34,7 @@ pub fn set_workers(workers: Workers) {
     let _ = WORKERS.set(workers);
 }
 
-/// Takes a part of an answer from a worker; without a message there are no more.
+/// Passes on a part of an answer from a worker; without a message the answer is complete.
 pub fn take_part(number: u32, message: Option<&[u8]>) {
     let wake = UNDER_WAY.with_borrow_mut(|under_way| match message {
         Some(message) => under_way.get(&number).map(|(take, wake)| {

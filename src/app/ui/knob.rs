@@ -33,11 +33,11 @@ pub struct Knob<'a> {
     pub name: &'a str,
     /// The unit after the number; empty for a ratio.
     pub unit: &'a str,
-    /// How far the slider goes; a typed number may lie outside.
+    /// The range of the slider; a typed number may lie outside.
     pub reach: Reach,
     /// Smallest and largest number that may be typed.
     pub typed: (f64, f64),
-    /// What happens if it is increased.
+    /// The effect of an increase.
     pub hover: &'a str,
     /// Width of the slider in points.
     pub width: f32,

@@ -1,8 +1,7 @@
-//! Colours, line widths and text sizes, with what each stands for.
-//!
-//! What a picture on paper shows has the colour that its role has there ([`Theme`]). No meaning depends on a
-//! hue alone: every regime has a shape as well. Light, dark and projector modes differ in background, widths
-//! and zoom, not in meanings.
+//! Colours, line widths and text sizes, with what each stands for. Lines and marks that also occur in
+//! pictures on paper have the colours of their roles there ([`Theme`]). No meaning depends on a hue alone:
+//! every regime has a shape as well. Light, dark and projector modes differ in background, widths and zoom,
+//! not in meanings.
 
 use std::sync::Arc;
 
@@ -16,7 +15,7 @@ pub const PROJECTOR_ZOOM: f32 = 1.5;
 const PROJECTED_HEIGHT: f32 = 480.0;
 /// Width in points that the bars and views need at least.
 const PROJECTED_WIDTH: f32 = 740.0;
-/// How much larger a view that fills the window is drawn by a projector.
+/// Additional zoom, for a projector, of a view that fills the window.
 pub const FILLED_ZOOM: f32 = 1.25;
 
 /// The zoom of the projector in a window of `size` in points at zoom 1: text, marks and lines are always the
@@ -27,7 +26,7 @@ pub fn projector_zoom(size: egui::Vec2) -> f32 {
 
 /// Width in points below which the window is laid out for a projector: two controls in a row, two views.
 pub const COMPACT_BELOW: f32 = 1000.0;
-/// Width in points below which a window is narrow, as that of a phone.
+/// Width in points below which a window is narrow, such as on a phone.
 pub const NARROW_BELOW: f32 = 560.0;
 
 /// Size in points of a window above which there is room for one more tile.
@@ -37,7 +36,7 @@ pub const LARGE_FROM: egui::Vec2 = egui::Vec2::new(1600.0, 880.0);
 pub const SMALL: f32 = 12.0;
 pub const BODY: f32 = 14.0;
 pub const STATUS: f32 = 18.0;
-/// Size of a text that would not fit at another one.
+/// Smallest text size in points, for texts that do not fit at a larger one.
 pub const LEAST: f32 = 9.5;
 
 /// Height in points of every control, and of the row with the title of a view.
@@ -112,18 +111,18 @@ impl Style {
         ]
     }
 
-    /// The colour of what stands for `role`.
+    /// The colour of a role.
     pub fn colour(&self, role: Role) -> Color32 {
         colour(self.theme().look(role).ink)
     }
 
-    /// The line of what stands for `role`.
+    /// The line of a role.
     pub fn stroke(&self, role: Role) -> Stroke {
         let look = self.theme().look(role);
         Stroke::new(self.line(look.width), colour(look.ink))
     }
 
-    /// The width in points of a line that is so wide on paper.
+    /// The width in points on the screen of a line with this width on paper.
     pub fn line(&self, width: f64) -> f32 {
         self.width(STROKE * width as f32)
     }
@@ -187,9 +186,9 @@ methods! {
     track(style) -> Color32 = style.pick(hex(0xd3d8dd), hex(0x40454d));
     /// A control under the pointer.
     pointed(style) -> Color32 = style.pick(hex(0xe9edf1), hex(0x2a2e34));
-    /// One of several that is chosen.
+    /// The chosen one of several options.
     chosen(style) -> Color32 = style.pick(hex(0xd3e6f4), hex(0x1f4560));
-    /// Links, and what is filled of a track.
+    /// Links, and the filled part of a track.
     accent(style) -> Color32 = style.pick(hex(0x17689f), hex(0x6cbcec));
     /// A primary action.
     action(style) -> Color32 = style.pick(hex(0x17689f), hex(0x2272a8));
@@ -220,9 +219,9 @@ methods! {
     ghost_mass_stroke(style) -> Stroke = Stroke::new(style.width(1.8), style.mass_ink());
     /// The height of the barrier where energies are compared with it.
     barrier_stroke(style) -> Stroke = Stroke::new(style.width(2.0), style.ink());
-    /// Frame of what has the keyboard focus.
+    /// Frame of the widget with the keyboard focus.
     focus_stroke(style) -> Stroke = Stroke::new(style.width(2.0), style.accent());
-    /// Frame of what a lesson points at.
+    /// Frame around the control or view that a lesson points at.
     pointing_stroke(style) -> Stroke = Stroke::new(style.width(3.0), style.mass_ink());
     arrow_stroke(style) -> Stroke = Stroke::new(style.width(3.0), style.base());
     flexure_stroke(style) -> Stroke = Stroke::new(style.width(2.0), style.ink());

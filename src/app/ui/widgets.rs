@@ -11,8 +11,8 @@ use crate::app::words::numbers::unbroken;
 
 use super::style::{BODY, COMPACT_BELOW, CONTROL, LEAST, Style};
 
-/// A dialog at most `width` points wide, with its contents below a heading. Returns what these return, and
-/// whether it was closed by a key or by a click beside it.
+/// A dialog at most `width` points wide, with its contents below a heading. Returns the value of the
+/// contents, and whether the dialog was closed by a key or by a click beside it.
 pub fn dialog_ui<R>(
     ui: &Ui,
     (id, width): (&str, f32),
@@ -69,7 +69,7 @@ pub fn prose_ui(ui: &mut Ui, text: &str) {
     tell(&response, egui::Role::Label, &text.replace('`', ""));
 }
 
-/// Tells a screen reader what a widget is, and its name.
+/// Gives a widget its role and its name for screen readers.
 pub fn tell(response: &Response, role: egui::Role, name: &str) {
     response.widget_info(|| egui::WidgetInfo::labeled(role, true, name));
 }
@@ -90,21 +90,21 @@ pub fn parts_ui(ui: &mut Ui, parts: &[(&str, FontFamily)], size: f32) -> Respons
     response
 }
 
-/// The text size at which texts fit into `room` one after another: `most` in one row, or else the size of
-/// body text in several, or less where they would not fit.
+/// The text size at which texts fit into `room` one after another: `largest` in one row, or else the size of
+/// body text in several rows, or less where they would not fit.
 ///
 /// Returns the size, and the height in points that they take.
-pub fn fitting(ui: &Ui, texts: &[(&str, FontFamily)], room: Vec2, most: f32) -> (f32, f32) {
+pub fn fitting(ui: &Ui, texts: &[(&str, FontFamily)], room: Vec2, largest: f32) -> (f32, f32) {
     let taken = |size: f32, width: f32| {
         let mut job = job(texts, size, Color32::PLACEHOLDER);
         job.wrap.max_width = width;
         ui.fonts_mut(|fonts| fonts.layout_job(job)).size()
     };
-    let in_a_row = taken(most, f32::INFINITY);
+    let in_a_row = taken(largest, f32::INFINITY);
     if in_a_row.x <= room.x {
-        return (most, in_a_row.y);
+        return (largest, in_a_row.y);
     }
-    let mut size = BODY.min(most);
+    let mut size = BODY.min(largest);
     while size > LEAST && taken(size, room.x).y > room.y {
         size -= 0.5;
     }
@@ -202,8 +202,8 @@ pub fn icon_button_ui(ui: &mut Ui, icon: Icon, width: f32, name: &str, hover: &s
     response.on_hover_text(hover)
 }
 
-/// A button of `size` without an outline, which is seen while it is `shown`, under the pointer or has the
-/// keyboard focus; screen readers and tests call it `name`.
+/// A button of `size` without an outline, whose icon is drawn while `shown` is set or it has the keyboard
+/// focus; screen readers and tests call it `name`.
 pub fn tool_ui(ui: &mut Ui, icon: Icon, size: f32, name: &str, hover: &str, shown: bool) -> Response {
     let (rect, response) = ui.allocate_exact_size(Vec2::splat(size), Sense::click());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, ui.is_enabled(), name));

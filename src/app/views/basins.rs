@@ -87,7 +87,7 @@ fn pointer_ui(ui: &Ui, context: &mut ViewContext<'_>, pane: &Pane, level: &Level
         let cell = cells.at(cells.across.cell(x_mm)?, cells.up.cell(speed)?);
         level.words.get(if let Cell::Value(place) = cell { place as usize } else { return None })
     };
-    let target = words().map_or("to none that is known".to_owned(), |words| format!("to {words}"));
+    let target = words().map_or("to no known attractor".to_owned(), |words| format!("to {words}"));
     let coarse = if is_whole { "" } else { " (coarse)" };
     let text = format!("{} mm, {} mm/s: {target}{coarse}", three(x_mm), three(v * 1e3));
     let at = (frame.right_bottom() - vec2(6.0, 4.0), Align2::RIGHT_BOTTOM);

@@ -27,7 +27,7 @@ pub fn before_now_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         let mut pin = false;
         table_ui(ui, context, (&columns, 1), &mut |ui, column, _| match column {
             None => {
-                let hover = "This motion goes on, dashed, beside the one that you change from here on (K).";
+                let hover = "This motion continues, dashed, beside the motion that you change (K).";
                 let button = ui.add_enabled(!is_full, Button::new("Pin").small());
                 pin = button.on_hover_text(hover).on_disabled_hover_text(FULL).clicked();
             }
@@ -50,8 +50,8 @@ pub fn compare_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     page_ui(ui, |ui| {
         buttons_ui(ui, context);
         if context.session.pins.all().is_empty() {
-            let text = "Nothing is pinned. A pinned motion goes on beside the present one, dashed, with the \
-                        drive in step.";
+            let text = "Nothing is pinned. A pinned motion continues beside the present one, dashed, with \
+                        the drive in step.";
             let below = ui.available_rect_before_wrap();
             return empty_ui(ui, &context.style, below, text);
         }

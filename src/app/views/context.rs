@@ -96,7 +96,7 @@ pub fn empty_ui(ui: &mut Ui, style: &Style, area: Rect, text: &str) {
     offer_ui(ui, style, area, text, "");
 }
 
-/// The same, and below it a button if it has a name. Returns whether that was clicked.
+/// Like [`empty_ui`], with a button below the sentence if it has a name. Returns whether it was clicked.
 pub fn offer_ui(ui: &mut Ui, style: &Style, area: Rect, text: &str, button: &str) -> bool {
     let width = (area.width() - 2.0 * MARK).clamp(1.0, SENTENCE);
     let words = ui.painter().layout(text.to_owned(), style.body(), style.faint(), width).size();
@@ -111,7 +111,7 @@ pub fn offer_ui(ui: &mut Ui, style: &Style, area: Rect, text: &str, button: &str
     .inner
 }
 
-/// Draws what covers a view: a hatching, a question mark and the question.
+/// Draws the cover of a view: a hatching, a question mark and the question.
 pub fn covered_ui(ui: &mut Ui, style: &Style, question: &str) {
     let area = ui.max_rect();
     let painter = ui.painter().with_clip_rect(area.intersect(ui.clip_rect()));

@@ -27,7 +27,7 @@ const EXTRA_DECIMALS: usize = 2;
 /// Distance in points from the numbers of the cursors to the frame below them.
 const ABOVE_FRAME: f32 = 3.0;
 
-/// Where the height of these numbers is kept from frame to frame.
+/// The key of the height of these numbers, which is kept from frame to frame.
 const READOUT: &str = "height of the cursors' numbers";
 
 /// The two time cursors.
@@ -90,7 +90,7 @@ fn event(session: &Session, t: f64, later: Option<bool>) -> Option<f64> {
     }
 }
 
-/// Height in points of what [`readout_ui`] writes, as it was last in this view.
+/// Height in points of the text of [`readout_ui`] when this view last drew it.
 pub(super) fn readout_height(ui: &Ui, context: &ViewContext<'_>) -> f32 {
     let height = ui.data(|data| data.get_temp(ui.scope_id().with(READOUT)));
     height.filter(|_| context.memory.cursors.on).unwrap_or(0.0)

@@ -59,7 +59,7 @@ const LEDGER: [Row; 6] = [
     ("damping", "Taken by damping.", |ledger| -ledger.damping_j, Style::faint),
     ("impacts", IN_IMPACTS, |ledger| -ledger.impact_j, Style::impact),
     (TRANSDUCER, IN_TRANSDUCER, |ledger| -(ledger.harvested_j + ledger.coil_j), Style::ink),
-    (STORED, "What that leaves in the mass and its mechanism.", |ledger| ledger.stored_j, Style::ink),
+    (STORED, "The energy left in the mass and its mechanism.", |ledger| ledger.stored_j, Style::ink),
 ];
 
 /// The largest unit not above `energy`, which callers take from the speed scale so that the unit stays.
@@ -78,8 +78,8 @@ pub fn decimals(ledger: &LiveLedger, unit: f64) -> usize {
     }
 }
 
-/// What was taken as a share of the work of the base, in whole percent; `None` for what was put in, and where
-/// there is no work or the value rounds to nothing.
+/// An energy that was taken, in whole percent of the work of the base; `None` for an energy that was
+/// supplied, without work, and for a value that rounds to 0.
 fn share_of_work(joule: f64, ledger: &LiveLedger, is_nothing: bool) -> Option<String> {
     let share = -100.0 * joule / ledger.work_j;
     (ledger.work_j > 0.0 && joule < 0.0 && !is_nothing).then(|| format!("{share:.0} %"))
@@ -89,7 +89,7 @@ fn is_nothing(joule: f64, unit: f64, decimals: usize) -> bool {
     (joule / unit).abs() < 0.5 * elementary::powi(0.1, decimals as i32)
 }
 
-/// The share of the longest bar that a value is drawn as: 0 for what rounds to nothing.
+/// The length of the bar of a value as a share of the longest bar; 0 for a value that rounds to 0.
 fn share(joule: f64, unit: f64, decimals: usize, largest: f64) -> f64 {
     if is_nothing(joule, unit, decimals) { 0.0 } else { joule / largest }
 }
@@ -127,7 +127,7 @@ pub fn energy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         (since_start, "since the start", "From the start of the motion up to the time that is shown."),
         (last_period, "last period", "The last whole forcing period. Steady motion repeats it."),
     ];
-    // both short where a long one would run into the other
+    // both headings are short if a long one would overlap the other
     let width = |text: &str| {
         let font = egui::TextStyle::Body.resolve(ui.style());
         ui.painter().layout_no_wrap(text.to_owned(), font, style.faint()).size().x
@@ -145,7 +145,7 @@ pub fn energy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         let rect = cell(area.left() + NAMES + column * i as f32, y, column, row);
         put_ui(ui, rect, RichText::new(*head).color(style.faint()), Align::Max, hover);
     }
-    let hover = "What came in counts up, what was taken counts down: a column adds up to what is stored.";
+    let hover = "Energy supplied is positive, energy taken negative: a column adds up to the stored energy.";
     let unit_name = RichText::new(format!("in {name}")).color(style.faint());
     put_ui(ui, cell(area.left(), y, NAMES, row), unit_name, Align::Min, hover);
     y += row;
@@ -171,8 +171,8 @@ pub fn energy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         let residual = whole.energy_residual();
         let hover = format!(
             "Up to {upto:.3} s: work + by hand - damping - impacts - stored = {:.1e} J, which is \
-             {residual:.0e} of what was moved. Every term is integrated on its own, so that this is a check \
-             of the run, though not its error.",
+             {residual:.0e} of the energy moved. Every term is integrated separately, so that this is a \
+             check of the run, though not its error.",
             whole.residual_j()
         );
         let text = format!("{} % of the energy accounted for", accounted(residual));
@@ -214,7 +214,7 @@ fn entry_ui(
             ui.painter().extend(dashed(&ends, *place, style.motion_stroke()));
         }
     }
-    // what the mass has gained or lost is no share
+    // the stored energy has no share of the work
     let taken = share_of_work(joule, ledger, is_nothing(joule, unit, decimals));
     if let Some(text) = taken.filter(|_| shares > 0.0 && *name != STORED) {
         let place = numbers.with_min_x(right).with_max_x(numbers.left());

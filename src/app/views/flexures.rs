@@ -34,7 +34,7 @@ pub(super) struct DrawingArea {
     pub half: Vec2,
 }
 
-/// A drawing of the mechanism in `rect`, and what is drawn of it already.
+/// A drawing of the mechanism in `rect`, and its lines and rectangles of which labels keep clear.
 pub(super) struct Sketch {
     pub painter: Painter,
     pub rect: Rect,

@@ -70,7 +70,7 @@ pub fn force_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     }
     releases(&painter, context, &pane, frame);
     let at = |x: f64, force: f64| pane.place(0, (x * 1e3, force)).unwrap_or(frame.min);
-    // whole at an end of an axis
+    // a ball at an end of an axis is not cut
     let over = ui.painter().with_clip_rect(frame.expand(BALL + 1.0).intersect(area));
     for ghost in ghosts(context) {
         let curve = &ghost.model.mechanism().curve;
@@ -89,8 +89,8 @@ pub fn force_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     }
 }
 
-/// What stays the same from frame to frame: axes, curve, kinks and equilibria, what was measured, and the
-/// legend of the push. The view draws the stops, which can be dragged.
+/// The parts that stay the same from frame to frame: axes, curve, kinks and equilibria, the measured force,
+/// and the legend of the push. The view draws the stops, which can be dragged.
 fn still(model: &Model, span: Span, axes: (PlotAxis, PlotAxis), measured: Option<Layer>) -> Chart {
     let curve = &model.mechanism().curve;
     let mm = |stop: Option<f64>| stop.map_or(f64::NAN, |x| x * 1e3);
@@ -102,7 +102,7 @@ fn still(model: &Model, span: Span, axes: (PlotAxis, PlotAxis), measured: Option
     let stops = (mm(stops.0), mm(stops.1));
     let mut panel = force_panel(model.mechanism(), axes, 1.0, stops, ("holds the mass there", points));
     panel.layers.retain(|layer| layer.role != Role::Stop);
-    // what is drawn is named before what is marked
+    // the legend names the lines before the marks
     let named = |role, name: &str| Layer::new(role, name, Marks::Path(Vec::new()));
     let push = model.is_shaken().then(|| named(Role::Push, "push"));
     let first = [named(Role::Curve, "holds the mass there")].into_iter().chain(push).chain(measured);

@@ -40,7 +40,7 @@ pub fn plated(painter: &Painter, style: &Style, (at, align): Place, text: &str, 
 }
 
 /// The left end of a text of `width` in a row, as close to the wanted `middle` as possible: within `room` and
-/// clear of what is `taken`. `None` if it would be farther from there than its width.
+/// clear of the ranges `taken`. `None` if it would be farther from the middle than its width.
 pub fn free_place(middle: f32, width: f32, room: Rangef, taken: &[Rangef]) -> Option<f32> {
     let (low, high) = (room.min + GAP, room.max - GAP - width);
     let wanted = (middle - 0.5 * width).clamp(low, high.max(low));
@@ -54,12 +54,12 @@ pub fn free_place(middle: f32, width: f32, room: Rangef, taken: &[Rangef]) -> Op
     ((nearest - wanted).abs() <= width).then_some(nearest)
 }
 
-/// What is drawn of a picture, of which labels keep clear.
+/// The lines and rectangles of a picture of which labels keep clear.
 #[derive(Debug, Default)]
 pub struct Taken {
     pub lines: Vec<Vec<Pos2>>,
     pub places: Vec<Rect>,
-    /// Behind the texts, where a line moves under them.
+    /// The background of the labels, for pictures in which a line moves behind them.
     pub plate: Option<Color32>,
 }
 

@@ -24,7 +24,7 @@ pub fn mass_ui(ui: &mut Ui, context: &mut ViewContext<'_>, at: Pos2, rect: Rect)
     }
 }
 
-/// The same for a mass that fills `grab`, at `at`. Returns whether the pointer is over it, or drags it.
+/// Like [`mass_ui`], for a mass at `at` that fills `grab`. Returns whether the pointer is over or drags it.
 pub fn body_ui(ui: &mut Ui, context: &mut ViewContext<'_>, (at, grab): (Pos2, Rect), rect: Rect) -> bool {
     if matches!(context.drawn, Drawn::Pinned(_)) {
         return false;

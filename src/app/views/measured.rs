@@ -31,7 +31,7 @@ pub fn measured_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     page_ui(ui, |ui| {
         let Some(over) = context.session.measured.over.clone() else {
             let text = "Drop a CSV on the window, of displacement, velocity or acceleration over time or of \
-                        force over position, to lay it over what is computed.";
+                        force over position, to compare it with the computed motion or force.";
             let room = ui.available_rect_before_wrap();
             let is_wanted = offer_ui(ui, &context.style, room, text, "Open measured data...");
             context.memory.open_measured |= is_wanted;
@@ -96,13 +96,13 @@ fn time_ui(ui: &mut Ui, session: &mut Session, over: &Overlay) {
     let period = model.forcing_period().unwrap_or(model.characteristic_time());
     let (low, high) = (over.centre - PERIODS * period, over.centre + PERIODS * period);
     let reach = Reach::even(low, high, below(period / 200.0));
-    let hover = "What is added to the times of the record. Type a number to go farther than the slider.";
+    let hover = "Added to the times of the record. Type a number to go farther than the slider.";
     let knob = of_record(["shift of the record", "shift", "s"], reach, -MAX_TYPED, hover);
     let turn = ui.horizontal(|ui| knob.ui(ui, over.shift)).inner;
     if let Some(shift) = turn.value {
         session.measured.shift_to(shift, turn.how == How::Once);
     }
-    let hover = "What the times of the record are multiplied by, before they are shifted: 0.999 for a \
+    let hover = "The factor of the times of the record, before they are shifted: 0.999 for a \
                  clock that is fast by a thousandth.";
     let reach = Reach::even(0.9, 1.1, 1e-4);
     let knob = of_record(["time scale of the record", "time scale", ""], reach, 1.0 / MAX_TYPED, hover);
@@ -119,7 +119,7 @@ fn offset_ui(ui: &mut Ui, session: &mut Session, over: &Overlay) {
     if ![record.across.quantity, record.values.quantity].contains(&Quantity::Displacement) {
         return;
     }
-    let hover = "What is added to the displacement where the sensor has its zero elsewhere: the \
+    let hover = "Added to the displacement if the sensor has its zero elsewhere: the \
                  difference of the means, once the shift is right.";
     let reach = Reach::even(-10.0, 10.0, 0.01);
     let knob = of_record(["offset of the record", "add", "mm"], reach, -MAX_TYPED, hover);
@@ -136,7 +136,7 @@ fn differences_ui(ui: &mut Ui, context: &ViewContext<'_>, over: &Overlay) {
     let faint = |text: String| egui::Label::new(RichText::new(text).color(style.faint())).wrap();
     let (parts, current) = session.measured.found.parts();
     match parts.last() {
-        None => _ = ui.label("Working it out."),
+        None => _ = ui.label("Computing."),
         Some(Err(problem)) => _ = ui.label(problem),
         Some(Ok(found)) => {
             let (table, remarks) = match found {
@@ -161,8 +161,8 @@ fn differences_ui(ui: &mut Ui, context: &ViewContext<'_>, over: &Overlay) {
     let end = short(session.model().duration());
     let mut text = format!("Compared with the run of the scene {begin}, 0 to {end} s.");
     if session.is_continued {
-        text += " The motion on the screen was changed on its way and is another one: the button at the \
-                 left of the time bar begins it anew.";
+        text += " The motion on the screen was changed while it ran and is another one: the button at \
+                 the left of the time bar restarts it.";
     }
     ui.add(faint(text));
 }

@@ -91,8 +91,8 @@ pub(super) struct FrozenAxis(Option<(f64, f64)>);
 /// Share of the axis by which the wanted ends may exceed a frozen axis before it moves.
 const SPARE: f64 = 0.08;
 
-/// Length of a scale that holds, in multiples of what it has to show, at most.
-const MOST: f64 = 8.0;
+/// Greatest length of a scale that is kept, as a multiple of the range that it has to show.
+const LONGEST_KEPT: f64 = 8.0;
 
 impl FrozenAxis {
     /// The same for an axis of displacements, which has to show the mass.
@@ -111,13 +111,13 @@ impl FrozenAxis {
     }
 
     /// The `wanted` ends of the axis, or the previous ones while they contain these and are no longer than
-    /// [`MOST`] times as long: the scale holds from one gesture to the next.
+    /// [`LONGEST_KEPT`] times as long: the scale holds from one gesture to the next.
     pub(super) fn hold(&mut self, wanted: (f64, f64), in_gesture: bool) -> (f64, f64) {
         let length = wanted.1 - wanted.0;
         let spare = if in_gesture { SPARE * length } else { 0.0 };
         let holds = |old: &(f64, f64)| {
             let contains = old.0 <= wanted.0 + spare && old.1 >= wanted.1 - spare;
-            contains && old.1 - old.0 <= MOST * length
+            contains && old.1 - old.0 <= LONGEST_KEPT * length
         };
         let ends = self.0.filter(holds).unwrap_or(wanted);
         *self.0.insert(ends)

@@ -1,8 +1,8 @@
 //! The views of the window.
 //!
-//! Each view is a row of the table of [`View`], and a function in its own file or folder that the row names.
-//! Views share the x axis of [`Span`], so that the mechanism lines up with the well below it, and keep their
-//! state between frames in [`Memory`].
+//! Each view is a row of the table of [`View`], and a function, which the row names, in a separate file or
+//! folder. Views share the x axis of [`Span`], so that the mechanism lines up with the well below it, and
+//! keep their state between frames in [`Memory`].
 
 mod accuracy;
 mod axes;
@@ -53,7 +53,7 @@ pub use span::Span;
 pub(super) use trace::stretch;
 pub use view::View;
 
-/// What is said over a view that waits for the first prediction of a lesson.
+/// The text over a view that is covered until the first prediction of a lesson has been shown.
 const LATER: &str = "This is shown after the first prediction.";
 
 pub fn view_ui(ui: &mut Ui, view: View, context: &mut ViewContext<'_>) {

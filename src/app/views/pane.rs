@@ -61,7 +61,7 @@ impl Place {
         let area = area.with_max_x(area.right() - RIGHT);
         let unit = |points: f32| f64::from(points / UNIT);
         let row = LegendRow::of(ui, area);
-        // in line with the frame where it shares the row of the card, else in rows as long as there are
+        // a legend in the row of the card is in line with the frame; otherwise it has rows of the full width
         let shares = LegendRow::given(ui).is_some();
         let legend = if shares { (row.left - area.left()).max(GUTTER) } else { LEGEND_LEFT };
         let room = Room {
@@ -89,8 +89,8 @@ impl Pane {
         painter.add(Shape::mesh(mesh));
     }
 
-    /// Writes what is under the pointer at the right end of the legend, over the entries that it would cut,
-    /// left of what stands `beside` it.
+    /// Writes the values under the pointer at the right end of the legend, `beside` points from the end, and
+    /// covers entries that it would cut.
     pub fn reading(&self, ui: &Ui, style: &Style, beside: f32, text: &str) {
         let area = self.response.rect;
         let painter = ui.painter().with_clip_rect(area);
@@ -147,7 +147,7 @@ impl Pane {
     }
 }
 
-/// What is painted of a chart at a place of the screen.
+/// A chart as painted at a place of the screen.
 struct Painting {
     origin: Pos2,
     frames: Vec<Frame>,
@@ -187,7 +187,7 @@ impl Painting {
                 // without a soft edge, so that neighbouring cells leave no seam
                 Drawn::Rect(area, ink) => mesh.add_colored_rect(self.rect(area), colour(ink)),
                 Drawn::Line(points, width, ink) => {
-                    // frame and grid are as thin by a projector
+                    // frame and grid stay thin for a projector
                     let width = if is_fine(width) { width as f32 * UNIT } else { style.line(width) };
                     add(Shape::line(places(&points), Stroke::new(width, colour(ink))));
                 }
@@ -215,7 +215,7 @@ impl Painting {
         self.texts.iter().for_each(|text| write(painter, self.place(text.at), text));
     }
 
-    /// The place on the screen of one on the canvas.
+    /// The place on the screen of a point of the canvas.
     fn place(&self, (x, y): (f64, f64)) -> Pos2 {
         pos2(self.origin.x + x as f32 * UNIT, self.origin.y + y as f32 * UNIT)
     }
@@ -286,7 +286,7 @@ pub fn fresh_pane_ui(ui: &mut Ui, style: &Style, place: impl Into<Place>, chart:
     shown(ui, &place, Arc::new(chart), painting)
 }
 
-/// Paints what was made of a chart for this place.
+/// Shows a chart that was painted for this place.
 fn shown(ui: &mut Ui, place: &Place, chart: Arc<Chart>, painting: Arc<Painting>) -> Pane {
     let response = ui.interact(place.area, ui.scope_id().with("chart"), place.sense);
     painting.paint(&ui.painter().with_clip_rect(place.area));

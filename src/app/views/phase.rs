@@ -121,8 +121,8 @@ pub fn states_ui(ui: &mut Ui, context: &mut ViewContext<'_>, is_section: bool) {
     context.span = shared;
 }
 
-/// What stays the same from frame to frame: axes, separatrix and equilibria, and the legend of the motion.
-/// The view draws the stops, which can be dragged.
+/// The parts that stay the same from frame to frame: axes, separatrix and equilibria, and the legend of the
+/// motion. The view draws the stops, which can be dragged.
 fn still(model: &Model, axes: (PlotAxis, PlotAxis), points_only: bool) -> Chart {
     let mut named = Vec::new();
     if model.forcing_period().is_some() {
@@ -167,7 +167,7 @@ fn points_ui(ui: &mut Ui, area: egui::Rect, points_only: &mut bool) {
     });
 }
 
-/// Shows the state under the pointer; a click lets the motion go on from there.
+/// Shows the state under the pointer; a click continues the motion from there.
 fn start_ui(ui: &Ui, context: &mut ViewContext<'_>, pane: &Pane, beside: f32) {
     let Some((mm, speed)) = pane.pointed() else { return };
     if pane.response.clicked() {
@@ -179,7 +179,7 @@ fn start_ui(ui: &Ui, context: &mut ViewContext<'_>, pane: &Pane, beside: f32) {
     }
     pane.reading(ui, &context.style, beside, &format!("{} mm, {} mm/s", three(mm), three(speed)));
     if pointer_rests(ui) {
-        pane.response.clone().on_hover_text_at_pointer("Click: the motion goes on from here.");
+        pane.response.clone().on_hover_text_at_pointer("Click: the motion continues from here.");
     }
 }
 

@@ -65,7 +65,7 @@ pub fn power_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
 /// Sentences on the harvested power: means, and the window over which they were taken.
 fn harvested(session: &Session) -> Vec<String> {
     let Some(summary) = session.settled_now() else {
-        return vec!["Into the load: the mean is being worked out.".to_owned(), String::new()];
+        return vec!["Into the load: the mean is being computed.".to_owned(), String::new()];
     };
     let harvest = summary.harvest;
     let means = || Some((harvest?.mean_load_power?, harvest?.mean_coil_power?, harvest?.voltage_rms?));

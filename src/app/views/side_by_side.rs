@@ -21,8 +21,8 @@ pub fn side_by_side_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let area = ui.max_rect();
     let count = context.session.pins.all().len();
     if count == 0 {
-        let text =
-            "Nothing is pinned. A pinned motion goes on here beside the present one, with the drive in step.";
+        let text = "Nothing is pinned. A pinned motion continues here beside the present one, \
+                    in step with the drive.";
         let name = match context.session.scene().stops {
             Stops::None => "Beside it with stops",
             _ => "Beside it without stops",
@@ -41,7 +41,7 @@ pub fn side_by_side_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         let corner = area.min + vec2(i as f32 * (width + GAP), 0.0);
         let column = Rect::from_min_size(corner, vec2(width, area.height()));
         context.drawn = drawn;
-        // the pin is drawn last, with a drawing of its own in the memory
+        // the pinned motion is drawn last, with a separate drawing in the memory
         if drawn != Drawn::Alone {
             std::mem::swap(&mut context.memory.drawing, &mut context.memory.beside);
         }

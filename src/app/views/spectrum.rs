@@ -36,7 +36,7 @@ pub fn spectrum_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let spectrum = match parts.last() {
         Some(Ok(spectrum)) => spectrum,
         Some(Err(problem)) => return empty_ui(ui, &style, below, problem),
-        None => return empty_ui(ui, &style, below, "Working it out."),
+        None => return empty_ui(ui, &style, below, "Computing."),
     };
     let chart = spectrum_chart(spectrum, SpectrumQuantity::Amplitude, Ranges::default());
     let name = SIGNALS.iter().find(|entry| entry.0 == spectrum.signal).map_or("", |entry| entry.1);

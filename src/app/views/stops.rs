@@ -49,7 +49,7 @@ fn limit_number(session: &Session, mm: f64) -> String {
     with_minus(&shown(mm, decimals(key_step(session))))
 }
 
-/// Writes the travel limits over `rect` beside the faces of the stops; what is drawn is `taken`.
+/// Writes the travel limits over `rect` beside the stops, clear of `taken`, to which it adds them.
 pub(super) fn travel_limits(painter: &Painter, context: &ViewContext<'_>, rect: Rect, taken: &mut Taken) {
     let look = (context.style.small(), context.style.ink());
     let (stops, _) = shown_stops(context.session, context.drawn);
@@ -115,7 +115,7 @@ pub fn stops_ui(
             let at = limit_number(context.session, mm);
             let then = match context.drawn {
                 Drawn::Pinned(_) => format!("The stop of the pinned motion, at {at} mm."),
-                _ => format!("Then the stop was at {at} mm. The controls change what is now."),
+                _ => format!("At that time the stop was at {at} mm. The controls change the present stop."),
             };
             ui.interact(grab, id, Sense::hover()).on_hover_text(then);
             continue;

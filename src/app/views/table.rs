@@ -40,7 +40,7 @@ const CROSSES: &str = "crosses from";
 
 /// A column of the table.
 pub(super) struct Column {
-    /// `None` for a scene that there is not.
+    /// `None` if there is no such scene, as before the first change.
     pub card: Option<Card>,
     /// Live time in s at which its motion ended.
     pub ended: Option<f64>,
@@ -169,7 +169,7 @@ pub(super) fn table_ui(
     });
 }
 
-/// What holds for the row of the motion and those below it.
+/// Note on the row of the motion and the rows below it.
 const SETTLED: &str = "once settled";
 const SETTLED_HOVER: &str = "What the motion settles to, whether or not it has been played so far.";
 

@@ -223,13 +223,13 @@ fn pinned(session: &Session, quantity: TraceQuantity) -> &[Pin] {
     if is_drawn { session.pins.all() } else { &[] }
 }
 
-/// The samples of a motion from before `from` to `to` in s, thinned to about the number `most`, and its
-/// `state` at the end.
-fn thinned(watch: &Watch, (from, to): Point, most: usize, state: Sample) -> impl Iterator<Item = Sample> {
+/// The samples of a motion from before `from` to `to` in s, thinned to about `count` samples, and its `state`
+/// at the end.
+fn thinned(watch: &Watch, (from, to): Point, count: usize, state: Sample) -> impl Iterator<Item = Sample> {
     let samples = watch.samples();
     let first = samples.partition_point(|sample| sample.t < from).saturating_sub(1);
     let last = samples.partition_point(|sample| sample.t <= to).max(first);
-    let stride = ((last - first) / most).max(1);
+    let stride = ((last - first) / count).max(1);
     samples.range(first..last).step_by(stride).copied().chain([state])
 }
 
@@ -251,8 +251,8 @@ pub(in crate::app) fn stretch(model: &Model) -> f64 {
         .map_or(SWINGS * model.characteristic_time(), |period| (PERIODS * period).min(limit))
 }
 
-/// The places in mm of the stops in a range of time, NaN where there is none; and of stops that moved instead
-/// the lines along which they did, parted by points that are not finite.
+/// The positions in mm of the stops in a range of time, NaN without a stop. If a stop moved they are NaN, and
+/// the lines of both stops over time are returned, separated by points that are not finite.
 fn stop_lines(watch: &Watch, from: f64, to: f64) -> (Point, Option<Vec<Point>>) {
     let mm = |stop: Option<f64>| stop.map_or(f64::NAN, |x| x * 1e3);
     let held: Vec<(f64, f64, [f64; 2])> = watch

@@ -130,8 +130,8 @@ fn vertical_ends(branches: &Branches<'_>, shown: Shown, span: &Span) -> (f64, f6
     (0.0, 1.08 * all.filter(|value| value.is_finite()).fold(1e-3, f64::max))
 }
 
-/// The runs of both directions over the field: as points what repeats once a period, as a line any other
-/// quantity, and where the two differ.
+/// The runs of both directions over the field: stroboscopic displacements as points, any other quantity as a
+/// line, and the intervals in which the two directions differ.
 fn chart(branches: &Branches<'_>, shown: Shown, axes: (PlotAxis, PlotAxis), here: Option<f64>) -> Chart {
     let mut panel = Panel::new(axes.0, axes.1);
     let differing = differing(branches, panel.y.high - panel.y.low);
@@ -202,7 +202,7 @@ fn picture_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axis: &SweepAxis, area
         write(frame.right_top() + vec2(-4.0, 4.0), Align2::RIGHT_TOP, &text, style.ink());
     }
     if !is_whole && area.height() > 220.0 {
-        let text = "not all of it is known yet";
+        let text = "not complete yet";
         write(area.right_bottom() - vec2(8.0, 3.0), Align2::RIGHT_BOTTOM, text, style.faint());
     }
     if !ui.input(|input| input.modifiers.shift) {

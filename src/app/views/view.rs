@@ -55,18 +55,18 @@ views! {
          stop.";
     Displacement "Displacement" (0.0, 0.0) |ui, context| trace_ui(ui, TraceQuantity::Displacement, context),
         "Where the mass is, seen from the base, over time. The wheel zooms in time; with Shift, or over \
-         the numbers of the axis, in displacement. A double click is back.";
+         the numbers of the axis, in displacement. A double click resets it.";
     BeforeNow "Before / now" (0.0, 0.0) super::compare::before_now_ui,
         "What your last change did: the state before it, and the one after it.";
     Compare "Compare" (0.0, 0.0) super::compare::compare_ui,
         "The present motion beside those that are pinned: what each settles to, and by how much it differs. \
-         A pin goes on with the drive in step; take its scene back by a click.";
+         A pinned motion continues in step with the drive; a click takes its scene back.";
     Measured "Measured" (0.0, 0.0) super::measured::measured_ui,
-        "Measured data that lie over the computed: shift and stretch them in time, and read by how much the \
-         two differ.";
+        "Measured data over the computed motion or force: shift and stretch them in time, and read by how \
+         much the two differ.";
     SideBySide "Side by side" (240.0, 180.0) super::side_by_side::side_by_side_ui,
-        "The present motion beside a pinned one, each in its own drawing and on its own well, at the same \
-         time of the same shaking. The pinned one is not moved by hand.";
+        "The present motion beside a pinned one, each in a drawing with its well, at the same time \
+         of the same shaking. The pinned one is not moved by hand.";
     Distance "Distance" (160.0, 100.0) super::distance::distance_ui,
         "How far each pinned motion is from the present one, over time. A twin begins a micrometre beside \
          the mass: chaos drives the two apart exponentially, a motion that is stable brings them together.";
@@ -78,39 +78,39 @@ views! {
         "The state once in every forcing period, always at the same phase of the shaking: motion that \
          repeats is a few points, chaos is a cloud with a shape. Click to let the motion go on from a state.";
     ForceCurve "Force curve" (60.0, 80.0) super::force::force_ui,
-        "The force that would hold the mass at a place, positive to the right; the mechanism pulls with as \
-         much the other way. Where the push is above the curve it drives the mass to the right, below it \
-         to the left; a mass on a stop is freed when the push passes the mark there. Filled: stable. \
+        "The force that would hold the mass at a place, positive to the right; the mechanism pulls as hard \
+         in the opposite direction. Where the push is above the curve it drives the mass to the right, below \
+         it to the left; a mass on a stop is freed when the push passes the mark there. Filled: stable. \
          Hollow: unstable. Diamond: a kink, where the stiffness jumps.";
     Energy "Energy" (192.0, 148.0) super::energy::energy_ui,
-        "Where the energy came from, where it went, and what is there against the barrier.";
+        "Where the energy came from, where it went, and how the present energy compares with the barrier.";
     Velocity "Velocity" (0.0, 0.0) |ui, context| trace_ui(ui, TraceQuantity::Velocity, context),
-        "Velocity of the mass, seen from the base, over time. An impact turns it round and leaves a part \
-         of it. The wheel zooms in time, a double click is back.";
+        "Velocity of the mass, seen from the base, over time. An impact reverses it and reduces \
+         it. The wheel zooms in time, a double click resets it.";
     BaseAcceleration "Base acceleration" (0.0, 0.0)
         |ui, context| trace_ui(ui, TraceQuantity::BaseAcceleration, context),
         "Acceleration of the base over time. The mass feels the opposite of it, as one does in a bus that \
-         brakes. The wheel zooms in time, a double click is back.";
+         brakes. The wheel zooms in time, a double click resets it.";
     Power "Power" (0.0, 0.0) super::power::power_ui,
-        "What the load of a transducer takes in a second, over time. Without a transducer the work of the \
-         base on the mass; below zero the mass gives energy back to the base. The wheel zooms in time, a \
-         double click is back.";
+        "The power into the load of a transducer over time. Without a transducer the work of the base on the \
+         mass; below zero the mass gives energy back to the base. The wheel zooms in time, a double click \
+         resets it.";
     Events "Events" (160.0, 90.0) super::events::events_ui,
         "What happened when: impacts, rests, releases and crossings, with phase of the shaking, velocity \
          before and after, and energy lost. Click a row to look at that instant.";
     Map "Map" (0.0, 0.0) super::map::map_ui,
-        "What every combination of two settings comes to, each in a run of its own. Click to take the \
+        "The result of every combination of two settings, each from one run. Click to take the \
          scene there.";
     UpAndDown "Up and down" (200.0, 140.0) super::up_and_down::up_and_down_ui,
-        "One setting, turned up and then down slowly: each run goes on from where the one before was. Where \
-         the two ways differ the motion remembers how it came: hysteresis. Drag along it to take the scene \
-         there.";
+        "One setting, turned up and then down slowly: each run starts in the last state of the one before. \
+         Where the two directions differ, the motion depends on its history: hysteresis. Drag along it to \
+         take the scene there.";
     Basins "Basins" (100.0, 100.0) super::basins::basins_ui,
-        "Where the motion goes from every start, by colour, and what it is there. Each start is a \
+        "The motion that every start leads to, by colour. Each start is a \
          displacement and a velocity at time 0 of the shaking. Click to begin there.";
     Spectrum "Spectrum" (200.0, 140.0) super::spectrum::spectrum_ui,
-        "The oscillations that the settled motion is made of: their frequencies and amplitudes. One that \
-         repeats has lines at multiples of its own frequency and nothing between; chaos fills the gaps.";
+        "The oscillations that the settled motion is made of: their frequencies and amplitudes. A motion \
+         that repeats has lines at multiples of its frequency and nothing between; chaos fills the gaps.";
     Accuracy "Accuracy" (180.0, 112.0) super::accuracy::accuracy_ui,
         "How far the computed motion is from the true one: what each digit costs, and what becomes of the \
          scene in fixed steps, as a game or a small applet takes them. From the scene's start.";

@@ -148,13 +148,13 @@ pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     }
 }
 
-/// What stays the same from frame to frame: axes and the potential without the push, and the legend, that of
-/// the `other` motions too.
+/// The parts that stay the same from frame to frame: axes, the potential without the push, and the legend,
+/// also for the `other` motions.
 fn still(level: &Potential<'_>, span: Span, (across, up): (PlotAxis, PlotAxis), other: &[Role]) -> Chart {
     let mut panel = Panel::new(across, up);
     if level.model.is_shaken() {
         panel.layer(Role::Curve, "potential with the push", Marks::Path(Vec::new()));
-        panel.layer(Role::Reference, "the mechanism's own", Marks::Path(level.points(span)));
+        panel.layer(Role::Reference, "without the push", Marks::Path(level.points(span)));
     } else {
         panel.layer(Role::Curve, "potential", Marks::Path(Vec::new()));
     }
@@ -263,8 +263,8 @@ fn landmarks(
     }
 }
 
-/// The ends of the vertical axis in J, of a view so high: those of the potential energies that the mass
-/// reaches, with a margin, and with room for names at the bottom.
+/// The ends of the vertical axis in J for a view of this height in points: those of the potential energies
+/// that the mass reaches, with a margin, and with room for names at the bottom.
 fn energy_ends(ui: &Ui, context: &mut ViewContext<'_>, height: f32) -> (f64, f64) {
     let model = context.drawn.model(context.session);
     let room = room_for_push(model.largest_base_acceleration());

@@ -1,7 +1,5 @@
-//! Card of a view: its title in a row with its legend, and tools at the right of that row.
-//!
-//! The tools are quiet until the pointer is over the card. They are there all the time for the keyboard and
-//! for a screen reader.
+//! Card of a view: its title in a row with its legend, and tools at the right of that row. The tools are
+//! drawn while the pointer is over the card. The keyboard and screen readers can use them at any time.
 
 use eframe::egui::{self, Align2, FontId, Rect, Response, Sense, Ui, UiBuilder, pos2, vec2};
 
@@ -15,10 +13,10 @@ const ROW: f32 = CONTROL;
 const MARGIN: f32 = 8.0;
 /// Width in points of a tool.
 const TOOL: f32 = 24.0;
-/// Width in points that a legend needs beside the titles; it has a row below where there is less.
+/// Width in points that a legend needs beside the titles; with less room it is in a row below.
 const LEGEND_ROOM: f32 = 220.0;
-/// Width in points that the choices of a map need there, and that of a card below which they would have more
-/// than two rows of their own.
+/// Width in points that the choices of a map need beside the titles, and the width of a card below which they
+/// would need more than two rows.
 const CHOICES_ROOM: f32 = 300.0;
 const FEW_ROWS: f32 = 520.0;
 /// Distance in points of a view from the edge of its card, so that the corners of the card stay round.
@@ -31,16 +29,16 @@ pub struct Title {
     pub id: egui::Id,
 }
 
-/// What was done in the row of a card.
+/// Input in the row of a card.
 pub struct Answer {
     /// The title that was clicked.
     pub chosen: Option<View>,
-    /// Whether the view is to fill the window, or to give it back.
+    /// Whether the view is to fill the window or, if it does, all views are to be shown again.
     pub fills: bool,
 }
 
-/// Draws a view in a card, with the titles of all views that share it. One that is `filled` has the whole
-/// window, and a tool that gives it back.
+/// Draws a view in a card, with the titles of all views that share it. A view that fills the window has a
+/// tool that shows all views again.
 pub fn card_ui(ui: &mut Ui, titles: &[Title], view: View, context: &mut ViewContext<'_>) -> Answer {
     let (rect, style) = (ui.max_rect(), context.style);
     ui.painter().rect_filled(rect, CORNER, style.ground());
@@ -106,12 +104,14 @@ fn width_of(ui: &Ui, title: &Title, font: &FontId) -> f32 {
     ui.painter().layout_no_wrap(name, font.clone(), egui::Color32::PLACEHOLDER).size().x + 1.5 * MARGIN
 }
 
-/// Whether the card has the tool for a figure: one over the whole window, or in a compact one, has not.
+/// Whether the card has the tool for a figure, which a view over the whole window or in a compact window
+/// lacks.
 fn has_figure(ui: &Ui, context: &ViewContext<'_>) -> bool {
     !context.filled && ui.ctx().content_rect().width() >= COMPACT_BELOW
 }
 
-/// The tools at the right of the row. Returns whether the view is to fill the window, or to give it back.
+/// The tools at the right of the row. Returns whether the tool that fills the window, or shows all views, was
+/// clicked.
 fn tools_ui(ui: &mut Ui, card: Rect, row: Rect, view: View, context: &mut ViewContext<'_>) -> bool {
     let is_over = ui.rect_contains_pointer(card);
     let shown = is_over || context.style.projector || context.filled;
@@ -144,12 +144,12 @@ fn tools_ui(ui: &mut Ui, card: Rect, row: Rect, view: View, context: &mut ViewCo
     fill.clicked()
 }
 
-/// The tool that holds the axes of a view, which is seen as long as they are held; `None` if it has no axes.
+/// The tool that holds the axes of a view, which stays visible while they are held; `None` if it has no axes.
 fn hold_ui(ui: &mut Ui, view: View, context: &mut ViewContext<'_>, shown: bool) -> Option<Response> {
     let held = context.memory.are_axes_held(view)?;
     let (icon, name, hover) = match held {
         true => (Icon::Held, "let go of the axes of", "The axes are held. A click lets go of them (L)."),
-        false => (Icon::Free, "hold the axes of", "Hold the axes as they are, whatever comes (L)."),
+        false => (Icon::Free, "hold the axes of", "Hold the axes at their present ranges (L)."),
     };
     let response = tool_ui(ui, icon, TOOL, &format!("{name} {}", view.name()), hover, shown || held);
     if response.clicked() {

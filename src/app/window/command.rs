@@ -166,7 +166,7 @@ pub(super) static MENUS: [(&str, &[Part]); 6] = [
         Item("Save as...", control_shift(Key::S), C::SaveAs(Wanted::Save), No),
         Line,
         Item("Open measured data...", control(Key::M), C::OpenMeasured,
-            As("Scene", "open measured data, to lie over the computed")),
+            As("Scene", "open measured data, drawn over the computed")),
         Item("Remove the measured data", None, C::RemoveMeasured, No),
         Line,
         Item("Save a figure of a view...", control(Key::E), C::Figure(None),
@@ -240,7 +240,7 @@ pub(super) static MENUS: [(&str, &[Part]); 6] = [
             Item("Usual size", control(Key::Num0), C::Magnify(0), No),
         ]),
         Row("Views", "Ctrl and +, -, 0", "the whole window larger, smaller, at its usual size"),
-        // a browser has its own
+        // a browser has a full screen mode itself
         #[cfg(not(target_arch = "wasm32"))]
         Item("Full screen", plain(Key::F11), C::FullScreen, As("Views", "full screen")),
     ]),
@@ -258,7 +258,7 @@ pub(super) static MENUS: [(&str, &[Part]); 6] = [
         Item("To the end of the run", plain(Key::End), C::RunToEnd, As("Time", "to the end of the run")),
         Line,
         Item("Pin this motion", plain(Key::K), C::Pin(PinKind::Motion),
-            As("Time", "pin this motion: it goes on dashed beside the present one")),
+            As("Time", "pin this motion: it continues, dashed, beside the present one")),
         Item("Compare with the stops switched", None, C::Pin(PinKind::OtherStops), No),
         Item("Compare with a twin, from the start", None, C::Pin(PinKind::Twin), No),
         Part::Menu("Unpin", &[
@@ -270,7 +270,7 @@ pub(super) static MENUS: [(&str, &[Part]); 6] = [
         Part::Speeds,
         Row("Time", "1 to 7", "speed, from 1/1000 of real time to 100 times"),
         Hidden(plain(Key::G), C::Grab, As("Hands", "take hold of the mass")),
-        Row("Hands", "Left, Right", "move what has the focus by a step, the held mass by 0.1 mm"),
+        Row("Hands", "Left, Right", "move the control with the focus by a step, the held mass by 0.1 mm"),
         Row("Hands", "Shift", "with these, ten steps"),
         Row("Hands", "Enter", "let go of the mass"),
         Row("Hands", "+, -", "enlarge the map around its cross-hair, and back"),
@@ -289,7 +289,7 @@ pub(super) static MENUS: [(&str, &[Part]); 6] = [
         Line,
         Item("Copy my answers", None, C::CopyAnswers, No),
         Item("Lecturer's notes", control(Key::L), C::LecturerNotes,
-            As("Lesson", "notes for the lecturer, in a window of their own")),
+            As("Lesson", "notes for the lecturer, in a separate window")),
     ]),
     ("Help", &[
         Item("Glossary", plain(Key::F2), C::Glossary, As("Lesson", "glossary")),

@@ -120,12 +120,12 @@ impl Figures {
             View::Basins => Subject::basins(session),
             View::Spectrum => Ok(Subject::spectrum(session)),
             View::Compare | View::Distance | View::BeforeNow => {
-                Err("There is no figure of this view: it shows several scenes, and a figure one.".to_owned())
+                Err("There is no figure of this view: it shows several scenes, a figure only one.".to_owned())
             }
             _ => {
                 let why = match view {
                     View::Accuracy => "its processor times differ from run to run",
-                    _ => "File, Save a picture of the window has it as it stands",
+                    _ => "File, Save a picture of the window shows it",
                 };
                 Err(format!("There is no figure of {}: {why}.", view.name()))
             }
@@ -155,15 +155,15 @@ impl Figures {
         }
         let mut words = match view {
             _ if panel(view).is_some() && session.is_continued => {
-                "The run of the scene as it now stands, from its start: what was changed on the way of this \
-                 motion has no command."
+                "The run of the present scene from its start: no command repeats the changes that were made \
+                 during this motion."
             }
             _ if panel(view).is_some() => "The run of the scene from its start.",
-            View::Section => "The states of the scene's own run, from its start.",
+            View::Section => "The states of the run of the scene from its start.",
             View::Well | View::ForceCurve => "Force and potential over displacement.",
             View::Mechanism => "The centre lines of the flexures where the mass was when this dialog opened.",
             View::Measured => "The record over the run of the scene from its start, or over its force.",
-            View::Map | View::UpAndDown | View::Basins => "Every run is made anew, which may take a while.",
+            View::Map | View::UpAndDown | View::Basins => "All runs are computed again. This takes a while.",
             _ => "",
         }
         .to_owned();
@@ -215,7 +215,7 @@ impl Figures {
         let (can_save, remark) = self.remark(order.as_ref(), view, session);
         let remark = self.problem.clone().unwrap_or(remark);
         let running = self.job.is_running();
-        let words = if running { "Working it out." } else { remark.as_str() };
+        let words = if running { "Computing the figure." } else { remark.as_str() };
         ui.add_space(4.0);
         let room = egui::Vec2::new(ui.available_width(), 2.0 * ui.text_style_height(&egui::TextStyle::Body));
         ui.allocate_ui(room, |ui| {

@@ -61,7 +61,7 @@ impl Window {
         }
     }
 
-    /// Does `next`, once the changes of the present scene are saved or discarded.
+    /// Carries out `next` once the changes of the present scene are saved or discarded.
     pub fn leave_for(&mut self, ctx: &egui::Context, next: Next) {
         self.session.end_gesture();
         // a lesson suspends the scene without losing its changes
@@ -93,7 +93,7 @@ impl Window {
         }
     }
 
-    /// Saves to the scene's own file, or asks for one.
+    /// Saves to the file of the scene, or asks for one.
     pub(super) fn save(&mut self, ctx: &egui::Context) {
         match self.session.editor.path().map(PathBuf::from) {
             Some(path) => self.save_to(ctx, &path),
@@ -101,7 +101,7 @@ impl Window {
         }
     }
 
-    /// Saves to a file; asks first if that is the scene's own file and drops its comments.
+    /// Saves to a file; asks first if that is the file of the scene and its comments would be lost.
     pub fn save_to(&mut self, ctx: &egui::Context, path: &Path) {
         // in a page it replaces nothing, but is a download
         let replaces = self.session.editor.path() == Some(path) && cfg!(not(target_arch = "wasm32"));
@@ -112,7 +112,7 @@ impl Window {
         }
     }
 
-    /// Saves to a file, and then does what waited for that.
+    /// Saves to a file, and then carries out the action that waited for that.
     fn save_over(&mut self, ctx: &egui::Context, path: &Path) {
         if let Some(next) = self.write_scene(path) {
             self.proceed(ctx, next);
@@ -134,7 +134,7 @@ impl Window {
             }
         } else if !self.file_dialog.is_running() && self.over_comments.is_none() && self.path_dialog.is_none()
         {
-            // a dialog was cancelled, and with it what waited for the save
+            // with a dialog, the action that waited for the save is cancelled
             self.after_save = None;
         }
     }
@@ -276,7 +276,7 @@ impl Window {
         let stem = path.as_ref().and_then(|path| path.file_stem());
         let stem = stem.map_or_else(|| "scene".to_owned(), |stem| stem.to_string_lossy().into_owned());
         let folder = path.as_ref().and_then(|path| path.parent()).map(Path::to_path_buf);
-        // a table is named after what it holds too, so that each has a name of its own
+        // the kind of a table is in its name, so that the tables of a scene have different names
         let name = match ending {
             "csv" => format!("{stem}-{kind}.{ending}"),
             _ => format!("{stem}.{ending}"),

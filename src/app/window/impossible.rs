@@ -1,4 +1,4 @@
-//! Why a command can do nothing at present: what a grey item of a menu and a key without effect say.
+//! Why a command can do nothing at present: the text for a grey menu item, and for a key without effect.
 
 use crate::app::session::map::Map;
 use crate::app::ui::settings::Setting;
@@ -32,7 +32,7 @@ impl Window {
             C::LeaveLesson | C::LessonAnew | C::LecturerNotes => (!in_lesson, "No lesson is open"),
             C::ArrangeOwn => (
                 is_compact && self.custom.is_none(),
-                "You have no arrangement yet: a wider window, or smaller letters, has room to make one",
+                "You have no arrangement yet: make one in a wider window, or with smaller letters",
             ),
             C::KeepOwn => (is_compact, "A window of this size shows its views as tabs: widen it first"),
             C::NextTab if self.filled.is_some() => (true, "One view fills the window: Z shows all of them"),
@@ -47,7 +47,7 @@ impl Window {
             }
             C::RemoveMeasured => (session.measured.over.is_none(), "No measured data is shown"),
             C::SaveAs(Wanted::Map) => (!has_whole_map, "There is no whole map yet: show the Map first"),
-            C::Unpin(letter) => (session.pins.get(*letter).is_none(), "No motion is pinned by this letter"),
+            C::Unpin(letter) => (session.pins.get(*letter).is_none(), "No motion is pinned as this letter"),
             C::CopyMapCommand => (session.map.map().is_none(), "There is no map yet: show the Map first"),
             C::PasteScene => (cfg!(target_arch = "wasm32"), "A page cannot paste by itself: press Ctrl+V"),
             C::Undo => (!session.editor.can_undo(), "There is nothing to undo"),

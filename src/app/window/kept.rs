@@ -60,7 +60,7 @@ impl Window {
     }
 }
 
-/// Number of frames after a change of the zoom from which sizes are those of the present one.
+/// Number of frames after a change of the zoom from which on reported sizes are those at the new zoom.
 const SETTLED: u32 = 3;
 /// Number of frames within which the window system reports the size of the window's decoration.
 const DECORATED: u32 = 90;

@@ -50,9 +50,9 @@ impl Room {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Arrangement {
-    /// One that comes with the program.
+    /// A built-in arrangement.
     Layout(Layout),
-    /// The one that the user has made.
+    /// The arrangement that the user has made.
     Custom,
 }
 
@@ -133,7 +133,7 @@ impl Tiling {
 
     /// Shows a view. A view without a tile becomes a tab beside `other`, if that is shown among tabs.
     pub fn show_beside(&mut self, view: View, other: View) {
-        // new tiles have no tabs until they are drawn
+        // gives new tiles their tabs
         self.tree.simplify(&simplification());
         let tiles = &mut self.tree.tiles;
         let shown = tiles.find_pane(&other).filter(|id| tiles.is_visible(*id));
@@ -204,7 +204,7 @@ impl Tiling {
 
     /// Draws the views in their cards; `fill` is set if a view is to fill the window.
     pub fn ui(&mut self, ui: &mut Ui, context: &mut ViewContext<'_>, fill: &mut Option<View>) {
-        // new tiles have no tabs until then
+        // gives new tiles their tabs
         self.tree.simplify(&simplification());
         let mut behavior = Behavior { titles: self.titles(), context, fill, chosen: None };
         self.tree.ui(&mut behavior, ui);

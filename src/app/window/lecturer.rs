@@ -31,7 +31,7 @@ pub(super) struct Notes {
     pub is_open: bool,
     /// Where the window was last.
     pub place: Option<Place>,
-    /// Whether that is from an earlier start of the program, with screens that there may no longer be.
+    /// Whether the place is from an earlier start of the program, whose screens may be gone.
     pub is_old: bool,
     /// Position and size with which it was opened, in points at the zoom of that time; they stay the same as
     /// long as it is open, so that it can be moved.
@@ -44,7 +44,7 @@ impl Notes {
         let zoom = ctx.zoom_factor();
         let (window, screen) =
             ctx.input(|input| (input.viewport().outer_rect, input.viewport().monitor_size));
-        // most of it lies on a screen that there is
+        // the centre of the window lies on a present screen
         let screens = screen.map(|screen| Rect::from_min_size(Pos2::ZERO, screen * zoom));
         let is_on = |place: &Place| screens.is_none_or(|screen| screen.contains(place.rect().center()));
         let is_there = |place: &Place| !self.is_old || is_on(place);
@@ -58,8 +58,8 @@ impl Notes {
     }
 }
 
-/// A place beside a window on its screen, to the right or else to the left of it and narrower where it has to
-/// be; `None` if neither side has room. Screens are taken to be as wide as this one.
+/// A place beside a window on its screen, to the right or else to the left of it, and narrower if necessary;
+/// `None` if neither side has room. Screens are taken to be as wide as this one.
 fn beside(window: Rect, screen: Vec2, size: Vec2) -> Option<Rect> {
     let left = (window.center().x / screen.x).floor() * screen.x;
     let (before, after) = (window.left() - APART - left, left + screen.x - window.right() - APART);
@@ -73,7 +73,7 @@ fn beside(window: Rect, screen: Vec2, size: Vec2) -> Option<Rect> {
 }
 
 impl Window {
-    /// The lecturer's notes of the open lesson, if they are asked for.
+    /// The lecturer's notes of the open lesson, if they are open.
     pub(super) fn lecturer_ui(&mut self, ctx: &Context) {
         let notes = &mut self.lessons.notes;
         let Some(lesson) = self.lessons.open.as_ref().filter(|_| notes.is_open) else {

@@ -38,17 +38,17 @@ pub(super) struct Lessons {
     suspended: Option<Suspended>,
     pub records: Records,
     pub notes: Notes,
-    /// The lesson that was finished, until its last words are closed.
+    /// The lesson that was finished, until its closing dialog is closed.
     finished: Option<Finished>,
     /// Whether the button that goes on is to have the keyboard focus.
     urged: bool,
-    /// What the buttons beside the status line ask for in this frame.
+    /// The action of the buttons beside the status line in this frame.
     chosen: Option<LessonAction>,
     /// Rectangles of the controls in this frame.
     controls: Vec<(String, Rect)>,
 }
 
-/// What is said at the end of a lesson, and the lesson that comes next.
+/// The content of a lesson's closing dialog, and the lesson that comes next.
 struct Finished {
     title: String,
     goal: String,
@@ -56,7 +56,7 @@ struct Finished {
 }
 
 impl Lessons {
-    /// Whether a dialog of theirs is open.
+    /// Whether a dialog about a lesson is open.
     pub fn ask(&self) -> bool {
         self.finished.is_some() || self.open.as_ref().is_some_and(|lesson| lesson.begun_before)
     }
@@ -196,7 +196,7 @@ impl Window {
         records
     }
 
-    /// Takes over what was done in lessons. One that is open already goes on where it was left.
+    /// Takes over the records of lessons. A lesson that is open continues from its record.
     pub fn set_records(&mut self, records: Records) {
         self.lessons.records = records;
         if let Some(lesson) = &mut self.lessons.open
@@ -229,7 +229,7 @@ impl Window {
         }
     }
 
-    /// What views show of the question of a lesson, and keep back for it.
+    /// Sets what the views show of the question of a lesson, and what they hide for it.
     pub(super) fn pose_question(&mut self) {
         let lesson = self.lessons.open.as_ref();
         let curve = View::ForceCurve;
@@ -245,7 +245,7 @@ impl Window {
 
     pub(super) fn act_in_lesson(&mut self, act: LessonAction) {
         let Some(lesson) = &mut self.lessons.open else { return };
-        // the strip, which a view over the whole window hides, says what follows
+        // the result appears in the strip, which a view over the whole window hides
         self.filled = self.filled.filter(|_| matches!(act, LessonAction::Vote(..)));
         let turn = match act {
             LessonAction::Choose(option) => lesson.choose(option),
@@ -293,7 +293,7 @@ impl Window {
         self.leave_lesson();
     }
 
-    /// The last words of a lesson, and the question whether one that was begun before begins anew.
+    /// The closing dialog of a lesson, and the question whether a lesson that was begun before begins anew.
     pub(super) fn lesson_dialogs_ui(&mut self, ui: &Ui) {
         if let Some(Finished { title, goal, next: following }) = &self.lessons.finished {
             let (mut next, heading) = (None, format!("{title}: done"));
@@ -336,7 +336,7 @@ impl Window {
         turn.into_iter().for_each(|turn| self.take_turn(turn));
     }
 
-    /// Brings the views to the front that are bold words in the text of the step, the first of them last.
+    /// Brings the views to the front that bold words in the text of the step name, the first of them last.
     pub(super) fn show_named_views(&mut self) {
         let Some(lesson) = &self.lessons.open else { return };
         let named = bold_words(lesson.step().text()).filter_map(|word| view_named(&word));
@@ -374,7 +374,7 @@ impl Window {
             let vote = LessonAction::Vote(option, 1);
             keys.extend(pair.take(1).map(|key| (Modifiers::SHIFT, key, vote)));
         }
-        // those with Shift first: a key without it would take them too
+        // keys with Shift first: the same key without it would consume them
         keys.sort_by_key(|key| !key.0.shift);
         let is_pressed = |(modifiers, key, _): &(Modifiers, Key, LessonAction)| {
             ctx.input_mut(|input| input.consume_key(*modifiers, *key))
@@ -429,7 +429,7 @@ impl Window {
         });
     }
 
-    /// Outlines around the controls and views on the screen that are bold words in the text of the step.
+    /// Outlines around the controls and views on the screen that bold words in the text of the step name.
     pub(super) fn pointing_ui(&self, ctx: &egui::Context, style: &Style) {
         let shown = |open: &&OpenLesson| self.filled.is_none() && !open.is_covering();
         let Some(lesson) = self.lessons.open.as_ref().filter(shown) else { return };

@@ -32,9 +32,9 @@ const MENU: (f32, f32) = (28.0, 26.0);
 const TRANSPORT: (f32, f32) = (56.0, 36.0);
 /// Space in points above and below the bars with the time and the controls, and in a compact window.
 const AROUND_BAR: (i8, i8) = (4, 2);
-/// Space around the cards: the bars above and below and the controls have their own.
+/// Space around the cards; the bars above and below them and the controls have margins themselves.
 const MARGIN: egui::Margin = egui::Margin { left: GAP as i8, right: GAP as i8, top: 0, bottom: 0 };
-/// Height in points of the guide line, whatever it says.
+/// Height in points of the guide line, for any text.
 const GUIDE: f32 = 29.0;
 
 mod card;
@@ -159,8 +159,8 @@ impl Window {
         self.waited = waits;
     }
 
-    /// Menu bar, status line and transport bar; a view over the window leaves the last. Returns the commands
-    /// that were chosen.
+    /// Menu bar, status line and transport bar; a view over the window leaves only the transport bar. Returns
+    /// the commands that were chosen.
     fn bars_ui(&mut self, ui: &mut Ui, style: &Style, compact: bool) -> Vec<Command> {
         let around = if compact { AROUND_BAR.1 } else { AROUND_BAR.0 };
         let covered = self.motion_is_covered();
@@ -177,7 +177,7 @@ impl Window {
             if self.lesson_covers() {
                 ui.disable();
             }
-            // as high whatever its texts need
+            // the height does not depend on the texts
             ui.expand_to_include_rect(ui.max_rect());
             transport::transport_ui(ui, &mut self.session, style, covered);
         });
@@ -380,7 +380,7 @@ impl eframe::App for Window {
     }
 
     fn persist_egui_memory(&self) -> bool {
-        // the scene says what is open, not the last start of the program
+        // what is open follows from the scene, not from the last start of the program
         false
     }
 }

@@ -4,10 +4,9 @@ use std::time::Duration;
 
 use eframe::egui::Context;
 
-/// Time in s of a frame above which painting takes long: that of a screen with 60 frames a second, and a
-/// little.
+/// Time in s of a frame above which painting takes long: slightly more than a 60th of a second.
 const LONG: f32 = 0.0175;
-/// Number of frames over which that is measured.
+/// Number of frames over which the time of a frame is measured.
 const MEASURED: u32 = 30;
 /// Number of frames after which it is measured again.
 const SLOW: u32 = 300;
@@ -16,8 +15,8 @@ const INTERVAL: Duration = Duration::from_millis(33);
 /// Longest time in s that a motion plays in one frame, after a pause of the window.
 const LONGEST: f32 = 0.5;
 
-/// Whether frames are slow, and how many there were since that was found out, or since it is being measured,
-/// with the time in s that they took.
+/// Whether frames are slow; the number of frames since that was measured, or since its measurement began, and
+/// the time in s that they took.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Pace {
     is_slow: bool,
@@ -26,14 +25,14 @@ pub(super) struct Pace {
 }
 
 impl Pace {
-    /// The time in s since the last frame, by which what plays goes on.
+    /// The time in s since the last frame, by which the motion is to advance.
     pub fn seconds(&self, ctx: &Context) -> f64 {
-        // egui takes a frame that was not asked for at once for one after a pause
+        // egui takes a frame that was not requested immediately for the first one after a pause
         let seconds = ctx.input(|input| if self.is_slow { input.unstable_dt } else { input.stable_dt });
         f64::from(if self.is_slow { seconds.min(LONGEST) } else { seconds })
     }
 
-    /// Asks for the next frame of what plays.
+    /// Requests the next frame while a motion plays.
     pub fn ask(&mut self, ctx: &Context) {
         self.frames += 1;
         self.time += ctx.input(|input| input.stable_dt);

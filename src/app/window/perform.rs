@@ -51,7 +51,7 @@ impl Window {
         if let Some(why) = self.impossible(&command) {
             return self.messages.notify(why);
         }
-        // what was said of the command before
+        // the notice of the command before
         self.messages.notice = None;
         match command {
             Command::OpenPreset(name) => self.leave_for(ctx, Next::Open(name.to_owned())),
@@ -82,7 +82,7 @@ impl Window {
             Command::NextCrossing => self.go_to_first(EventKind::Crossing),
             Command::RunToEnd => match self.session.end_of_run() {
                 end if end > self.session.player.time() => self.session.player.go_to(Goal::Time(end)),
-                end => self.messages.notify(format!("The run ends at {end:.2} s, which is behind")),
+                end => self.messages.notify(format!("The run ended at {end:.2} s, before the shown time")),
             },
             Command::Speed(index) => {
                 if let Some((speed, _)) = SPEEDS.get(index) {

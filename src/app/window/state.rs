@@ -29,7 +29,7 @@ use super::messages::{CANNOT_OPEN, Messages};
 use super::pace::Pace;
 use super::wanted::{Chosen, PathDialog};
 
-const MOST_RECENT: usize = 8;
+const MAX_RECENT: usize = 8;
 
 pub struct Window {
     pub session: Session,
@@ -169,14 +169,14 @@ impl Window {
         let full = files::canonical(path).unwrap_or_else(|| path.to_owned()).to_string_lossy().into_owned();
         self.recent.retain(|recent| *recent != full);
         self.recent.insert(0, full);
-        self.recent.truncate(MOST_RECENT);
+        self.recent.truncate(MAX_RECENT);
     }
 
     pub fn title(&self) -> &str {
         &self.shown_title
     }
 
-    /// What a screen reader is told of the window as a whole: a message, or what the status line says.
+    /// The text about the whole window for a screen reader: a message, or the sentence of the status line.
     pub fn spoken(&self) -> &str {
         let sentence = || match self.motion_is_covered() {
             true => "Covered: what do you expect?",
@@ -218,7 +218,7 @@ impl Window {
             (Arrangement::Custom, None) => Tiling::new(Layout::Look, room),
             (Arrangement::Layout(layout), _) => Tiling::new(layout, room),
         };
-        // what is pinned keeps its view
+        // pinned motions keep their view
         let has_pins = !self.session.pins.all().is_empty();
         if has_pins && self.arrangement != Arrangement::Custom && self.tiling.shows(View::BeforeNow) {
             self.tiling.show_beside(self.view_of_pins(), View::BeforeNow);

@@ -67,7 +67,7 @@ pub(super) enum Chosen {
 
 /// Beginning of a remark where a path has to be typed.
 pub(super) const NO_DIALOG: &str =
-    "This desktop has no file dialog to offer (xdg-desktop-portal or zenity would be one)";
+    "This desktop has no file dialog (xdg-desktop-portal or zenity provides one)";
 
 /// Why no file can be written to a path; `None` if one can.
 pub(super) fn path_fault(path: &Path) -> Option<&'static str> {

@@ -21,7 +21,7 @@ impl Window {
                 self.remember_file();
                 let also = match companions.as_slice() {
                     [] => String::new(),
-                    names => format!(" and, beside it, what it needs: {}", names.join(", ")),
+                    names => format!(" and, beside it, the files that it names: {}", names.join(", ")),
                 };
                 self.messages.notify(format!("Saved {}{also}", file_name(path)));
                 next

@@ -5,7 +5,7 @@ use crate::app::words::status::speed;
 use crate::numeric::short;
 use crate::study::{Basins, BestDesign, DesignRange, NoBest, Optimum, SummaryField};
 
-/// A value of the column that is maximized, with its unit.
+/// A value of the maximised column, with its unit.
 fn value_of(column: &str, value: f64) -> String {
     if column.ends_with("_w") { power(value) } else { format!("{} mm/s", speed(value)) }
 }

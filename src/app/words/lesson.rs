@@ -63,8 +63,8 @@ pub fn script(notes: &str) -> Vec<(f64, &str, &str)> {
 pub fn judged_by(lesson: &Lesson, start: Start) -> String {
     let from = if start == Start::Rest { "from rest" } else { "from the scene's start" };
     match (&lesson.walk, lesson.seeds) {
-        (Some(_), _) => "Judged on runs up and down, each going on from the one before.".to_owned(),
-        (None, Some(seeds)) => format!("Judged on {seeds} full runs {from}, each with noise of its own."),
+        (Some(_), _) => "Judged on runs up and down, each from the end of the one before.".to_owned(),
+        (None, Some(seeds)) => format!("Judged on {seeds} full runs {from}, each with another noise."),
         (None, None) => format!("Judged on a full run {from}, not on the motion shown."),
     }
 }
@@ -76,26 +76,26 @@ pub fn not_yet(lack: &Lack, on_stops: bool) -> String {
 }
 
 fn lacking(asked: &Condition, found: &Value, on_stops: bool) -> String {
-    let held = |part: &Condition| match part {
+    let claim = |part: &Condition| match part {
         Condition::Is(field, word) if field.ends_with(REGIME) => motion(word, on_stops),
-        _ => "what is asked for holds",
+        _ => "the condition holds",
     };
     match asked {
         Condition::All(parts) => {
             parts.first().map_or_else(String::new, |part| lacking(part, found, on_stops))
         }
-        Condition::Any(_) => "none of what is asked for holds".to_owned(),
+        Condition::Any(_) => "none of the conditions holds".to_owned(),
         Condition::Not(part) => match part.as_ref() {
             Condition::Is(field, word) if field.ends_with(REGIME) => still(field, word, on_stops),
             part => match part.field().and_then(name_and_unit_of) {
                 Some((name, _)) => format!("the {name} must not be what it is"),
-                None => "what must not be is so".to_owned(),
+                None => "a condition that must not hold holds".to_owned(),
             },
         },
         Condition::Every(starts, part) => {
-            format!("{} from fewer than all {} starts", held(part), starts.len())
+            format!("{} from fewer than all {} starts", claim(part), starts.len())
         }
-        Condition::ForSome(starts, part) => format!("{} from none of {} starts", held(part), starts.len()),
+        Condition::ForSome(starts, part) => format!("{} from none of {} starts", claim(part), starts.len()),
         Condition::Same(_, _, starts) => format!("the {} starts lead to different motions", starts.len()),
         _ => lacking_field(asked, found, on_stops),
     }
@@ -120,7 +120,7 @@ fn lacking_field(asked: &Condition, found: &Value, on_stops: bool) -> String {
                 _ if field.ends_with("_share") => (100.0 * number, "%".to_owned()),
                 _ => (*number, unit.to_owned()),
             };
-            // a share as the sentence and the table have it, unless that is a bound
+            // a share in whole per cent, as in the sentence and the table, unless that equals a bound
             let is_bound = |whole: f64| match condition {
                 Condition::AtLeast(_, bound)
                 | Condition::AtMost(_, bound)
@@ -164,7 +164,7 @@ fn motion(regime: &str, on_stops: bool) -> &'static str {
     }
 }
 
-/// What it does although it should not, in the run of several that the field belongs to.
+/// The motion that the task does not allow, with the direction of the walk that the field belongs to.
 fn still(field: &str, regime: &str, on_stops: bool) -> String {
     let coming = match field.split('.').next() {
         Some("up") => "coming from below, ",

@@ -41,7 +41,7 @@ const MEANINGS: &[(&str, &str)] = &[
         "The force that the mass feels because the base accelerates, as in a bus that brakes, in multiples \
          of its weight; or, in N, the force that acts on the mass while the base stands still.",
     ),
-    ("base", "How far the base itself swings, at a scale of its own."),
+    ("base", "The displacement of the base, drawn at a separate scale."),
     (
         "reach",
         "The largest distance from the middle that the mass gets to once its motion has settled, to \
@@ -55,10 +55,10 @@ const MEANINGS: &[(&str, &str)] = &[
     ),
     (
         "release",
-        "The push, for a moment, is larger than what the mechanism presses the mass on its stop with: the \
-         mass comes off. That is not yet a crossing.",
+        "For a moment the push exceeds the force with which the mechanism presses the mass on its stop: \
+         the mass leaves the stop. That is not yet a crossing.",
     ),
-    ("impact", "The mass strikes a stop and rebounds; what it loses of its speed goes into the stop."),
+    ("impact", "The mass strikes a stop and rebounds; the energy that it loses goes into the stop."),
     ("crossing", "The mass passes the top of the barrier between the two wells, in either direction."),
     (
         "intrawell",
@@ -79,7 +79,7 @@ const MEANINGS: &[(&str, &str)] = &[
     (
         "rms velocity",
         "The root of the mean square of the velocity relative to the base, over the second half of the run \
-         or whatever the scene takes for settled. The mean power that damping takes grows with its square.",
+         or the settled window that the scene sets. The mean power that damping takes grows with its square.",
     ),
     (
         "settling",
@@ -96,16 +96,16 @@ const MEANINGS: &[(&str, &str)] = &[
         "The states with just the energy to stand on top of the barrier: inside either loop the mass stays \
          in its well, outside it crosses, as long as nothing shakes it.",
     ),
-    ("turned up", "From the least value to the greatest, each run going on from where the one before was."),
-    ("turned down", "From the greatest value to the least, each run going on from where the one before was."),
+    ("turned up", "From the least value to the greatest, each run from the end of the one before."),
+    ("turned down", "From the greatest value to the least, each run from the end of the one before."),
     (
         "the two differ",
-        "At this value the motion is another one on the way down than on the way up: it remembers how it \
-         came, which is called hysteresis.",
+        "At this value the motion on the way down differs from that on the way up: it depends on its \
+         history, which is called hysteresis.",
     ),
     ("once a period", "The state once a forcing period, always at the same phase of the shaking."),
     ("at rest on a stop", "The mechanism presses the mass on its stop, harder than the push pulls."),
-    ("impacts", "The mass strikes a stop and rebounds; what it loses of its speed goes into the stop."),
+    ("impacts", "The mass strikes a stop and rebounds; the energy that it loses goes into the stop."),
     ("stops", "Where the stops stand: the travel limit on either side."),
     (
         "potential with the push",
@@ -128,14 +128,14 @@ const MEANINGS: &[(&str, &str)] = &[
     ),
     (
         "path error",
-        "How far the computed path is from the true one at most, as estimated from its sensitivity to \
-         rounding.",
+        "The largest distance of the computed path from the exact one, as estimated from its sensitivity \
+         to rounding.",
     ),
-    ("the mechanism's own", "The potential of the mechanism without any push."),
+    ("without the push", "The potential of the mechanism without any push."),
     (
         "holds the mass there",
-        "The force that would hold the mass at each place, positive to the right. The mechanism pulls with \
-         as much the other way.",
+        "The force that would hold the mass at each place, positive to the right. The mechanism pulls \
+         as hard in the opposite direction.",
     ),
 ];
 
@@ -174,7 +174,7 @@ pub const GLOSSARY: [&str; 22] = [
     "settling",
 ];
 
-/// Those that are underlined in a text, where they have no other meaning.
+/// The terms that are underlined in a text; those with a second meaning are left out.
 pub const UNDERLINED: [&str; 13] = [
     "barrier",
     "basin",

@@ -39,7 +39,7 @@ pub fn shown(value: f64, least: usize) -> String {
     exact(decimal(value), least)
 }
 
-/// The same, with all digits of the number.
+/// Like [`shown`], with all digits of the number.
 pub fn exact(value: f64, least: usize) -> String {
     if value.is_infinite() {
         return if value > 0.0 { "\u{221e}" } else { "\u{2212}\u{221e}" }.to_owned();
@@ -77,7 +77,7 @@ pub fn with_minus(text: &str) -> String {
     text.replace('-', "\u{2212}")
 }
 
-/// What stands in place of a number that is not known.
+/// The sign in place of an unknown number.
 pub const UNKNOWN: &str = "\u{2013}";
 
 /// A number with at least three significant digits, and no more decimals than these take.

@@ -74,7 +74,7 @@ pub fn print(prepared: &Prepared, pool: &Pool) -> Result<(), Failure> {
         _ => {
             let size = bytes as f64 / run as f64 * count as f64 / 1e6;
             println!(
-                "about {about} on {threads} threads, by {run} cells run now; about {size:.1} MB of rows"
+                "about {about} on {threads} threads, estimated from {run} cells; about {size:.1} MB of rows"
             );
         }
     }
@@ -91,7 +91,7 @@ pub fn print(prepared: &Prepared, pool: &Pool) -> Result<(), Failure> {
         println!("\n{}", command(&arguments, &["--shard", &shard, "--out", out, "--resume"]));
         return Ok(());
     }
-    println!("\nIn one process, again and again until it is whole:");
+    println!("\nIn one process, repeated until the file is complete:");
     println!("  {}", command(&arguments, &["--out", out, "--resume"]));
     if picture {
         return Ok(());

@@ -65,8 +65,8 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
 }
 
 impl Prepared<'_> {
-    /// Opens the rows, in blocks if they go to a regular file. Returns the tally of those that an earlier
-    /// process left; `None` if there are all of them.
+    /// Opens the rows, in blocks if they go to a regular file. Returns the tally of the rows that an
+    /// earlier process left; `None` if no row is missing.
     fn open_rows(&self, outputs: &mut Outputs) -> Result<Option<(Rows, Tally)>, Failure> {
         let header = header(&self.sweep.empty_table().only(&self.columns));
         if self.options.check {

@@ -30,7 +30,7 @@ pub struct Arguments {
     #[arg(long, value_name = "A,B,..|all", allow_hyphen_values = true, value_delimiter = ',')]
     pub columns: Vec<String>,
 
-    /// Let each run go on, window after window, until its motion repeats, or up to this time in s. Needs a
+    /// Follow each run, window after window, until its motion repeats, or up to this time in s. Needs a
     /// drive that repeats
     #[arg(long, value_name = "MAX_S", allow_hyphen_values = true)]
     pub until_settled: Option<String>,
@@ -67,7 +67,7 @@ pub struct Arguments {
     #[arg(long, value_name = "FIELD=VALUE", allow_hyphen_values = true, requires = "plot")]
     pub cut: Vec<String>,
 
-    /// Go on with the rows that an earlier process left in FILE.part, where there are some
+    /// Continue after the rows that an earlier process left in FILE.part, if there are any
     #[arg(long)]
     pub resume: bool,
 
@@ -76,11 +76,11 @@ pub struct Arguments {
     pub force: bool,
 
     /// Compute the I-th of N parts alone; auto or auto/N within an array job of Slurm or HyperQueue. {shard}
-    /// in --out becomes I-of-N. `merge` puts the parts together
+    /// in --out becomes I-of-N. `merge` joins the parts
     #[arg(long, value_name = "I/N|auto", allow_hyphen_values = true, conflicts_with = "plot")]
     pub shard: Option<String>,
 
-    /// Say how many cells there are, about how long they take and what memory, and which commands run them
+    /// Print the number of cells, estimates of their time and memory, and the commands that run them
     #[arg(long, conflicts_with_all = ["resume", "force"])]
     pub dry_run: bool,
 
@@ -121,7 +121,7 @@ impl<'a> Prepared<'a> {
     /// is given as the scene.
     pub fn new(options: &'a Arguments, common: &Common) -> Result<Self, Failure> {
         let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
-        // a name that is none is reported by `can_show`, with those that there are
+        // an unknown name is reported by `can_show`, with the names that exist
         let quantity = SummaryField::named(&options.quantity).map_or(&*options.quantity, |field| field.name);
         if options.check && !is_manifest(options.scene.as_ref()) {
             return Err(no_sweep(options));

@@ -107,7 +107,7 @@ impl Prepared<'_> {
         let existing: Option<Value> = opened.head().and_then(|text| serde_json::from_str(text).ok());
         let problem = match existing {
             None => {
-                let journal = format!("{part} stands there, and its journal is gone or cannot be read");
+                let journal = format!("{part} exists, and its journal is gone or cannot be read");
                 format!("{journal}: --force starts anew, or name another --out")
             }
             Some(_) if !resume => {
@@ -208,8 +208,8 @@ impl Blocks {
         let remedy = match kept {
             0 => "no rows are kept: once there is room, give the same command again".to_owned(),
             _ => format!(
-                "{kept} of {} rows are kept there: once there is room, the same command with --resume goes \
-                 on",
+                "{kept} of {} rows are kept there: once there is room, the same command with --resume \
+                 continues",
                 self.rows
             ),
         };
@@ -228,7 +228,7 @@ impl Blocks {
             Err(error) => self.failed(&error),
             Ok(_) if kept == 0 => Failure::interrupted(),
             Ok(_) => Failure::failed(format!(
-                "interrupted: {part} has {kept} of {} rows; the same command with --resume goes on",
+                "interrupted: {part} has {kept} of {} rows; the same command with --resume continues",
                 self.rows
             )),
         };
@@ -292,7 +292,7 @@ impl Compared {
         match self.file.read(&mut more) {
             Ok(0) => Ok(()),
             _ => {
-                Err(self.differs(format!("it goes on after line {}, where the rows end now", self.line - 1)))
+                Err(self.differs(format!("it has rows after line {}, where the rows end now", self.line - 1)))
             }
         }
     }

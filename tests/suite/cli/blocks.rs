@@ -337,7 +337,7 @@ fn a_manifest_is_run_again_and_compared() {
     fs::write(&path, &rows[..rows.len() - 20]).unwrap();
     check().code(1).stderr(contains("differs"));
     fs::write(&path, rows.clone() + "more\n").unwrap();
-    check().code(1).stderr(contains("it goes on after line 21"));
+    check().code(1).stderr(contains("it has rows after line 21"));
     assert_eq!(names(folder.path()), ["map.csv", "map.csv.json"]);
     fs::remove_file(&path).unwrap();
     check().code(2).stderr(contains("map.csv"));

@@ -73,7 +73,7 @@ impl Question for OptionsQuestion {
     }
 }
 
-/// What a run of the scene says about a task.
+/// Whether the scene does a task, judged by a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct GoalQuestion {
     #[serde(with = "crate::app::task::as_text")]

@@ -76,7 +76,7 @@ pub struct OpenLesson {
     pub hinted: bool,
     /// Number of scenes that were judged and did not do the task; whether the present one is among them.
     tries: (usize, bool),
-    /// Whether it goes on where it was left, perhaps by another class, and nobody has said that it shall.
+    /// Whether it continues at a later step, perhaps that of another class, and this is not confirmed yet.
     pub begun_before: bool,
     pub(super) options: Background<OptionsQuestion, Outcome>,
     pub(super) goal: Background<GoalQuestion, TaskState>,
@@ -183,8 +183,8 @@ impl OpenLesson {
         steps.map(of_step).find(|starts| !starts.is_empty()).unwrap_or_default()
     }
 
-    /// Whether a view is covered until the first prediction has been shown: one that tells the answer, unless
-    /// a step before names it, in lower case, in bold.
+    /// Whether a view that would show the answer is covered: until the first prediction has been shown,
+    /// unless a step before it has the name of the view, in lower case, as a bold word.
     pub fn keeps_back(&self, view: &str) -> bool {
         let steps = self.lesson().steps.iter();
         let mut before = steps.take_while(|step| !matches!(step, Step::Predict { .. }));
@@ -242,8 +242,8 @@ impl OpenLesson {
         Turn::Show(Box::new(self.document.end(self.progress.step).clone()), true)
     }
 
-    /// Goes on, but neither past a covered prediction nor past the last step. A task that is not done is
-    /// shown solved, since the step after it speaks of that.
+    /// Goes to the next step, but neither past a covered prediction nor past the last step. A task that is
+    /// not done is shown solved, since the next step refers to its solution.
     pub fn go_on(&mut self) -> Turn {
         if self.is_covering() || self.is_last() {
             return Turn::Stay;

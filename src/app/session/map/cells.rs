@@ -17,10 +17,10 @@ use super::{MapQuestion, over};
 
 const MAX_CELLS: u64 = 200_000;
 
-/// Why a map of so many cells is not made; `None` if it is.
+/// Why a map of this number of cells is refused; `None` if it is not.
 pub(super) fn too_many(cells: u64) -> Option<String> {
-    let problem = || format!("{cells} cells are more than the window makes ({MAX_CELLS}): take longer steps");
-    (cells > MAX_CELLS).then(problem)
+    let refusal = || format!("the window computes at most {MAX_CELLS} cells, not {cells}: take longer steps");
+    (cells > MAX_CELLS).then(refusal)
 }
 
 /// A map as far as it is known.
@@ -126,8 +126,8 @@ impl Map {
         self.levels.ends.into_iter().map(level).collect()
     }
 
-    /// Adds cells that have been computed. Returns whether its picture is to be drawn anew, which a large map
-    /// is not for every part.
+    /// Adds cells that have been computed. Returns whether its picture is to be drawn again; that of a large
+    /// map is not drawn for every part.
     pub(super) fn add(&mut self, cells: Vec<(u64, Cell)>) -> bool {
         for (index, cell) in cells {
             self.known += usize::from(self.cells[index as usize].replace(cell).is_none());
@@ -204,8 +204,8 @@ impl Map {
         (near(0), near(1))
     }
 
-    /// Its picture as far as it is known, as a sweep's `--plot` draws it; cuts show the cells that are known
-    /// alone, the map those that stand in for others too.
+    /// The picture of the known cells, as `sweep --plot` draws it. The map also shows known cells in place of
+    /// unknown ones, the cuts do not.
     pub fn chart(&self, quantity: &SummaryField, view: &View) -> Result<Chart, NoPicture> {
         let more = [quantity.name, "settled", "steady"];
         let drawn = |rows: &Table, view: View| {

@@ -286,7 +286,7 @@ impl Session {
         false
     }
 
-    /// The question of the map over these axes; `None` if the first value of one cannot be set.
+    /// The question of the map over these axes; `None` if the first value of an axis cannot be set.
     fn map_question(&self, axes: [SweepAxis; 2]) -> Option<MapQuestion> {
         let mut scene = ground(self.scene(), self.remembered_stops(), &axes);
         if !axes.iter().all(|axis| FieldPath::new(&axis.field).set(&mut scene, axis.from)) {

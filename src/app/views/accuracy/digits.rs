@@ -39,7 +39,7 @@ pub fn digits_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         // where all paths diverge, their largest errors say nothing
         if diverging == known.runs.len() {
             let text = "A thousand times the accuracy buys only a little more time: in chaos every small \
-                        difference grows until it is all there is. Averages such as the RMS velocity stay.";
+                        difference grows until only averages agree, such as the RMS velocity.";
             ui.label(text);
             return;
         }

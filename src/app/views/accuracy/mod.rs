@@ -55,7 +55,7 @@ fn waiting_ui(ui: &mut Ui, context: &ViewContext<'_>) {
     let text = match context.session.fault() {
         Some(_) => "This scene cannot run.",
         None if context.session.accuracy.is_stopped => "Stopped: the next change begins it again.",
-        None => "Working it out.",
+        None => "Computing.",
     };
     let room = ui.available_rect_before_wrap();
     empty_ui(ui, &context.style, room, text);

@@ -137,7 +137,7 @@ fn method_ui(ui: &mut Ui, accuracy: &mut Accuracy) {
 }
 
 fn step_ui(ui: &mut Ui, accuracy: &mut Accuracy) {
-    let hover = "Increase: fewer and longer steps, which cost less and see less.";
+    let hover = "Increase: fewer and longer steps, which cost less and resolve less.";
     let name = ui.label("step").on_hover_text(hover);
     ui.spacing_mut().slider_width = (ui.available_width() - 84.0).clamp(70.0, 260.0);
     let slider = egui::Slider::new(&mut accuracy.step, RANGE.0..=RANGE.1)
@@ -157,9 +157,9 @@ fn hint(scheme: Scheme) -> &'static str {
             "Velocity first, then displacement by the new velocity: the simplest that keeps a swing alive. \
              Half the step, half the error."
         }
-        Scheme::VelocityVerlet => "What molecules and games move by. Half the step, a quarter of the error.",
+        Scheme::VelocityVerlet => "Usual for molecules and games. Half the step, a quarter of the error.",
         Scheme::RungeKutta4 => {
-            "The classical method of Runge and Kutta, four looks at the force a step. Half the step, a \
+            "The classical method of Runge and Kutta, four evaluations of the force a step. Half the step, a \
              sixteenth of the error, except at impacts."
         }
     }

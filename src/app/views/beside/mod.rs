@@ -154,7 +154,7 @@ struct Pen<'a> {
     places: &'a Places,
     /// Whether the parts are labelled.
     named: bool,
-    /// What is drawn already.
+    /// The lines and rectangles of which labels keep clear.
     taken: RefCell<&'a mut Taken>,
 }
 

@@ -63,11 +63,11 @@ pub fn map_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         (false, true) => MapShape::Cuts(map.cuts(context.session.scene())),
         (false, false) => MapShape::Cuts(Vec::new()),
     };
-    // where height is short, what is above the map is its legend alone
+    // in a low view only the legend is above the map
     let is_short = LegendRow::given(ui).is_some();
     let key = (context.session.map.version, quantity.name, look, style, shape.clone(), is_short);
     let pane = kept_pane_ui(ui, &style, area, key, || {
-        // one that cannot be a surface is seen from above
+        // a quantity that cannot be a surface is seen from above
         let above = || map.chart(quantity, &MapShape::Cuts(Vec::new()));
         let mut chart = map.chart(quantity, &shape).or_else(|_| above()).unwrap_or_default();
         if look.surface && words_of(quantity.name).is_some() {

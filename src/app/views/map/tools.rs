@@ -15,7 +15,7 @@ use super::super::axes::{field_ui, range_id, range_row_ui};
 use super::super::memory::MapLook;
 use super::super::{LegendRow, ViewContext};
 
-/// Width in points of the title: a long one is cut, and whole in the list and beside the colours.
+/// Width in points of the title; a longer one is cut, but complete in the list and beside the colours.
 const TITLE: f32 = 150.0;
 
 /// Width in points below which the choices take two rows.
@@ -67,7 +67,7 @@ fn start_in_words(context: &ViewContext<'_>) -> &'static str {
 }
 
 fn cells_in_words(start: &str) -> String {
-    format!("Every cell is a run of its own {start}.")
+    format!("Every cell is a separate run {start}.")
 }
 
 /// The quantity, the axes where they have room, a menu of all other choices, and the progress.
@@ -110,7 +110,7 @@ fn quantity_ui(ui: &mut Ui, mapping: &mut Mapping) {
                 for column in columns.iter().filter_map(|name| SummaryField::find(name)) {
                     let entry = ui.selectable_label(column.name == chosen.name, title(column));
                     let cost =
-                        if column.needs_ledger { " The runs are made anew for it, one by one." } else { "" };
+                        if column.needs_ledger { " Its runs are computed again, one by one." } else { "" };
                     if entry.on_hover_text(format!("{}{cost}", column.about)).clicked() {
                         mapping.show(column);
                         ui.close();

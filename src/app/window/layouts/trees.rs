@@ -18,7 +18,7 @@ const MECHANISM_SHARE: f32 = 0.4;
 /// Share of the width that the first column has in the layout Study.
 const STUDY_COLUMN: f32 = 0.34;
 /// Share of the width that views with legends have in a lesson in a compact window.
-const MUCH: f32 = 0.62;
+const WIDE: f32 = 0.62;
 const HALF: f32 = 0.5;
 
 enum Part {
@@ -129,7 +129,7 @@ pub(super) fn wide_tree(layout: Layout, large: bool) -> Tree<View> {
     }
 }
 
-/// Parts side by side, of two the first with this share; or in a narrow window equal ones, one below another.
+/// Parts side by side, with this share for the first of two; equal and one below another in a narrow window.
 fn parts(parts: Vec<Part>, share: f32, room: Room) -> Part {
     match room {
         Room::Narrow => Rows(parts),
@@ -194,7 +194,7 @@ fn column(views: &[View]) -> Part {
 pub(super) fn compact_lesson_tree(views: &[View], room: Room) -> Tree<View> {
     let (wide, others): (Vec<View>, Vec<View>) = views.iter().partition(|view| is_wide(**view));
     let root = match views {
-        _ if !wide.is_empty() && !others.is_empty() => parts(vec![Tabs(wide), Tabs(others)], MUCH, room),
+        _ if !wide.is_empty() && !others.is_empty() => parts(vec![Tabs(wide), Tabs(others)], WIDE, room),
         [first, rest @ ..] if room == Room::Narrow && rest.len() > 1 => {
             above(Pane(*first), Tabs(rest.to_vec()), HALF)
         }

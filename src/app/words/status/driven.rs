@@ -107,7 +107,7 @@ pub fn driven(facts: &DrivenMotion) -> Sentence {
     };
     let stops = model.stop_positions();
     let range = between(low, high, stops);
-    // of the stop that is touched; where both are or neither, of the side of the barrier
+    // the side of the touched stop; if both are touched or neither, the side of the barrier
     let side = match (stops.0 == Some(low), stops.1 == Some(high), summary.side) {
         (true, false, _) | (true, true, Some(Place::Left)) | (false, false, Some(Place::Left)) => "left-hand",
         _ => "right-hand",

@@ -89,9 +89,9 @@ pub fn ended(model: &Model, outcome: Outcome) -> Sentence {
             "the mass left the force table, which ends at {end}. Set stops inside it or extend the table."
         ),
         Outcome::ImpactBudget { count, .. } => {
-            format!("{count} impacts are more than it may make. Lower the restitution.")
+            format!("it reached the limit of {count} impacts. Lower the restitution.")
         }
-        Outcome::StepBudget { .. } => format!("it took more work than it may take; {remedy}."),
+        Outcome::StepBudget { .. } => format!("it reached the limit of work of a run; {remedy}."),
         Outcome::NotFinite { .. } => format!("a number was no longer finite; {remedy}."),
         Outcome::Inaccurate { .. } => {
             return Sentence::new(Kind::Fault, format!("The energy does not balance; {remedy}."));

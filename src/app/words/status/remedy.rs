@@ -12,7 +12,7 @@ pub(super) fn amplitude(scene: &Scene) -> Option<f64> {
     Some(scene.harmonic()?.amplitude_g().abs())
 }
 
-/// How many units of the amplitude of a scene's drive are 1 g, and the name of that unit.
+/// 1 g in the unit of the amplitude of a scene's drive, and the name of that unit.
 fn unit(scene: &Scene) -> (f64, &'static str) {
     let drive = scene.harmonic();
     drive.map_or((1.0, "g"), |drive| (drive.amplitude_of(STANDARD_GRAVITY), drive.unit()))
@@ -47,7 +47,7 @@ pub fn threshold(scene: &Scene, found: &Found) -> Option<(String, &'static str)>
     Some((format!("{}{}", about(found), grams(found.value? * per_g)), unit))
 }
 
-/// What the thresholds, all from rest at this frequency, say of the present amplitude and motion.
+/// The present amplitude and motion compared with the thresholds, which are from rest at this frequency.
 pub(super) fn remedy(scene: &Scene, summary: &Summary, found: &Thresholds) -> String {
     let Some(g) = amplitude(scene) else { return String::new() };
     if summary.regime == Regime::OneWell {
@@ -121,7 +121,7 @@ mod tests {
     use crate::scene::{Document, Excitation};
 
     #[test]
-    fn what_is_not_known_is_said_to_be_about_or_as_far_as_seen() {
+    fn undecided_thresholds_are_marked() {
         let Document { scene, files, .. } = Document::load("first-look").unwrap();
         let mechanism = Arc::new(Mechanism::build(&scene.mechanism, &files).unwrap());
         let settled = Model::build(&scene, mechanism).unwrap().run(&Request::default()).summary;
