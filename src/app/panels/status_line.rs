@@ -49,9 +49,10 @@ pub fn status_ui(ui: &mut Ui, session: &mut Session, announcer: &mut Announcer, 
         let (kind, color) = (sentence.kind, style.kind(sentence.kind));
         ui.painter().extend(kind_shapes(kind, rect.center(), STATUS * 0.42, color));
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            match has_column {
-                true => beside_ui(ui, session, style),
-                false => stop_ui(ui, session),
+            if has_column {
+                beside_ui(ui, session, style);
+            } else if column {
+                stop_ui(ui, session);
             }
             ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
                 let text = sentence.whole();

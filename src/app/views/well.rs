@@ -182,7 +182,8 @@ fn feet(model: &Model, barrier: &Barrier) -> Option<[f64; 2]> {
 
 /// Draws the height of the barrier as a bracket below its top, with its name where no curve comes that the
 /// `largest` push tips to either side; and the names of the wells in a row below, without those that do not
-/// fit. Between stops inside the wells the bracket ends at the energy that the mass has at a stop.
+/// fit. Between stops inside the wells the bracket ends at the energy that the mass has at a stop, unless it
+/// would be too short to be seen.
 fn landmarks(
     painter: &egui::Painter,
     context: &ViewContext<'_>,
@@ -207,8 +208,12 @@ fn landmarks(
     let feet = feet(model, &barrier);
     let heights = feet.map_or([joule; 2], |feet| feet.map(|foot| potential(barrier.x) - potential(foot)));
     let below_top = |height: f64| place(barrier.x, (joule - height) * level.per_joule);
-    let (top, ends) = (below_top(0.0), heights.map(below_top));
-    let foot = if ends[0].y > ends[1].y { ends[0] } else { ends[1] };
+    let (top, mut ends) = (below_top(0.0), heights.map(below_top));
+    let lower = |ends: [Pos2; 2]| if ends[0].y > ends[1].y { ends[0] } else { ends[1] };
+    if lower(ends).y - top.y < 4.0 * BRACKET {
+        ends = [below_top(joule); 2];
+    }
+    let foot = lower(ends);
     if foot.y - top.y > 4.0 * BRACKET && foot.y < rect.bottom() {
         let stroke = Stroke::new(style.width(1.3), style.faint());
         let [left, right] = [-BRACKET, BRACKET].map(|aside| vec2(aside, 0.0));
