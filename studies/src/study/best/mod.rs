@@ -60,7 +60,7 @@ pub struct Constraint {
 /// A scene in one environment.
 #[derive(Debug, Clone)]
 pub struct Environment {
-    /// What it is called.
+    /// Its name.
     pub name: String,
     /// Its weight, above 0.
     pub weight: f64,

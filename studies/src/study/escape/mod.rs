@@ -27,7 +27,7 @@ use crate::system::threads::Pool;
 pub use kramers::{NoKramers, depopulation, kramers_rate};
 pub use probability::{Chance, probable_threshold_table};
 
-/// Largest seed of a noise, after which the seeds of further runs go on from 0.
+/// Largest seed of a noise, after which the seeds of further runs continue from 0.
 const MAX_SEED: u64 = 1 << 53;
 
 words! {

@@ -13,7 +13,7 @@ use crate::study::thresholds::{faults, from_rest};
 use crate::study::{Cancelled, Family, Grid, NoThresholds, Onset, Scan, Table, Task};
 use crate::system::threads::Pool;
 
-/// What is asked of the runs.
+/// The share of runs that are to cross, their number and their time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Chance {
     /// Share of the runs that are to cross, above 0 and below 1.

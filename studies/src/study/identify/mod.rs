@@ -51,7 +51,7 @@ fn with_interval<R>(table: Table, names: [&str; 3], rows: &[R], of: impl Fn(&R) 
     table.each(names[1], rows, |row| of(row).interval.0).each(names[2], rows, |row| of(row).interval.1)
 }
 
-/// What was identified from a record.
+/// The quantities identified from a record.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Identified {
     /// The rows: over amplitude, impact or position.

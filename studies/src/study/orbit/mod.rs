@@ -61,11 +61,11 @@ pub struct Orbit {
     pub period: u32,
     /// Its state at the phase of the map.
     pub state: MapState,
-    /// What happens on it.
+    /// Its events over a period.
     pub passage: Passage,
     /// Derivative of the map over its period.
     pub jacobian: Jacobian,
-    /// What the electrical state is; `None` without a circuit.
+    /// The kind of its electrical state; `None` without a circuit.
     pub circuit: Option<CircuitState>,
 }
 
@@ -92,7 +92,7 @@ pub enum NoOrbit {
     )]
     NotSettled,
     /// It was cancelled.
-    #[error("it was told to stop")]
+    #[error("it was cancelled")]
     Cancelled,
 }
 
@@ -283,7 +283,7 @@ pub fn orbit(model: &Model, phase: f64, period: Option<u32>, cancel: &AtomicBool
     }
 }
 
-/// Among the stroboscopic states after `from`, the one with the closest return after `periods`.
+/// The stroboscopic state after `from` with the closest return after `periods`.
 fn closest_return(map: &StroboscopicMap, from: MapState, periods: u32) -> MapState {
     let units = Units::of(map.model(), 1.0);
     let next = |state: &MapState| {

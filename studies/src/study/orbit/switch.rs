@@ -20,7 +20,7 @@ const AWAY: f64 = 0.1;
 /// Largest distance in the units between the same event on two branches.
 const AT_ONCE: f64 = 1e-6;
 
-/// The start of a branch: its first motion, with the direction in which it goes on.
+/// The start of a branch: its first motion, with the direction in which it continues.
 type Start<'a> = (Corrector<'a>, Directed);
 
 /// A branch, the branches that begin at its flips and breakings of the symmetry, those that begin on them,

@@ -361,7 +361,7 @@ impl<'a> Walk<'a> {
         self.meets |= left.into_iter().any(|(row, _)| (at - row).amax() <= SAME);
         let event = event.filter(|_| !self.meets);
         self.rows.push((at, far));
-        // a motion at an end is so but for the rounding of its unit
+        // a motion at an end is off it by the rounding of the unit
         let far = |end: f64| (point.value - end).abs();
         let is_at = |end: &f64| far(*end) <= AT_AN_END * (self.corrector.units.range + end.abs() * 1e-3);
         let end = self.range.into_iter().find(|end| event.is_none() && is_at(end));
@@ -393,7 +393,7 @@ impl<'a> Walk<'a> {
         self.corrector.evaluate(&(point.at + Vector4::w() * along.w.signum() * UNLOCATED)).is_some()
     }
 
-    /// Goes on from the present motion without the mirror condition; false where that finds none.
+    /// Continues from the present motion without the mirror condition; false where that finds no motion.
     fn forgets_its_mirror_image(&mut self) -> bool {
         let (point, along) = &self.at;
         let corrector = Corrector { mirrored: false, ..self.corrector };
@@ -404,7 +404,7 @@ impl<'a> Walk<'a> {
         true
     }
 
-    /// Whether the last motion is the first one, but for the length of a step.
+    /// Whether the last motion is the first one to within the length of a step.
     fn is_closed(&self, step: f64) -> bool {
         let Some(((last, _), (first, _))) = self.rows.last().zip(self.rows.first()) else { return false };
         let farthest = self.rows.iter().map(|(row, _)| (row - first).norm()).fold(0.0, f64::max);
