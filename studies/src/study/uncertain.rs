@@ -139,8 +139,7 @@ impl Draws {
         }
     }
 
-    /// The request with every default filled in: it gives the same draws for a scene with the values of the
-    /// fields.
+    /// The request with all defaults: it gives the same draws for a scene with the values of the fields.
     pub fn with_defaults(&self) -> Uncertain {
         let fields = self.fields.iter().map(|field| format!("{}=+-{}", field.law.field, field.deviation()));
         Uncertain { fields: fields.collect(), draws: Some(self.count), seed: Some(self.seed) }
