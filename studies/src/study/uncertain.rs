@@ -1,4 +1,4 @@
-//! Uncertain inputs: fields with normal distributions, their draws, and the bands of what the draws give.
+//! Uncertain inputs: fields with normal distributions, their draws, and the bands of results.
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};

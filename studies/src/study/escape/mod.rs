@@ -157,7 +157,7 @@ fn with_columns(table: Table, options: &EscapeOptions, found: &[Escapes]) -> Tab
 fn prepared(scene: &Scene, run: u64, within: f64) -> Scene {
     let mut scene = scene.clone();
     reseed(&mut scene.excitation, run);
-    // without a settled window, whose averages nobody reads
+    // without a settled window, since its averages are not used
     (scene.run.duration_s, scene.run.settle_s) = (within, Some(within));
     scene
 }

@@ -205,7 +205,7 @@ impl<'a> Walk<'a> {
         (SHORTEST..=2.0 * self.options.step).contains(&(next.at - point.at).norm()).then_some((next, onward))
     }
 
-    /// Whether a point continues the branch: it lies in its direction, and so does its own direction.
+    /// Whether a point continues the branch: the point and its tangent lie in the direction of the branch.
     fn follows(&self, (next, onward): &Directed) -> bool {
         let (point, along) = &self.at;
         // a motion that is a function of the field does not turn back
@@ -317,7 +317,7 @@ impl<'a> Walk<'a> {
         let nearest = directed(least(beside));
         for distance in PAST_A_GRAZING {
             let Some(far) = directed(distance) else { continue };
-            // of two impacts that are hardly any, the derivatives are lost in rounding
+            // the derivatives of two very slow impacts are lost in rounding
             let near = nearest.clone().or_else(|| directed(0.1 * distance)).unwrap_or_else(|| far.clone());
             if differ(&near.0, &far.0) {
                 continue;
@@ -356,7 +356,7 @@ impl<'a> Walk<'a> {
         };
         let at = self.corrector.at(orbit.state, point.value);
         let far = self.rows.last().map_or(0.0, |(last, far)| far + (at - last).norm());
-        // only where something happens does it come to the same motion again, and not beside it
+        // the branch comes to the same motion again only at an event, and not beside it
         let left = self.rows.iter().take_while(|(_, along)| far - along > self.options.step);
         self.meets |= left.into_iter().any(|(row, _)| (at - row).amax() <= SAME);
         let event = event.filter(|_| !self.meets);

@@ -180,11 +180,11 @@ pub struct Lateness {
     pub earliest: f64,
     /// The latest.
     pub latest: f64,
-    /// How many arrivals in a row were found in both runs.
+    /// Number of arrivals in a row that were found in both runs.
     pub matched: usize,
-    /// How many of those are early.
+    /// Number of those that are early.
     pub early: usize,
-    /// How many there are.
+    /// Number of arrivals in the true run.
     pub of: usize,
 }
 
