@@ -1190,7 +1190,7 @@ class Scene(Mapping[str, Any]):
             ``exponent_1_per_s``, ``exponent_1_se``, ``exponent_2_per_s``, ``exponent_2_se`` (standard
             errors), ``sum_per_s``, ``exact_sum_per_s``, ``dimension``, each float64; a :class:`Grid` with
             ``over``. Where there may be a circuit also ``exponent_3_per_s``, ``exponent_3_se``. The exponents
-            are ``-inf`` where the mass rests on a stop, but for one of a circuit.
+            are ``-inf`` where the mass rests on a stop, except that of a circuit.
 
         Raises
         ------

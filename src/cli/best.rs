@@ -74,7 +74,7 @@ pub struct Arguments {
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
     let (document, warnings) = load(&options.scene, common)?;
-    let asked = Best {
+    let request = Best {
         over: options.over.clone(),
         maximise: options.maximise.clone(),
         subject_to: options.subject_to.clone(),
@@ -83,7 +83,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         seed: options.seed,
         until_settled: settle_limit(options.until_settled.as_deref())?,
     };
-    let question = asked.question(&document)?;
+    let question = request.question(&document)?;
     warn(&document, common, &warnings, None);
     let pool = pool(common)?;
     let environments = environment_files(&options.environment);
@@ -103,7 +103,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         let value = quantity(design.value, maximised);
         say(&format!("{}: best so far at {at}: {maximised} {value}", document.name));
     }
-    let design = found.map_err(|why| asked.no_best(why, &question, &document))?;
+    let design = found.map_err(|why| request.no_best(why, &question, &document))?;
     outputs.table(Output::DATA, &design.table(&question))?;
     outputs.draw(picture, &document, |ranges| Ok(best_chart(&question, &design, ranges)))?;
     design.words(&question).iter().for_each(|line| common.say(&format!("{}: {line}", document.name)));

@@ -75,10 +75,11 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     };
     let carry = options.carry.as_deref().and_then(Carry::named);
     let settings = SectionOptions { at, periods: options.skip.zip(options.keep), until_settled: None, carry };
-    if options.over.is_empty() { one(options, common, settings) } else { diagram(options, common, settings) }
+    let take = if options.over.is_empty() { single } else { diagram };
+    take(options, common, settings)
 }
 
-fn one(options: &Arguments, common: &Common, mut settings: SectionOptions) -> Result<(), Failure> {
+fn single(options: &Arguments, common: &Common, mut settings: SectionOptions) -> Result<(), Failure> {
     let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
     let (document, model) = load_model(&options.scene, common)?;
     settings.until_settled =

@@ -5,7 +5,7 @@
 //! Displacement in m and velocity in m/s are relative to the base, times are in s. [`Model::build`] lists all
 //! faults of a scene; a run never fails, its [`Outcome`] says how it ended. [`Model::run_all`] runs a batch
 //! with the same bits, [`Model::run_reference`] computes with about 31 digits, [`StroboscopicMap`] gives the
-//! state one forcing period later with its derivatives, and [`Live`] goes on for as long as it is asked.
+//! state one forcing period later with its derivatives, and [`Live`] continues a motion without a fixed end.
 //!
 //! Method: between events a Taylor series of order 9 to 23, by tolerance (Moore 1966; Jorba and Zou 2005),
 //! whose polynomial gives samples and contacts too. A contact is a root of that polynomial; none is missed.

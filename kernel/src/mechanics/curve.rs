@@ -123,7 +123,7 @@ impl ForceCurve {
         }
     }
 
-    /// As [`from_pieces`](Self::from_pieces), of pieces that are known to fit.
+    /// Like [`from_pieces`](Self::from_pieces), for pieces that are known to fit.
     pub(super) fn joined(
         mut pieces: Vec<Piece>,
         breaks: Vec<f64>,

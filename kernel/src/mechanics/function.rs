@@ -24,8 +24,8 @@ const CHECKS: usize = 5;
 /// Share of the tolerance that the fit may use at the samples; between them the error is a little larger.
 const AT_SAMPLES: f64 = 0.5;
 
-/// Width of an interval, relative to the range, below which a function that is not followed has a step.
-const NARROWEST: f64 = 1e-12;
+/// Width of an interval, relative to the range, below which a misfit is a step of the function.
+const STEP_WIDTH: f64 = 1e-12;
 
 /// Largest number of calls of the function; the fit of samples of as many intervals takes some seconds.
 const MAX_CALLS: usize = 30_000;
@@ -65,7 +65,7 @@ pub enum FunctionError {
         at = number_text(*.0)
     )]
     Step(f64),
-    /// The force is not followed with as many calls as are made.
+    /// The allowed number of calls is not enough to follow the force.
     #[error(
         "{MAX_CALLS} values of the force are not enough to follow it near x = {at} m; give a larger \
          tolerance, all the more if the force is noisy, and the corners of the force as breaks",
@@ -219,7 +219,7 @@ struct Sampled<F> {
     values: RefCell<HashMap<u64, f64>>,
 }
 
-/// What came of a function with these breaks.
+/// Result of fitting a function with these breaks.
 enum Attempt {
     Curve(ForceCurve),
     /// Corners that are not among the breaks.
@@ -282,7 +282,7 @@ impl<F: Fn(f64) -> f64> Sampled<F> {
             if !corners.is_empty() {
                 return Ok(Attempt::Corners(corners));
             }
-            let narrow = |(from, to): &&(f64, f64)| to - from < NARROWEST * (high - low);
+            let narrow = |(from, to): &&(f64, f64)| to - from < STEP_WIDTH * (high - low);
             if let Some((from, to)) = compared.refined.iter().find(narrow) {
                 return Err(FunctionError::Step(0.5 * (from + to)));
             }

@@ -60,13 +60,13 @@ impl Collocation {
             }
         }
         for k in 0..points {
-            let mut one = none;
-            one[k / GROUP].0[k % GROUP] = 1.0;
-            let one = rule.coefficients(&one);
+            let mut unit = none;
+            unit[k / GROUP].0[k % GROUP] = 1.0;
+            let unit = rule.coefficients(&unit);
             for group in 0..groups {
-                rule.integrals[k][group] = rule.integral(&one, rule.places[group], Lanes::all).0;
+                rule.integrals[k][group] = rule.integral(&unit, rule.places[group], Lanes::all).0;
             }
-            rule.halves[k / GROUP].0[k % GROUP] = rule.integral(&one, 0.0, |value| value).0;
+            rule.halves[k / GROUP].0[k % GROUP] = rule.integral(&unit, 0.0, |value| value).0;
         }
         rule
     }
@@ -197,11 +197,11 @@ mod tests {
             assert!(off < 10.0 * fall * fall + 1e-15, "{points} {off:e}");
             // the function is even: the last nonzero term is the last but one
             let (unresolved, last) = (rule.unresolved(&values), fall * (1.0 + 2.0_f64.sqrt()).powi(2));
-            let one = fall / points as f64;
+            let error = fall / points as f64;
             assert!(unresolved < last + 1e-15 && unresolved > 0.1 * last - 1e-15, "{points} {unresolved:e}");
             let (integral, value) = rule.integral(&rule.coefficients(&values), 0.4, |value| value);
             let off = integral - (0.4_f64.atan() + std::f64::consts::FRAC_PI_4);
-            assert!(off.abs() < 10.0 * one + 1e-15, "{points} {off:e}");
+            assert!(off.abs() < 10.0 * error + 1e-15, "{points} {off:e}");
             assert!((value - 1.0 / 1.16).abs() < 10.0 * fall + 1e-14);
         }
     }

@@ -17,14 +17,14 @@ const EQUAL_FIT_FACTOR: f64 = 1.05;
 /// Share of the first record's mean square that is added to that limit.
 const EQUAL_FIT_SHARE: f64 = 1e-4;
 
-/// The lag of `other` against `one` with the smallest mean square difference, among lags at which at least
+/// The lag of `other` against `first` with the smallest mean square difference, among lags at which at least
 /// `min_overlap` values overlap. Both records are spaced by one step. Of equally good lags the smallest wins.
 ///
 /// Method: the sum of squared differences is the sum of squares of the overlapping parts less twice the
 /// correlation, which a fast Fourier transform gives for all lags at once; a parabola interpolates between
 /// steps. Returns `None` if no lag has enough overlap.
-pub fn alignment(one: &[f64], other: &[f64], min_overlap: usize) -> Option<Alignment> {
-    let size = (one.len() + other.len()).next_power_of_two();
+pub fn alignment(first: &[f64], other: &[f64], min_overlap: usize) -> Option<Alignment> {
+    let size = (first.len() + other.len()).next_power_of_two();
     let mut planner = RealFftPlanner::<f64>::new();
     let (forward, inverse) = (planner.plan_fft_forward(size), planner.plan_fft_inverse(size));
     let transformed = |values: &[f64]| {
@@ -33,7 +33,7 @@ pub fn alignment(one: &[f64], other: &[f64], min_overlap: usize) -> Option<Align
         let mut lines = forward.make_output_vec();
         forward.process(&mut values, &mut lines).ok().map(|()| lines)
     };
-    let mut product = transformed(one)?;
+    let mut product = transformed(first)?;
     product.iter_mut().zip(transformed(other)?).for_each(|(a, b)| *a *= b.conj());
     // the first and the last line are real; rounding leaves an imaginary part
     let last = product.len() - 1;
@@ -46,22 +46,22 @@ pub fn alignment(one: &[f64], other: &[f64], min_overlap: usize) -> Option<Align
         values.iter().zip(0..).for_each(|(value, k)| sums.push(sums[k] + value * value));
         sums
     };
-    let (one_squares, other_squares) = (squares(one), squares(other));
+    let (first_squares, other_squares) = (squares(first), squares(other));
     let mean_square = |lag: i64| -> Option<f64> {
         let from = lag.max(0);
-        let to = (one.len() as i64).min(other.len() as i64 + lag);
+        let to = (first.len() as i64).min(other.len() as i64 + lag);
         let count = to - from;
         if count < min_overlap.max(1) as i64 {
             return None;
         }
         let part = |sums: &[f64], low: i64, high: i64| sums[high as usize] - sums[low as usize];
         let crossed = correlation[lag.rem_euclid(size as i64) as usize] / size as f64;
-        let sum = part(&one_squares, from, to) + part(&other_squares, from - lag, to - lag) - 2.0 * crossed;
+        let sum = part(&first_squares, from, to) + part(&other_squares, from - lag, to - lag) - 2.0 * crossed;
         Some(sum.max(0.0) / count as f64)
     };
-    let (low, high) = (1 - other.len() as i64, one.len() as i64 - 1);
+    let (low, high) = (1 - other.len() as i64, first.len() as i64 - 1);
     let best = (low..=high).filter_map(mean_square).fold(f64::INFINITY, f64::min);
-    let good = EQUAL_FIT_FACTOR * best + EQUAL_FIT_SHARE * one_squares[one.len()] / one.len() as f64;
+    let good = EQUAL_FIT_FACTOR * best + EQUAL_FIT_SHARE * first_squares[first.len()] / first.len() as f64;
     let is_minimum = |lag: &i64| {
         let is_lower =
             |here: f64| [lag - 1, lag + 1].into_iter().filter_map(mean_square).all(|near| here <= near);

@@ -100,7 +100,7 @@ impl<const N: usize> Number for Dual<N> {
     }
 }
 
-/// The functions of a dual number; a macro, since each number of derivatives has a table of its own.
+/// The functions of a dual number; a macro, since each number of derivatives has a separate table.
 macro_rules! scalar {
     ($n:literal) => {
         impl Scalar for Dual<$n> {

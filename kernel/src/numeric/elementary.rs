@@ -3,11 +3,10 @@
 //!
 //! The methods of `f64` call the mathematics library of the system, or the compiler computes them with the
 //! one that it has; such libraries differ in the last digit. These functions are those of the crate `libm`,
-//! which is compiled from Rust for every target and has nothing but sums, products, quotients and square
-//! roots, all of which IEEE 754 rounds in one way. Its feature `arch` takes `sqrt`, `fma` and roundings to
-//! whole numbers from the processor; they are exactly rounded there too, and no other function differs
-//! between targets. The `clippy.toml` of the kernel and that of the studies forbid the methods of `f64` in
-//! their place.
+//! which is compiled from Rust for every target and uses only sums, products, quotients and square roots, all
+//! of which IEEE 754 rounds in one way. Its feature `arch` takes `sqrt`, `fma` and roundings to whole numbers
+//! from the processor; they are exactly rounded there too, and no other function differs between targets. The
+//! `clippy.toml` of the kernel and that of the studies forbid the methods of `f64` in their place.
 //!
 //! Errors in units of the last digit (ulp), as the sources state them:
 //!
@@ -29,7 +28,7 @@
 //! everywhere.
 //!
 //! Known gap: two crates call the methods of `f64` inside, rustfft for the factors of a transform and statrs
-//! for quantiles. What comes from them can differ in the last digits.
+//! for quantiles. Their results can differ in the last digits.
 
 pub use libm::{
     acos, acosh, asin, asinh, atan, atan2, cbrt, cos, cosh, exp, exp2, expm1 as exp_m1, hypot, log as ln,
@@ -41,9 +40,9 @@ const LARGEST_WHOLE: f64 = 9_007_199_254_740_992.0; // 2^53
 
 /// `base` to the power `exponent`.
 ///
-/// Of whole numbers that of `libm` is exact where the exponent is positive and the result below 2^53, but 1
-/// ulp off in places where it is negative, as at 10^-5. There it is the reciprocal of the positive power,
-/// which is the nearest double.
+/// For whole numbers `libm` is exact where the exponent is positive and the result below 2^53, but in places
+/// 1 ulp off where the exponent is negative, as at 10^-5. There the result is the reciprocal of the positive
+/// power, which is the nearest double.
 pub fn powf(base: f64, exponent: f64) -> f64 {
     if exponent < 0.0 && base.fract() == 0.0 && exponent.fract() == 0.0 {
         let positive = libm::pow(base, -exponent);
@@ -54,11 +53,11 @@ pub fn powf(base: f64, exponent: f64) -> f64 {
     libm::pow(base, exponent)
 }
 
-/// `base` to a whole power, by products of its squares; of a negative exponent the reciprocal of that of its
-/// magnitude, so that results of at most 2^-1024 are 0.
+/// `base` to a whole power, by products of its squares. A negative exponent gives the reciprocal of the
+/// positive power, so that results of at most 2^-1024 are 0.
 ///
-/// The error in ulp is about half the magnitude of the exponent, the order of the products is fixed. That of
-/// `f64::powi` is left to the compiler where the exponent is a variable.
+/// The error in ulp is about half the magnitude of the exponent. The order of the products is fixed; in
+/// `f64::powi` the compiler chooses it where the exponent is a variable.
 pub fn powi(base: f64, exponent: i32) -> f64 {
     let (mut product, mut square, mut rest) = (1.0, base, exponent.unsigned_abs());
     while rest > 0 {

@@ -1,12 +1,12 @@
 //! Mathematics without mechanics: number types, roots, fits, sums, decimals.
 //!
-//! What the integrator and the studies need and what must be held to rounding or have the same bits on every
-//! processor is written here: [`PolynomialRoots`] (the sign changes in a step, without allocation; Lane and
-//! Riesenfeld 1981) and [`real_roots`] (all roots, for setup), [`DoubleDouble`] (about 31 digits; Dekker
-//! 1971), [`Dual`] (derivatives; Clifford 1873), [`Lanes`] (several numbers by the same instructions),
-//! [`GaussLegendre`], [`CompensatedSum`] (Neumaier 1974), [`Decimal`] (numbers as a person writes them), and
-//! for measured data [`Periodogram`], [`Envelope`], [`orthogonal`] and [`regression`]. Sines, exponentials,
-//! powers and logarithms are those of [`elementary`] everywhere in the kernel and the studies.
+//! This module has what must be exact to rounding or have the same bits on every processor:
+//! [`PolynomialRoots`] (the sign changes in a step, without allocation; Lane and Riesenfeld 1981) and
+//! [`real_roots`] (all roots, for setup), [`DoubleDouble`] (about 31 digits; Dekker 1971), [`Dual`]
+//! (derivatives; Clifford 1873), [`Lanes`] (several numbers by the same instructions), [`GaussLegendre`],
+//! [`CompensatedSum`] (Neumaier 1974), [`Decimal`] (numbers as a person writes them), and for measured data
+//! [`Periodogram`], [`Envelope`], [`orthogonal`] and [`regression`]. Sines, exponentials, powers and
+//! logarithms are those of [`elementary`] everywhere in the kernel and the studies.
 //!
 //! Numbers have no unit here, or the unit of the caller. Functions state their preconditions instead of
 //! returning errors; where there may be no answer they return an `Option`.

@@ -6,13 +6,13 @@ use statrs::function::erf::erfc_inv;
 
 use super::elementary;
 
-/// Where the probability differs from 0 or 1 by less than a rounding of 1.
+/// Distance from 0 beyond which the probability differs from 0 or 1 by less than a rounding of 1.
 const FAR: f64 = 8.5;
 
 /// The probability that a standard normal number is at most `x`, with an error below 1e-15.
 ///
 /// Method: the Taylor series of the distribution over its density, whose terms have one sign (Marsaglia 2004,
-/// "Evaluating the normal distribution"). `erfc` of statrs is exact to 1e-9 alone.
+/// "Evaluating the normal distribution"). `erfc` of statrs is accurate only to 1e-9.
 pub fn normal_probability(x: f64) -> f64 {
     if x.abs() > FAR {
         return if x > 0.0 { 1.0 } else { 0.0 };

@@ -26,7 +26,7 @@ const MAX_LENGTH: usize = 1000;
 /// Largest depth of parentheses, signs and powers within each other.
 const MAX_DEPTH: usize = 64;
 
-/// What is wrong with an expression.
+/// An error in an expression.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Problem {
     /// The byte at which it is.
@@ -76,7 +76,7 @@ pub(super) fn evaluate(text: &str) -> Result<f64, Problem> {
 pub(super) fn end(text: &str, at: usize) -> Option<usize> {
     let mut tokens = Tokens { text, at };
     let (mut depth, mut end, mut operand_due) = (0_usize, at, true);
-    // the begin of the first operand, if that is a number, and whether nothing but its sign goes with it
+    // the begin of the first operand, if that is a number, and whether it has only a sign
     let (mut first, mut is_single) = (None, true);
     let is_bracket = text.as_bytes().get(at) == Some(&b'(');
     loop {
@@ -292,7 +292,7 @@ impl Parser<'_> {
     }
 }
 
-/// A result, if it is finite; `at` is the byte of what it comes from.
+/// A result, if it is finite; `at` is the byte of its operator or operand.
 fn finite(at: usize, value: f64) -> Result<f64, Problem> {
     if value.is_finite() {
         return Ok(value);

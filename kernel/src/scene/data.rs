@@ -194,7 +194,7 @@ pub enum Start {
 pub struct RunSettings {
     /// Duration in s, 1e-15 to 1e9.
     pub duration_s: f64,
-    /// Beginning of the settled window in s, 0 to 1e9 and at most the duration; left out, half of it.
+    /// Beginning of the settled window in s, 0 to 1e9 and at most the duration; by default half of it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub settle_s: Option<f64>,
     /// Allowed local error, relative to the scene's scales, 1e-14 to 0.001.

@@ -395,7 +395,7 @@ pub(super) fn structure_error<E: ToString>(
     while let Some(without) = parse_error.without_unknown(&text).filter(|_| more.len() < MAX_UNKNOWN) {
         text = without;
         match parse(&text) {
-            // A field that is missing now may be the one that the unknown name was meant to be.
+            // The missing field may be the one that the unknown name stands for.
             Some(next) if next.unknown.is_none() => {
                 more.extend(arithmetic(&next));
                 break;

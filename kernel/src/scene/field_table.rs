@@ -42,7 +42,7 @@ impl fmt::Display for Range {
     }
 }
 
-/// What the range of a slider depends on.
+/// The quantity that the range of a slider depends on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Scale {
     /// Nothing: every scene has the range of the table.
@@ -70,11 +70,11 @@ pub struct Control {
     pub path: &'static str,
     /// Smallest and largest value and step of the slider, for a scene of the prototype's size.
     pub slider: (f64, f64, f64),
-    /// What that range depends on in another scene.
+    /// The quantity that this range depends on in another scene.
     pub scale: Scale,
     /// Smallest and largest value that may be typed.
     pub typed: (f64, f64),
-    /// What happens if it is increased.
+    /// The effect of an increase, shown under the pointer.
     pub hover: &'static str,
 }
 
@@ -174,7 +174,7 @@ const LOAD: (f64, f64) = (0.0, f64::INFINITY);
 const NOT_NEGATIVE: (f64, f64) = (0.0, 1e30);
 const SHARE: (f64, f64) = (0.0, 1.0);
 
-// What may be typed.
+// The values that may be typed.
 const TYPED_G: (f64, f64) = (-1e4, 1e4);
 const TYPED_SIZE: (f64, f64) = (0.0, 1e4);
 const TYPED_HZ: (f64, f64) = (1e-2, 1e5);

@@ -218,8 +218,8 @@ pub(super) fn replace(found: Field<'_>, value: &str) -> Result<(), String> {
     }
 }
 
-/// Reads a number in the notation of RON or Rust (`4`, `.5`, `1e-9`, `-inf`) or arithmetic. `what` says what
-/// any other text is not.
+/// Reads a number in the notation of RON or Rust (`4`, `.5`, `1e-9`, `-inf`) or arithmetic. `what` is the
+/// problem of any other text.
 fn number_in(value: &str, what: &str, spec: &FieldInfo) -> Result<f64, String> {
     match value.parse() {
         Ok(plain) => Ok(plain),

@@ -28,7 +28,7 @@ pub struct Harmonic {
 
 impl Excitation {
     /// This drive as an acceleration of the base, for a proof mass in kg; `None` unless it has one frequency
-    /// and one amplitude. A sum has not.
+    /// and one amplitude. A sum gives `None`.
     pub fn harmonic(&self, mass: f64) -> Option<Harmonic> {
         let (amplitude, frequency, phase_deg, quarters, path, of_one) = match *self {
             Self::Sine { frequency_hz, amplitude_g, phase_deg } => {

@@ -53,7 +53,7 @@ pub enum LinkError {
     Scene,
 }
 
-/// What stands behind the `#` of a link.
+/// The payload behind the `#` of a link.
 #[derive(Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Payload {
@@ -81,11 +81,11 @@ pub fn linked_lesson(text: &str) -> Option<&str> {
     }
 }
 
-/// What a link opens, its name, and the payload.
+/// The kind of document that a link opens, its name, and the payload.
 fn query(text: &str) -> Option<(&str, &str, &str)> {
     let (_, query) = text.trim().split_once('?')?;
     let (query, payload) = query.split_once('#').unwrap_or((query, ""));
-    // others may append parameters of their own
+    // others may append parameters
     let mut parameters = query.split('&').filter_map(|parameter| parameter.split_once('='));
     let (kind, name) = parameters.find(|(kind, _)| ["scene", "lesson"].contains(kind))?;
     Some((kind, name, payload))

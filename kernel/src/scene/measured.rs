@@ -40,7 +40,7 @@ pub struct ColumnOptions {
 /// Values of one column.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Channel {
-    /// What was measured.
+    /// The measured quantity.
     pub quantity: Quantity,
     /// The column's name.
     pub column: String,
@@ -68,7 +68,7 @@ pub enum MeasuredError {
     NoColumn {
         /// Requested quantity.
         quantity: Quantity,
-        /// What the header has, and the remedy.
+        /// The columns of the header, and the remedy.
         problem: String,
     },
     /// Anything else: the file, the choice of a column, or the values in it.

@@ -57,7 +57,7 @@ pub enum Mechanism {
         /// free mass.
         coefficients_si: Vec<f64>,
     },
-    /// A piecewise polynomial as it stands, such as one that a program made of a function.
+    /// A piecewise polynomial, such as one that a program fitted to a function.
     Pieces {
         /// Ends of the pieces in m, ascending, one more than there are pieces. The first and the last are the
         /// ends of the curve; -inf and inf where it has none.
@@ -90,7 +90,7 @@ pub enum Mechanism {
         strength_n_mm4: f64,
         /// Distance of the two dipoles at x = 0 in mm, 1e-15 to 1e15.
         gap_mm: f64,
-        /// Direction of both moments; left out, facing.
+        /// Direction of both moments; by default facing.
         #[serde(default, skip_serializing_if = "is_default")]
         moments: Moments,
     },

@@ -1,4 +1,4 @@
-//! Names as a person writes them, found among those that there are.
+//! Names as a person writes them, looked up among the known names.
 
 use super::unit::{Unit, unit_ending};
 
@@ -56,7 +56,7 @@ pub(super) fn nearest<'a>(unknown: &str, known: impl IntoIterator<Item = &'a str
     let wanted = last(unknown);
     let similarity = |name: &str| {
         let (whole, part) = (strsim::jaro_winkler(name, unknown), strsim::jaro_winkler(&last(name), &wanted));
-        // a last part weighs less, so that of several names with the same one the nearest is taken
+        // the last part weighs less, so that the nearest of several names with the same last part is taken
         whole.max(0.9 * part + 0.1 * whole)
     };
     let rated = known.into_iter().map(|name| (similarity(name), name));

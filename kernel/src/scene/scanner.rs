@@ -17,7 +17,7 @@ pub(super) enum Part {
 }
 
 impl Part {
-    /// Splits a path at its dots. A number with further zeros or a sign, such as `01`, is a name.
+    /// Splits a path at its dots. A number with leading zeros or a sign, such as `01`, is a name.
     pub fn all_of(path: &str) -> Vec<Self> {
         let part = |text: &str| match text.parse::<usize>() {
             Ok(index) if index.to_string() == text => Self::Index(index),
@@ -409,7 +409,7 @@ mod tests {
             assert_eq!(overflow(text).as_deref(), Some("-1e400"), "{text}");
         }
         assert_eq!(overflow("(a: 1_0e400)").as_deref(), Some("1_0e400"));
-        // in parentheses it is arithmetic, which has errors of its own
+        // in parentheses it is arithmetic, whose errors differ
         assert_eq!(overflow("[(-1e400)]"), None);
         for text in
             ["(a: inf, b: -inf, c: +inf)", "(a: \"1e400\", /* 1e400 */ b: 1e308)", "(a: 1e-400)", "1e"]

@@ -103,7 +103,7 @@ pub(super) fn value<T: DeserializeOwned>(text: &str) -> Result<T, ParseError> {
         }
     });
     match (read, evaluated.wrong.first().cloned()) {
-        // what comes before a broken expression may be why it is taken for one
+        // an error before a broken expression may be the reason why it was read as an expression
         (Err(error), Some((place, _))) if error.place < place => Err(error),
         (_, Some((place, problem))) => {
             Err(ParseError { wrong: evaluated.wrong, ..ParseError::new(place, problem) })
@@ -266,7 +266,7 @@ fn expected_one_of(known: &[&str]) -> String {
     format!("expected one of {}", names(known))
 }
 
-/// The names of the choices of a `T`, if it has such.
+/// The names of the choices of a `T`, if it has choices.
 fn choices_of<T: DeserializeOwned>() -> Option<&'static [&'static str]> {
     match options().from_str::<T>("Unknown").err()?.code {
         Ron::NoSuchEnumVariant { expected, .. } => Some(expected),

@@ -10,7 +10,7 @@ use super::scanner::Scanner;
 pub(super) struct Written(HashMap<String, (String, f64)>);
 
 impl Written {
-    /// Replaces what is known of a field and of those inside it by what `text` has, the RON value of that
+    /// Replaces the arithmetic of a field and of those inside it by that in `text`, the RON value of the
     /// field. An empty path stands for the whole scene.
     pub fn update(&mut self, field: &str, text: &str) {
         if !self.0.is_empty() {

@@ -255,17 +255,17 @@ pub(in crate::app) fn stretch(model: &Model) -> f64 {
 /// the lines of both stops over time are returned, separated by points that are not finite.
 fn stop_lines(watch: &Watch, from: f64, to: f64) -> (Point, Option<Vec<Point>>) {
     let mm = |stop: Option<f64>| stop.map_or(f64::NAN, |x| x * 1e3);
-    let held: Vec<(f64, f64, [f64; 2])> = watch
+    let uses: Vec<(f64, f64, [f64; 2])> = watch
         .models_between(from.max(0.0), to)
         .map(|(begin, end, model)| (begin, end, <[_; 2]>::from(model.stop_positions()).map(mm)))
         .collect();
-    let first = held.first().map_or([f64::NAN; 2], |held| held.2);
-    if held.iter().all(|held| held.2.map(f64::to_bits) == first.map(f64::to_bits)) {
+    let first = uses.first().map_or([f64::NAN; 2], |first| first.2);
+    if uses.iter().all(|each| each.2.map(f64::to_bits) == first.map(f64::to_bits)) {
         return (first.into(), None);
     }
     let gap = (f64::NAN, f64::NAN);
     let of_side = |side: usize| {
-        held.iter().flat_map(move |(begin, end, mm)| [(*begin, mm[side]), (*end, mm[side]), gap])
+        uses.iter().flat_map(move |(begin, end, mm)| [(*begin, mm[side]), (*end, mm[side]), gap])
     };
     (gap, Some(of_side(0).chain(of_side(1)).collect()))
 }

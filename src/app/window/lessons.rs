@@ -238,8 +238,8 @@ impl Window {
         let covering = lesson.filter(|open| open.is_covering());
         self.memory.question = covering.and_then(|open| question(open.step().text()));
         let present = self.session.scene().stops.positions_mm();
-        let asked = lesson.and_then(OpenLesson::asked).map(|scene| scene.stops.positions_mm());
-        self.memory.asked_stops = asked.filter(|asked| *asked != present).unwrap_or_default();
+        let answer = lesson.and_then(OpenLesson::covered_answer).map(|scene| scene.stops.positions_mm());
+        self.memory.asked_stops = answer.filter(|answer| *answer != present).unwrap_or_default();
         self.memory.starts = lesson.map(OpenLesson::starts).unwrap_or_default();
     }
 

@@ -82,7 +82,7 @@ impl Window {
             Command::NextCrossing => self.go_to_first(EventKind::Crossing),
             Command::RunToEnd => match self.session.end_of_run() {
                 end if end > self.session.player.time() => self.session.player.go_to(Goal::Time(end)),
-                end => self.messages.notify(format!("The run ended at {end:.2} s, before the shown time")),
+                end => self.messages.notify(format!("The run ended at {end:.2} s, before the time shown")),
             },
             Command::Speed(index) => {
                 if let Some((speed, _)) = SPEEDS.get(index) {

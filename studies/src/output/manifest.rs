@@ -149,7 +149,7 @@ impl Manifest<'_> {
         let Self { document, command, origin, repeat, data, sha256, inputs } = self;
         let mut scene = made.or(document.map(|document| document.scene.clone()));
         if let Some(scene) = &mut scene {
-            // a change of the scene may have taken a field away that its own sweep goes over
+            // a change of the scene may have removed a field that its sweep is over
             let known = numeric_fields(scene);
             scene.sweep.retain(|axis| known.contains(&axis.field));
         }

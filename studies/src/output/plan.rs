@@ -36,7 +36,7 @@ pub fn plan(document: &Document, sweep: &Sweep, columns: &[String], version: &st
         "files": files.collect::<Map<_, _>>(),
     });
     if !draws.is_empty() {
-        plan["uncertain"] = json!(draws.asked());
+        plan["uncertain"] = json!(draws.with_defaults());
     }
     plan
 }

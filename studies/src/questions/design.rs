@@ -23,8 +23,8 @@ use crate::system::threads::Pool;
 /// Method: the release has a closed form; the crossing amplitude is found by a scan and bisection, as by
 /// [`Threshold`](super::Threshold); the band of frequencies by 40 steps per decade, from a tenth to ten times
 /// the frequency of the sine, whose ends are bisected to a thousandth; the sensitivity by changing one
-/// length, thickness or gap of the mechanism at a time by 1 % up and down. Each of these changes is a search
-/// of its own, for which flexures are solved anew.
+/// length, thickness or gap of the mechanism at a time by 1 % up and down. Each of these changes is a
+/// separate search, for which flexures are solved anew.
 ///
 /// Errors: [`Error::Unfit`] if the excitation of the first scene is no sine; [`Error::Scene`] if another
 /// scene has faults under it; [`Error::Argument`] for `until_settled`; [`Error::Cancelled`].

@@ -11,10 +11,10 @@ use crate::study::{CellFaults, GridError};
 /// Why a question has no answer.
 ///
 /// [`faults`](Self::faults) lists what is wrong, with file, field, value and remedy. The message contains the
-/// same, one fault per line. [`is_wrong_input`](Self::is_wrong_input) tells what the caller can correct from
-/// what happened in the computation. That a run ends early (it leaves the force curve, or uses up its budget
-/// of steps or impacts) is an outcome in the answer and not an error, except where a question has no answer
-/// without the end of the run.
+/// same, one fault per line. [`is_wrong_input`](Self::is_wrong_input) distinguishes faults that the caller
+/// can correct from failures of the computation. That a run ends early (it leaves the force curve, or uses up
+/// its budget of steps or impacts) is an outcome in the answer and not an error, except where a question has
+/// no answer without the end of the run.
 ///
 /// ```
 /// use interwell_studies::questions::Simulation;

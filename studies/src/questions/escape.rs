@@ -166,7 +166,7 @@ impl ProbableThreshold {
         Ok(Scan { resolution: self.resolution.unwrap_or(step), ..scan })
     }
 
-    /// What is asked of the runs of each cell of `grid`; an error if an argument is wrong.
+    /// Probability, runs and time of each cell of `grid`; an error if one of them is wrong.
     pub fn chance(&self, document: &Document, grid: &Grid) -> Result<Chance, Error> {
         let within = self.within.unwrap_or(document.scene.run.duration_s);
         check_runs(self.runs, within, grid)?;

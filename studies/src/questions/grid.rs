@@ -77,8 +77,8 @@ const KEPT: RangeInclusive<u64> = 1..=MAX_SECTION;
 /// give a bifurcation diagram.
 ///
 /// Columns: the fields, with `carry` the `direction`, `index`, `t_s`, then `x_m,v_m_per_s` (at an event the
-/// state after it), or at impacts `side,phase_deg,v_in_m_per_s`. The states are those of the integrator's own
-/// polynomial. The more periods `options` skips, the fewer rows belong to a transient; at most 1e9 are
+/// state after it), or at impacts `side,phase_deg,v_in_m_per_s`. The states are values of the integrator's
+/// polynomials. The more periods `options` skips, the fewer rows belong to a transient; at most 1e9 are
 /// skipped, and 1 to 4194304 kept. The cost is that of the forcing periods that are run.
 ///
 /// Errors: [`Error::Scene`], in a grid [`Error::Cells`], if the drive does not repeat (impacts alone need no
@@ -136,7 +136,7 @@ impl Section {
 /// Columns: the fields, `exponent_1_per_s`, `exponent_1_se`, `exponent_2_per_s`, `exponent_2_se` (standard
 /// errors), `sum_per_s`, `exact_sum_per_s` (from damping, circuit and impacts alone) and `dimension` (Kaplan
 /// and Yorke 1979); where there may be a circuit also `exponent_3_per_s`, `exponent_3_se`. The exponents are
-/// minus infinity where the mass rests on a stop, but for one of a circuit.
+/// minus infinity where the mass rests on a stop, except that of a circuit.
 ///
 /// Method: of a motion that repeats, ln|multiplier| over its period; otherwise averages over
 /// `options.periods`, 1 to 1e7 (Benettin et al. 1980), through impacts by saltation (Müller 1995), with
@@ -225,7 +225,7 @@ pub struct Threshold {
     pub over: Over,
     /// The field that is searched and its range: `FIELD=FROM:TO` or `FIELD=FROM:TO:STEP`.
     pub field: String,
-    /// What begins at the threshold.
+    /// The onset that is searched.
     pub of: Onset,
     /// Resolution of the threshold in the unit of the field; by default a 1000th of the step.
     pub resolution: Option<f64>,

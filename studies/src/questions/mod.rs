@@ -16,15 +16,15 @@
 //! | [`Escape`] | how often a motion under noise leaves its well, beside Kramers' rate | [`Table`] |
 //! | [`Exponents`] | Lyapunov exponents: whether the motion is chaotic | [`Table`] |
 //! | [`Orbit`] | the periodic orbit near the motion, with its multipliers | `study::Orbit` |
-//! | [`Branch`] | how an orbit goes on over a field, with folds, flips and grazings | `study::Branch` |
-//! | [`Locus`] | where a fold, flip or grazing goes over two fields | `study::Locus` of each |
+//! | [`Branch`] | how an orbit continues over a field, with folds, flips and grazings | `study::Branch` |
+//! | [`Locus`] | the curve of a fold, flip or grazing over two fields | `study::Locus` of each |
 //! | [`Spectrum`] | which frequencies the motion holds | `study::Spectrum` |
 //! | [`Basins`] | which attractor each start goes to, and the share of each | [`BasinsAnswer`] |
 //! | [`Compare`] | how designs rate under one sine | a [`Rated`] per scene |
 //! | [`Best`] | which design is the best for an environment, and with which margins | [`BestAnswer`] |
 //! | [`Identify`] | damping, restitution or force of a measured record | [`IdentifyAnswer`] |
 //!
-//! Those with a type of their own have a method `table`, except for `study::Spectrum`, where it is a field.
+//! Answers of other types than [`Table`] have a method `table`; of `study::Spectrum` it is a field.
 //! `docs/output.md` of the repository has the meaning of every column, `docs/studies.md` pictures and costs.
 //!
 //! # Units
@@ -38,9 +38,9 @@
 //!
 //! - `over`: fields by dotted path with their values, the slowest first. Fields of the mechanism may be among
 //!   them; each different mechanism (up to 4096 of them) is then built once.
-//! - `until_settled`: a run goes on, window after window, until its motion repeats, at most up to this time
+//! - `until_settled`: a run continues, window after window, until its motion repeats, at most up to this time
 //!   in s. It costs most where a motion never repeats. It is at least the duration of the scene's run and at
-//!   most 1e9 s, and needs a drive that repeats. Thresholds, exponents, comparisons and designs go on by
+//!   most 1e9 s, and needs a drive that repeats. Thresholds, exponents, comparisons and designs continue by
 //!   default for at most 1000 forcing periods beyond the run; the others do not.
 //! - `carry`: the last field of a grid is walked, each run from the state of the one before. It needs a drive
 //!   that repeats.
@@ -57,7 +57,7 @@
 //! | [`Error::Failed`] | scene and question are right, but the computation gave no answer |
 //! | [`Error::Cancelled`] | the flag of [`Progress::stopped_by`] was set |
 //!
-//! A run of a grid that ends early is none of these: the column `outcome` says why, and the others go on.
+//! A run of a grid that ends early is no error: the column `outcome` says why, and the others continue.
 
 mod design;
 mod error;

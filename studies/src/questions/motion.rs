@@ -63,7 +63,7 @@ pub fn may_have_circuit(document: &Document, axes: &[Axis]) -> bool {
 ///
 /// Method: the settled window is sampled evenly, over whole periods where the drive repeats. Where the motion
 /// repeats too, its lines are exact and no window function is needed; otherwise that of von Hann is taken,
-/// and amplitude and density are scaled as in Heinzel et al. (2002). What lies above half the rate folds
+/// and amplitude and density are scaled as in Heinzel et al. (2002). Components above half the rate fold
 /// back: a higher `rate_hz` reduces this, which matters with impacts. Two runs are made, one for the verdict
 /// and one for the samples.
 ///

@@ -19,7 +19,7 @@ use crate::study::{
 /// Method: a motion that repeats after n forcing periods is a fixed point of the stroboscopic map, found by
 /// Newton's method. The derivative of the map is carried through impacts and releases by saltation matrices
 /// (Müller 1995; Kong et al. 2024); its eigenvalues are the multipliers, which are 0 where the mass rests on
-/// a stop, but for one of a circuit. It takes the run of the scene and some further periods.
+/// a stop, except that of a circuit. It takes the run of the scene and some further periods.
 ///
 /// Errors: [`Error::Argument`] for `period` or `phase_deg`; [`Error::Unfit`] if the drive does not repeat or
 /// is 0; [`Error::Failed`] if the run comes to no motion that
@@ -126,8 +126,8 @@ impl Branch {
         simulation: &Simulation,
         progress: &Progress,
     ) -> Result<Vec<study::Branch>, Error> {
-        if levels > MOST_LEVELS {
-            return Err(Error::argument("switch", levels, format!("give 0 to {MOST_LEVELS}")));
+        if levels > MAX_LEVELS {
+            return Err(Error::argument("switch", levels, format!("give 0 to {MAX_LEVELS}")));
         }
         check_fields(simulation.scene(), [(["field", "range"], &self.field_range())])?;
         let options = self.options()?;
@@ -164,7 +164,7 @@ impl Branch {
 /// Longest steps of a branch.
 const STEPS: std::ops::RangeInclusive<f64> = 1e-4..=0.05;
 /// Largest number of levels of branch switching; the last of ten has a period of 1024.
-const MOST_LEVELS: u32 = 10;
+const MAX_LEVELS: u32 = 10;
 const COUNTS: std::ops::RangeInclusive<usize> = 1..=1_000_000;
 
 /// Checks fields that take all values of a range, each with the arguments that give the field and the range;
@@ -251,9 +251,9 @@ impl study::Branch {
 /// `grazing-grazing`.
 ///
 /// Method: the branch is followed at the first value of the second field. From each of its events of this
-/// kind a locus goes on towards the other value, by pseudo-arclength in the state and both fields, with the
-/// characteristic polynomial of the map at 1 or -1 as one more equation (Kuznetsov 2004, section 10.3), or
-/// with the touch of the stop for a grazing. Each point is checked: a multiplier within 1e-6 of 1 or -1, a
+/// kind a locus is continued towards the other value, by pseudo-arclength in the state and both fields, with
+/// the characteristic polynomial of the map at 1 or -1 as one more equation (Kuznetsov 2004, section 10.3),
+/// or with the touch of the stop for a grazing. Each point is checked: a multiplier within 1e-6 of 1 or -1, a
 /// touch to 1e-9 of the scales.
 ///
 /// Errors: those of [`Branch`], for both fields; [`Error::Failed`] if the branch has no such event.
@@ -278,7 +278,7 @@ impl study::Branch {
 pub struct Locus {
     /// The branch on which the loci begin.
     pub branch: Branch,
-    /// What happens on the loci.
+    /// The kind of event on the loci.
     pub of: BranchEvent,
     /// The second field.
     pub second: FieldRange,
@@ -306,7 +306,7 @@ impl Locus {
         })
     }
 
-    /// That a branch has no event of this kind, which it has, and where and why it ends.
+    /// The message that a branch has no event of this kind: which events it has, and where and why it ends.
     fn lacking(&self, found: &study::Branch) -> String {
         let Self { branch: Branch { field, range: (from, to), .. }, of, second } = self;
         let mut others: Vec<&str> = found.events.iter().flatten().map(|event| event.name()).collect();

@@ -118,7 +118,7 @@ impl Identify {
         Self { of, time, column, position, base, between, impact_times: false, stops_mm, points: None }
     }
 
-    /// Reads the record at `path` and identifies the quantity. The flag of `progress` is looked at when the
+    /// Reads the record at `path` and identifies the quantity. The flag of `progress` is checked when the
     /// file has been read.
     pub fn run(&self, path: &Path, progress: &Progress) -> Result<IdentifyAnswer, Error> {
         self.check()?;

@@ -12,14 +12,14 @@ use crate::numeric::number_text;
 use crate::scene::{Axis, Document, Excitation, Files, Scene};
 use crate::study::{Grid, Keep, Recorded, Sampling, sample_times, simulate};
 
-/// A checked scene with its model: what every question is asked of.
+/// A checked scene with its model, which every question takes.
 ///
 /// It is made once from a built-in scene, a file or a text, which solves the mechanism (flexures take
 /// longest), and it does not change: [`with`](Self::with) returns another one, which shares the mechanism if
-/// no field of that was changed. Fields and their units are those of scene files. Either way an unknown field
-/// or a value out of its range gives [`Error::Scene`], with all faults at once, and flexures without a
-/// solution give [`Error::Failed`]. [`run`](Self::run) never fails: if a run cannot go on, its outcome says
-/// so.
+/// none of its fields was changed. Fields and their units are those of scene files. Either way an unknown
+/// field or a value out of its range gives [`Error::Scene`], with all faults at once, and flexures without a
+/// solution give [`Error::Failed`]. [`run`](Self::run) never fails: if a run cannot continue, its outcome
+/// says so.
 ///
 /// ```
 /// use interwell_kernel::dynamics::Request;

@@ -74,7 +74,7 @@ impl Sweep {
         self
     }
 
-    /// The simulation with the values of the uncertain inputs, of which the rows of the cells themselves are.
+    /// The simulation with the nominal values of the uncertain inputs, whose runs are the rows of the cells.
     /// Its mechanism is not solved again where it is given to [`run`](Self::run).
     pub fn nominal(&self, simulation: &Simulation, progress: &Progress) -> Result<Simulation, Error> {
         let mut document = simulation.document().clone();

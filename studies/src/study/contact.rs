@@ -117,7 +117,7 @@ pub fn strikes_in_words(model: &Model, scene: &Scene) -> Option<String> {
     let Strikes { speed, count, settled } = threads::within(PATIENCE, |cancel| strikes(model, cancel))?;
     let loss = |restitution: f64| Hertz::loss_times_speed(restitution).map(|struck| short(struck / speed));
     let window = if settled { "in the settled window" } else { "in the run, before its settled window" };
-    let what = match model.compliant() {
+    let detail = match model.compliant() {
         Some(stop) => {
             let wanted = WANTED.map(|e| format!("{e} takes {} s/m", loss(e).unwrap_or_default()));
             format!("restitution {} there; {}", short(stop.restitution(speed)), wanted.join(", "))
@@ -127,25 +127,25 @@ pub fn strikes_in_words(model: &Model, scene: &Scene) -> Option<String> {
                 .to_owned()
         }
         None => {
-            let there = stops.limits_mm().into_iter().zip(stops.restitutions());
+            let sides = stops.limits_mm().into_iter().zip(stops.restitutions());
             let mut restitutions: Vec<f64> =
-                there.filter_map(|(limit, restitution)| limit.and(restitution)).collect();
+                sides.filter_map(|(limit, restitution)| limit.and(restitution)).collect();
             restitutions.dedup();
             let losses = restitutions.into_iter().map(|e| match loss(e) {
                 Some(loss) => format!("a restitution of {e} there takes loss_s_per_m: {loss}"),
                 None => format!("no loss gives a restitution of {e}"),
             });
             let [left, right] = stops.limits_mm();
-            let which = match left == right {
+            let kind = match left == right {
                 true => "compliant in their place (`Hertz`)",
                 false => "compliant ones (`Hertz`), which stand equally far out on both sides",
             };
-            format!("{which}, {}", losses.collect::<Vec<_>>().join(", "))
+            format!("{kind}, {}", losses.collect::<Vec<_>>().join(", "))
         }
     };
     let flights = if count == 1 { "one flight".to_owned() } else { format!("{count} flights") };
     Some(format!(
-        "stops are struck at {} m/s (median of the first impacts of {flights} {window}): {what}",
+        "stops are struck at {} m/s (median of the first impacts of {flights} {window}): {detail}",
         short(speed)
     ))
 }

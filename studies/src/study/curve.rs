@@ -112,7 +112,7 @@ pub enum StatesError {
     #[error(transparent)]
     Unsolved(#[from] FlexureError),
     /// It was cancelled.
-    #[error("told to stop")]
+    #[error("cancelled")]
     Cancelled,
 }
 

@@ -122,8 +122,8 @@ impl Cells {
         if self.draws.change_mechanism() { self.draws.runs() } else { 1 }
     }
 
-    /// Turns `scene` into that of a cell with a draw, of which 0 is none, and returns its mechanism; `None`
-    /// if cancelled before it was built.
+    /// Turns `scene` into that of a cell with a draw, where 0 is none, and returns its mechanism; `None` if
+    /// cancelled before it was built.
     fn mechanism(&self, index: u64, draw: u64, scene: &mut Scene, cancel: &AtomicBool) -> Option<Built> {
         self.grid.apply(index, scene);
         self.draws.apply(draw, self.grid.values(index), scene);

@@ -149,8 +149,8 @@ impl Task<'_> {
         if self.is_cancelled() { Err(Cancelled) } else { Ok(()) }
     }
 
-    /// The result of `work`, or an error if the study was cancelled meanwhile: what is cut short then takes a
-    /// motion for one that ends early.
+    /// The result of `work`, or an error if the study was cancelled meanwhile: a run that was cut short looks
+    /// like one that ends early.
     fn unless_cancelled<T, E: From<Cancelled>>(&self, work: impl FnOnce() -> Result<T, E>) -> Result<T, E> {
         let found = work();
         self.check_cancelled()?;

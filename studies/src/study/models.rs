@@ -11,7 +11,7 @@ use crate::dynamics::Model;
 const MAX_MODELS: usize = 200;
 
 /// First and last time in s during which a model was in use, and that model.
-pub type Held<'a> = (f64, f64, &'a Arc<Model>);
+pub type ModelUse<'a> = (f64, f64, &'a Arc<Model>);
 
 #[derive(Debug, Clone)]
 pub(super) struct Models {
@@ -65,7 +65,7 @@ impl Models {
     }
 
     /// The models in use from `from` to `to` in s, in order of time, with their times limited to this range.
-    pub fn between(&self, from: f64, to: f64) -> impl Iterator<Item = Held<'_>> {
+    pub fn between(&self, from: f64, to: f64) -> impl Iterator<Item = ModelUse<'_>> {
         let first = self.before.partition_point(|entry| entry.0 <= from).saturating_sub(1);
         let all = self.before.iter().skip(first).chain([&self.now]);
         let ends =

@@ -53,7 +53,7 @@ impl Shard {
         self.number
     }
 
-    /// How many there are.
+    /// The number of shards.
     pub fn count(self) -> u64 {
         self.count
     }

@@ -48,7 +48,7 @@ pub struct SpectrumOptions {
     pub until_settled: Option<f64>,
 }
 
-/// A spectrum, and what it was made from. SI.
+/// A spectrum, and how it was computed. SI.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Spectrum {
     /// `frequency_hz,amplitude,psd`, one-sided, from 0 to half the rate, with one row per line.
@@ -118,8 +118,8 @@ const DEFAULT_SAMPLES: f64 = 4096.0;
 ///
 /// Frequencies above half the rate are folded back below it. In a smooth motion that is negligible: its
 /// spectrum falls faster than any power of the frequency. Impacts are jumps of the velocity, whose amplitude
-/// falls like 1/f, and that of the displacement like 1/f^2: with impacts four times the rate leaves a quarter
-/// of what is folded into each line of the velocity, a sixteenth into each of the displacement.
+/// falls like 1/f, and that of the displacement like 1/f^2: with impacts, four times the rate leaves a
+/// quarter of the aliasing in each line of the velocity, and a sixteenth in each line of the displacement.
 pub fn spectrum(model: &Model, options: &SpectrumOptions, task: &Task) -> Result<Spectrum, NoSpectrum> {
     let request =
         Request { cancel: Some(task.cancel), until_settled: options.until_settled, ..Request::default() };

@@ -134,7 +134,7 @@ pub(super) const OUTCOME: &str = "outcome";
 /// The column of the direction of a walk.
 pub const DIRECTION: &str = "direction";
 
-/// What a sweep does beyond running each cell for its duration.
+/// Options of a sweep beyond running each cell for its duration.
 #[derive(Debug, Clone, Default)]
 pub struct SweepOptions {
     /// Columns in addition to the [standard](STANDARD) ones. With one of the energy ledger, cells are run one

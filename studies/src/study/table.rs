@@ -85,7 +85,7 @@ collected! {
     String: Names, name => name;
 }
 
-/// One column: what it is called and what it holds.
+/// One column: its name and its values.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Column {
     /// Name with the unit in it, as in the header of a CSV file: `rms_velocity_m_per_s`.
@@ -151,7 +151,7 @@ impl Table {
 
     /// The table with one more column on its right.
     ///
-    /// Precondition: as many values as the columns that are already there.
+    /// Precondition: as many values as the present columns have.
     #[must_use]
     pub fn with(mut self, name: impl Into<String>, values: Values) -> Self {
         debug_assert!(self.columns.is_empty() || self.rows() == values.len());

@@ -1,6 +1,6 @@
 //! Samples of a run for a picture: the path with every jump of the velocity, and the spans at rest.
 //!
-//! A picture must be right even if few samples are requested, so it has samples of its own.
+//! A picture must be right even if few samples are requested, so its samples are separate.
 
 use super::simulate::in_order;
 use super::{Keep, Recorded, Table, events_table, samples_table};

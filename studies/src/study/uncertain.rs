@@ -1,4 +1,4 @@
-//! Uncertain inputs: fields with normal distributions, their draws, and the bands of what the draws give.
+//! Uncertain inputs: fields with normal distributions, their draws, and the bands of results.
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
@@ -139,8 +139,8 @@ impl Draws {
         }
     }
 
-    /// What was asked for, with every default: the same draws for a scene that has the values of the fields.
-    pub fn asked(&self) -> Uncertain {
+    /// The request with all defaults: it gives the same draws for a scene with the values of the fields.
+    pub fn with_defaults(&self) -> Uncertain {
         let fields = self.fields.iter().map(|field| format!("{}=+-{}", field.law.field, field.deviation()));
         Uncertain { fields: fields.collect(), draws: Some(self.count), seed: Some(self.seed) }
     }
@@ -151,7 +151,7 @@ impl Draws {
             return String::new();
         }
         let text = |field: &DrawnField| {
-            // a swept field has a value of its own in each cell
+            // a swept field has another value in each cell
             let value = field.axis.is_none().then(|| format!("={}", number_text(field.value)));
             let value = value.unwrap_or_default();
             format!("{}{value}\u{b1}{}", field.law.field, field.deviation())

@@ -216,7 +216,7 @@ impl Watch {
     }
 
     /// The models that were in use from `from` to `to` in s, in order of time.
-    pub fn models_between(&self, from: f64, to: f64) -> impl Iterator<Item = Held<'_>> {
+    pub fn models_between(&self, from: f64, to: f64) -> impl Iterator<Item = ModelUse<'_>> {
         self.models.between(from, to)
     }
 

@@ -34,8 +34,8 @@ pub(crate) trait Drive<T: Scalar>: Tail<T> + Base<T> {
         false
     }
 
-    /// What the drive adds to the cost of a step with a series of this order, in units
-    /// of [`work`](crate::dynamics::step::work).
+    /// Cost of the drive in a step with a series of this order, in units of
+    /// [`work`](crate::dynamics::step::work).
     fn cost(&self, _order: usize) -> u64 {
         0
     }
@@ -149,7 +149,7 @@ pub(crate) struct Circuit<T> {
     pub coupling: T,
     /// d.
     pub decay: T,
-    /// d/k, by which coefficient k follows from the one before.
+    /// d/k, the factor of coefficient k-1 in coefficient k.
     pub rates: [T; ROOM],
     /// Magnitude of the state to which the tolerance is relative.
     pub scale: T,

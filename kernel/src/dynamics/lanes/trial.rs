@@ -20,7 +20,7 @@ impl<const W: usize> Clocks<W> {
         Instant { cycle: self.cycle.0[lane] as i64, phase: self.phase.0[lane] }
     }
 
-    /// As [`Clock::advance`](crate::dynamics::clock::Clock::advance), for steps of up to a cycle; a longer
+    /// Like [`Clock::advance`](crate::dynamics::clock::Clock::advance), for steps of up to a cycle; a longer
     /// step leaves the phase beyond the cycle.
     #[inline(always)]
     pub fn advance(&self, by: &Lanes<W>, period: &Lanes<W>) -> Self {

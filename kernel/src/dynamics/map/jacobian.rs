@@ -42,9 +42,9 @@ impl Jacobian {
 
     /// The identity, with or without a circuit.
     pub fn identity(has_circuit: bool) -> Self {
-        let one = |i: usize, j: usize| if i == j { 1.0 } else { 0.0 };
+        let delta = |i: usize, j: usize| if i == j { 1.0 } else { 0.0 };
         let size = if has_circuit { 3 } else { 2 };
-        let entry = |i: usize, j: usize| if i < size { one(i, j) } else { 0.0 };
+        let entry = |i: usize, j: usize| if i < size { delta(i, j) } else { 0.0 };
         Self { rows: std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j))), has_circuit }
     }
 

@@ -93,7 +93,7 @@ impl Model {
         -(self.total_damping() * time / self.mass + by_circuit)
     }
 
-    /// What the state of the circuit is; `None` without a circuit.
+    /// The kind of the circuit's state; `None` without a circuit.
     pub fn circuit_state(&self) -> Option<CircuitState> {
         self.circuit().map(|circuit| match circuit.is_voltage {
             true => CircuitState::Voltage,
@@ -128,8 +128,8 @@ impl Model {
         self.circuit().is_some()
     }
 
-    /// Whether the circuit has no resistance, so that an open layer keeps its charge or a coil its flux: each
-    /// start has motions of its own, which attract no others.
+    /// Whether the circuit has no resistance, so that an open layer keeps its charge or a coil its flux:
+    /// starts with different charges or fluxes have no attractor in common.
     pub fn keeps_charge(&self) -> bool {
         self.circuit().is_some_and(|circuit| circuit.decay == 0.0)
     }

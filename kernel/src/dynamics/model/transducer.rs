@@ -39,7 +39,7 @@ pub(crate) struct Circuit {
     pub is_voltage: bool,
 }
 
-/// What the electrical state of a circuit is.
+/// The kind of a circuit's electrical state.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CircuitState {
     /// The current in the coil in A.
@@ -72,7 +72,7 @@ const FAST_RATIO: f64 = 100.0;
 /// Relative error of the motion up to which a fast circuit may be left out.
 const NEGLIGIBLE_SHARE: f64 = 1e-2;
 
-/// A coil that damps the motion by less than this share during one time scale is an open circuit.
+/// Share by which a coil damps the motion in a time scale, below which the coil counts as an open circuit.
 const OPEN_CIRCUIT_SHARE: f64 = 1e-9;
 
 /// Output of a transducer at an instant.

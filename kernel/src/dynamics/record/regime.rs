@@ -213,7 +213,7 @@ impl Classifier {
             *first = later_states.iter().fold(total, rest);
         }
         self.last = (self.last.0 + total.0 * laps as f64, self.last.1 + total.1.saturating_mul(laps));
-        // Replay as many laps as any classification looks back, and one more that shows what a lap adds.
+        // Replay as many laps as any classification looks back, and another one to measure the gain of a lap.
         let replayed = laps.min(2 * self.strobes.longest as u64 / periods.max(1) + 4);
         let mut before = (0, 0);
         for number in 1..=replayed {

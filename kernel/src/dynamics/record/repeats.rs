@@ -11,7 +11,7 @@ use crate::dynamics::result::Side;
 pub(crate) const LONGEST: usize = 12;
 
 /// Two crossings repeat if their times within the period agree to this share of a forcing period: well above
-/// what is left of a transient after half a run, well below the scatter of irregular motion.
+/// the rest of a transient after half a run, well below the scatter of irregular motion.
 const CROSSING_MATCH: f64 = 1e-2;
 
 /// Two stroboscopic states repeat if they agree to this share of the scene's scales: fine enough to see a

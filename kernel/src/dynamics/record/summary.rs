@@ -162,8 +162,8 @@ impl<T: Scalar> Recorder<'_, T> {
         Ledger { work_j, damping_j, impact_j, harvested_j, coil_j, stored_j, residual_j, energy_residual }
     }
 
-    /// Output of the transducer in the settled window, of which the time `covered` is recorded and in which
-    /// the base does `work`, if that is known and not 0; both in kernel units.
+    /// Output of the transducer in the settled window. `covered` is the recorded time of the window, `work`
+    /// that of the base in it if known and not 0; both in kernel units.
     fn harvest(&self, seen: bool, covered: f64, work: Option<f64>) -> Option<Harvest> {
         let transducer = self.model.transducer?;
         let load = transducer.energies(self.squared_signal(&self.settled)).0;

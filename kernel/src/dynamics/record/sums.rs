@@ -55,7 +55,7 @@ pub(crate) struct Counts {
 }
 
 impl Counts {
-    /// Adds `laps` more of what was added between `before` and `after`.
+    /// Adds `laps` times the difference between `before` and `after`.
     pub fn repeat(&mut self, before: &Self, after: &Self, laps: u64) {
         let Self { crossings, impacts, releases, total_crossings, total_impacts, sums, rests } = self;
         let more = |count: &mut u64, before: u64, after: u64| {

@@ -113,14 +113,14 @@ pub struct Pursued {
 pub enum Arrival {
     /// A known motion.
     Captured {
-        /// Which of the known ones.
+        /// Its index among the known ones.
         which: usize,
         /// See above.
         periods: u64,
     },
     /// A known region.
     Entered {
-        /// Which of the known ones.
+        /// Its index among the known ones.
         which: usize,
         /// See above.
         periods: u64,

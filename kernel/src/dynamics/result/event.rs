@@ -133,7 +133,7 @@ pub struct SectionPoint {
     pub v: f64,
 }
 
-/// A state from which a motion can go on.
+/// A state from which a motion can continue.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct MapState {
     /// Displacement in m.

@@ -12,7 +12,7 @@ pub use event::{Event, EventKind, MapState, Phase, Sample, SectionPoint, Side};
 pub use outcome::{Outcome, Place, Regime};
 pub use summary::{First, Firsts, Harvest, Ledger, Summary};
 
-/// What a run should keep.
+/// The results that a run should keep.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Request<'a> {
     /// Times in s at which to sample, ascending, within 0..=duration.

@@ -68,8 +68,8 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         }
     }
 
-    /// Records a step that was chosen `h` long, of which `length` is kept, and moves to its end: the state
-    /// `(x, v)` at the instant `arrival`, if that is known, on the surface of the end `touched`, if any.
+    /// Records the part `length` of a step that was chosen `h` long, and moves to its end: the state `(x, v)`
+    /// at the instant `arrival`, if that is known, on the surface of the end `touched`, if any.
     pub fn arrive(
         &mut self,
         (h, length): (T, T),

@@ -168,7 +168,7 @@ impl<T: Scalar> Impact<T> {
     }
 
     /// Solves for the impact that begins at `speed`, to `tolerance` relative to the speed, and to `between`
-    /// inside the step. Returns `None` if it is not such an impact, or not resolved.
+    /// inside the step. Returns `None` if it is no whole impact, or is not resolved.
     pub fn solve(&mut self, speed: T, (tolerance, between): (T, T)) -> Option<Separation<T>> {
         let stiffness = self.stop.stiffness;
         self.pressing = -(self.sign * (self.about[0] + self.series.a[0]));

@@ -161,7 +161,7 @@ impl OpenLesson {
     }
 
     /// The scene of the answer to a prediction, while it is covered.
-    pub fn asked(&self) -> Option<&Scene> {
+    pub fn covered_answer(&self) -> Option<&Scene> {
         self.is_covering().then(|| &self.document.end(self.progress.step).scene)
     }
 

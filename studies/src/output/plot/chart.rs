@@ -42,7 +42,7 @@ pub struct Panel {
     pub x: PlotAxis,
     /// The vertical axis.
     pub y: PlotAxis,
-    /// What is drawn, from back to front.
+    /// The layers, from back to front.
     pub layers: Vec<Layer>,
     /// The axis of the colour scale beside it.
     pub bar: Option<PlotAxis>,
@@ -55,18 +55,18 @@ pub struct Panel {
 /// A line of text, with the marker of a role before it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Note {
-    /// What it says.
+    /// The text.
     pub words: String,
-    /// Whose marker stands before it.
+    /// The role whose marker stands before it.
     pub role: Option<Role>,
 }
 
 /// Marks of one role.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Layer {
-    /// What is drawn, in the units of the axes.
+    /// The marks, in the units of the axes.
     pub marks: Marks,
-    /// What it stands for.
+    /// Its meaning.
     pub role: Role,
     /// Its words in the legend; empty for none.
     pub name: String,
@@ -85,7 +85,7 @@ pub enum Side {
     Bottom,
 }
 
-/// What a layer draws. Points that are not finite are left out and interrupt a line.
+/// The marks of a layer. Points that are not finite are left out and interrupt a line.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Marks {
     /// A line through points in any order.

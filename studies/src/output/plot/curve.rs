@@ -79,7 +79,7 @@ fn curve_panel(
     panel
 }
 
-/// All that is drawn at the positions in m that lie `inside`.
+/// The drawn data at the positions in m that lie `inside`.
 fn drawn(table: &Table, mechanism: &Mechanism, stops: (f64, f64), inside: impl Fn(f64) -> bool) -> Table {
     let names = ["x_m", "force_n", "potential_j"];
     let [x, force, potential] = names.map(|name| table.numbers(name).unwrap_or_default());

@@ -128,7 +128,7 @@ const MAX_DASHES: f64 = 400.0;
 /// A line of text.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Text {
-    /// What it says.
+    /// The text.
     pub words: String,
     /// Position on the canvas; the vertical one is that of the baseline.
     pub at: Point,
@@ -150,7 +150,7 @@ impl Text {
         Self { words: words.into(), at, size, ink, bold: false, align: Align::Left, upright: false }
     }
 
-    /// The same words, of which the beginning, the middle or the end stands at their position.
+    /// The same text with its beginning, middle or end at its position.
     pub fn aligned(self, align: Align) -> Self {
         Self { align, ..self }
     }
@@ -258,7 +258,7 @@ impl Figure {
         format!("{} {}", word("program"), word("version"))
     }
 
-    /// Width and height in mm of what is shown, on a sheet.
+    /// Width and height in mm of the shown part, on a sheet.
     pub fn size_mm(&self) -> Option<(f64, f64)> {
         let unit = self.sheet?.unit_mm();
         Some(((self.shown.right - self.shown.left) * unit, (self.shown.bottom - self.shown.top) * unit))

@@ -32,7 +32,7 @@ impl RunPanel {
         format!("{name} ({unit})")
     }
 
-    /// What its line stands for.
+    /// The role of its line.
     pub fn role(self, has_load: bool) -> Role {
         match self {
             Self::Velocity => Role::Second,

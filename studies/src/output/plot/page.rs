@@ -274,7 +274,7 @@ impl<'a> Legend<'a> {
         Self { entries, step: ROW, height }
     }
 
-    /// The same within this height, in which it has that of a row where it is empty.
+    /// The legend within this height; an empty one has the height of a row.
     fn within(mut self, height: f64) -> Self {
         let (share, closer, most) = LEGEND_SHARE;
         let bottom =
@@ -301,7 +301,7 @@ impl<'a> Legend<'a> {
     }
 }
 
-/// What stands for a layer in the legend.
+/// The sample of a layer in the legend.
 fn sample(layer: &Layer, theme: &Theme) -> Sample {
     let look = theme.look(layer.role);
     match &layer.marks {

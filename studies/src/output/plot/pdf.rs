@@ -31,7 +31,7 @@ const METADATA: Ref = Ref::new(6);
 const FONTS: i32 = 7;
 const FONT_OBJECTS: i32 = 5;
 
-/// What the content calls the two fonts.
+/// Names of the two fonts in the content of the page.
 const FONT_NAMES: [Name<'static>; 2] = [Name(b"R"), Name(b"B")];
 
 /// How glyphs are numbered: as in the font's file.

@@ -43,7 +43,7 @@ pub(super) struct Quantity {
     pub unit: String,
     /// The kinds of which the values are indices, with their words, if it has kinds.
     pub kinds: Option<Vec<(Role, String)>>,
-    /// What is shown of each row: a value, none, or rest.
+    /// The cell of each row: a value, none, or rest.
     pub cells: Vec<Cell>,
     /// The band about its values, if it has one: least and largest values.
     pub band: Option<[Vec<f64>; 2]>,
@@ -101,7 +101,7 @@ impl Quantity {
         let band = end("_low").zip(end("_high")).map(|(low, high)| [low, high]);
         let band = band.filter(|_| kinds.is_none());
         let values: Vec<f64> = scaled(&values);
-        // how a run ended is no matter of its motion
+        // an outcome describes how the run ended and not its motion
         let rests = |value: f64| match kinds {
             Some(_) => name != "outcome",
             None => name == RMS || value == 0.0,
@@ -117,7 +117,7 @@ impl Quantity {
         Self { values, label, unit: unit.to_owned(), kinds, cells, band, name: name.to_owned() }
     }
 
-    /// What a legend says of cells without a value: the reasons that there are.
+    /// The legend entry for cells without a value: the reasons that occur.
     pub fn missing(&self, rows: &Table) -> String {
         let mut reasons: Vec<&str> = Vec::new();
         let outcomes = rows.words("outcome").iter().zip(&self.cells);
@@ -214,12 +214,12 @@ fn counted(values: &mut [f64]) -> Vec<(Role, String)> {
     all.iter().enumerate().map(name).collect()
 }
 
-/// The values that occur, of which each becomes its place among them, but at most so many: the last one
-/// stands for all above it.
-fn placed(values: &mut [f64], most: usize) -> Vec<f64> {
+/// Replaces each value by its index among the values that occur, and returns these, at most `count`: the last
+/// one stands for all above it.
+fn placed(values: &mut [f64], count: usize) -> Vec<f64> {
     let finite: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
     let mut all = distinct(&finite);
-    all.truncate(most);
+    all.truncate(count);
     for value in values.iter_mut().filter(|value| value.is_finite()) {
         *value = all.partition_point(|known| known <= value).saturating_sub(1) as f64;
     }

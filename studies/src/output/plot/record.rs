@@ -21,13 +21,13 @@ const LOWER: f64 = 0.5;
 
 /// A line or points over the record.
 struct Series {
-    /// In the legend; none for a line that belongs to the one before.
+    /// In the legend; empty for a line that belongs to the series before.
     name: &'static str,
-    /// In the table of what is drawn.
+    /// In the table of drawn data.
     series: &'static str,
     points: Vec<Point>,
     role: Role,
-    /// Whether it is markers.
+    /// Whether it is drawn as markers.
     is_marks: bool,
 }
 
@@ -178,7 +178,7 @@ fn summary_words(summary: &[Identity]) -> String {
     parts.join(", ").replace('-', "\u{2212}")
 }
 
-/// The column of a quantity in the table of what is drawn.
+/// The column of a quantity in the table of drawn data.
 fn column_of(quantity: Quantity) -> String {
     let name = match quantity {
         Quantity::Velocity => "v",
@@ -279,7 +279,7 @@ impl RecordPicture {
         Chart::stack(vec![upper, lower], words.to_owned() + &beyond.unwrap_or_default(), self.data())
     }
 
-    /// What is drawn, in SI.
+    /// The drawn data, in SI.
     fn data(&self) -> Table {
         let below = match &self.lower {
             Lower::Rest(..) => Vec::new(),
@@ -313,7 +313,7 @@ fn parted(record: &[Point]) -> Vec<Point> {
     parts.flat_map(|part| part.iter().copied().chain([(f64::NAN, f64::NAN)])).collect()
 }
 
-/// The picture of a run from its trace, and of what was measured of this quantity over it; `inset` are the
+/// The picture of a run from its trace, with the measured values of this quantity over it; `inset` are the
 /// times in s that a second panel shows closer, `ranges` those of the first.
 pub fn measured_chart(
     trace: &Trace,

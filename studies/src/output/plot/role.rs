@@ -1,11 +1,11 @@
-//! Roles of what is drawn, and the look of each: colour, width, dash and marker.
+//! Roles of layers, and the look of each: colour, width, dash and marker.
 
 use serde::{Deserialize, Serialize};
 
 use super::mark::Marker;
 use super::style::{self, Ink, Theme};
 
-/// What a layer stands for.
+/// The meaning of a layer.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum Role {
     /// The computed motion, and what follows from it.
@@ -42,19 +42,19 @@ pub enum Role {
     Rebound,
     /// A number with its interval.
     Interval,
-    /// What lies around a line: an interval, a standard error.
+    /// A band around a line: an interval, a standard error.
     Around,
-    /// What was identified from a record, dashed.
+    /// The curve identified from a record, dashed.
     Envelope,
     /// A regime by its place: rest, intrawell, irregular, interwell, crossing.
     Regime(usize),
     /// One of several lines, by its share from 0 to 1 of a colour scale.
     Step(f64),
-    /// A line without a meaning of its own, under markers.
+    /// A line that only joins markers.
     Joined,
     /// The way down of a field that is walked.
     Down,
-    /// What lies between the way up and the way down.
+    /// The range between the way up and the way down.
     Hysteresis,
     /// One of several kinds without a colour of their own, such as an attractor.
     Kind(usize),
@@ -137,7 +137,7 @@ pub struct Look {
     pub size: f64,
     /// Whether its markers are empty.
     pub hollow: bool,
-    /// Hatching over what it fills.
+    /// Hatching over filled areas.
     pub hatch: Option<Ink>,
 }
 

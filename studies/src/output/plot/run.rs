@@ -88,7 +88,7 @@ pub fn run_chart(
     chart
 }
 
-/// What a run's picture is drawn from. SI.
+/// The data of the picture of a run, in SI.
 struct Seen<'a> {
     trace: &'a Trace,
     mechanism: &'a Mechanism,
@@ -104,7 +104,7 @@ struct Seen<'a> {
     /// The axis of the displacement in mm, where it was asked for.
     displacements: Option<(f64, f64)>,
     panels: &'a [RunPanel],
-    /// What a span at rest is called.
+    /// The legend entry of spans at rest.
     rests: &'static str,
 }
 
@@ -178,7 +178,7 @@ impl Seen<'_> {
         spans.filter(move |(from, to)| *to >= trace.shown_from && *from <= trace.shown_to)
     }
 
-    /// What its panels over time share.
+    /// The events and positions that its panels over time share.
     fn beside(&self) -> OverTime {
         let Self { trace, .. } = *self;
         let times = trace.impacts.numbers("t_s").unwrap_or_default();
@@ -269,7 +269,7 @@ impl Seen<'_> {
         Panel { height: 1.2, heading, ..panel }
     }
 
-    /// All that is drawn, with this portrait.
+    /// The drawn data, with this portrait.
     fn drawn(&self, portrait: Option<&Panel>) -> Table {
         let Self { trace, t, x, v, accel, power, .. } = *self;
         let has_energy = self.has(RunPanel::Energy);
@@ -342,7 +342,7 @@ fn reason(outcome: Outcome) -> &'static str {
         Outcome::StepBudget { .. } => "more work than one run may take",
         Outcome::NotFinite { .. } => "a number was no longer finite",
         Outcome::Inaccurate { .. } => "the energy does not balance",
-        Outcome::Cancelled { .. } => "told to stop",
+        Outcome::Cancelled { .. } => "cancelled",
     }
 }
 

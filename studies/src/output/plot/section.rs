@@ -117,7 +117,7 @@ impl Along {
     }
 }
 
-/// What is shown, in one line.
+/// The subtitle.
 fn about(rows: &Table, phase_deg: Option<f64>) -> String {
     let count = rows.rows();
     let points = match phase_deg {

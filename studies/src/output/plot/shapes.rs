@@ -9,7 +9,7 @@ use crate::mechanics::Mechanism;
 use crate::mechanics::flexure::State;
 use crate::numeric::short;
 
-/// So many states each have a name in the legend; of more the first and the last have one.
+/// Number of states up to which each has a name in the legend; of more the first and the last have one.
 const NAMED: usize = 6;
 
 /// The picture of these states of the flexures of a mechanism, with stops at these positions in m, NaN where

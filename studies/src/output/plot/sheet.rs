@@ -12,7 +12,7 @@ const MM_A_POINT: f64 = 25.4 / 72.0;
 pub struct Sheet {
     /// Width in mm.
     pub width_mm: f64,
-    /// Height in mm; left out, the data stand on 5/8 of the width, or on what they need.
+    /// Height in mm; by default that of the panels is 5/8 of the width, or what they need.
     pub height_mm: Option<f64>,
     /// Size in points of the numbers at ticks and of legends; labels of axes are a tenth larger.
     pub font_pt: f64,
@@ -31,7 +31,7 @@ pub struct SheetText<'a> {
     pub height_mm: Option<&'a str>,
     /// Size of the text in points.
     pub font_pt: &'a str,
-    /// Pixels in an inch; left out, 300.
+    /// Pixels in an inch; by default 300.
     pub dpi: Option<&'a str>,
     /// Whether title, subtitle and footer are shown.
     pub titled: bool,
@@ -43,9 +43,9 @@ pub struct SheetText<'a> {
 pub struct SheetError {
     /// The option that gives it, without its dashes.
     pub option: &'static str,
-    /// What it was given.
+    /// The value that was given.
     pub value: String,
-    /// What is wrong with that.
+    /// What is wrong with the value.
     pub problem: String,
 }
 
@@ -53,9 +53,9 @@ impl Sheet {
     /// Parses a sheet; `has_pixels` says whether the file format has pixels.
     pub fn read(text: &SheetText<'_>, has_pixels: bool) -> Result<Self, SheetError> {
         let error = |option, value: &str, problem| SheetError { option, value: value.to_owned(), problem };
-        let within = |option, text: &str, (least, most): (f64, f64), what: &str, such: &str| {
+        let within = |option, text: &str, (least, most): (f64, f64), what: &str, example: &str| {
             let number = text.trim().parse().ok().filter(|number: &f64| (least..=most).contains(number));
-            let problem = format!("give {what}, {least} to {most}, such as {such}");
+            let problem = format!("give {what}, {least} to {most}, such as {example}");
             number.ok_or_else(|| error(option, text, problem))
         };
         let width_mm = within("plot-width-mm", text.width_mm, Self::MM, "a width in mm", "85")?;

@@ -67,7 +67,7 @@ pub fn spectrum_chart(spectrum: &Spectrum, quantity: SpectrumQuantity, ranges: R
     Chart::stack(vec![panel], spectrum.describe(), drawn.table())
 }
 
-/// What stands at the axis upward.
+/// The label of the vertical axis.
 fn label(signal: Signal, quantity: SpectrumQuantity) -> String {
     let (name, unit, squared) = match signal {
         Signal::Displacement => ("displacement", "m", "m\u{b2}"),

@@ -33,11 +33,11 @@ pub const FOOTER_LINE: f64 = 26.0;
 pub const TITLE: f64 = 40.0;
 /// Below the title.
 pub const SUBTITLE: f64 = 28.0;
-/// What an axis shows.
+/// Labels of axes.
 pub const AXIS: f64 = 29.0;
 /// Numbers at ticks, and legends.
 pub const TICK: f64 = 26.0;
-/// What was run.
+/// The footer.
 pub const FOOTER: f64 = 20.0;
 
 /// A data line.

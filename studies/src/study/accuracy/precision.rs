@@ -16,7 +16,7 @@ const HARD: f64 = 1e-2;
 
 /// Time in s for which a run is repeated to measure its CPU time.
 pub(super) const MEASURED_FOR: f64 = 0.02;
-const MOST_REPEATS: usize = 25;
+const MAX_REPEATS: usize = 25;
 
 /// Progress reports of a problem: the reference, the program's method, Dormand-Prince and each scheme.
 pub(super) const PARTS: usize = 3 + Scheme::ALL.len();
@@ -152,7 +152,7 @@ fn nearest(impacts: &[Event], impact: &Event) -> f64 {
 
 pub(super) fn median(mut measure: impl FnMut() -> f64) -> f64 {
     let mut times = vec![measure()];
-    while times.len() < MOST_REPEATS && times.iter().sum::<f64>() < MEASURED_FOR {
+    while times.len() < MAX_REPEATS && times.iter().sum::<f64>() < MEASURED_FOR {
         times.push(measure());
     }
     times.sort_by(f64::total_cmp);

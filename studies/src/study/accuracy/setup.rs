@@ -16,7 +16,7 @@ pub(super) const TOLERANCE: f64 = 1e-14;
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum Stopped {
     /// It was cancelled.
-    #[error("told to stop")]
+    #[error("cancelled")]
     Cancelled,
     /// A scene of the study cannot be run: a fault of the program.
     #[error("a scene of the study cannot be run: {0}")]

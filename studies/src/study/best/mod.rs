@@ -30,7 +30,7 @@ pub struct DesignRange {
     pub high: f64,
     /// Number of intervals of the scan: at least 1, and for whole numbers at most the length of the range.
     pub intervals: usize,
-    /// Whether only whole numbers are tried: as the field of the scene has it.
+    /// Whether only whole numbers are tried, as for a count.
     whole: bool,
 }
 
@@ -60,7 +60,7 @@ pub struct Constraint {
 /// A scene in one environment.
 #[derive(Debug, Clone)]
 pub struct Environment {
-    /// What it is called.
+    /// Its name.
     pub name: String,
     /// Its weight, above 0.
     pub weight: f64,
@@ -91,7 +91,7 @@ pub struct BestQuestion {
     pub maximise: &'static SummaryField,
     /// Constraints in every environment.
     pub subject_to: Vec<Constraint>,
-    /// At least one.
+    /// The environments, at least one.
     pub environments: Vec<Environment>,
     /// Fields that vary about the design.
     pub vary: Vec<Variation>,
@@ -158,7 +158,7 @@ pub struct BestDesign {
     /// Whether all designs that were tried have the same value.
     pub flat: bool,
     /// The designs that were tried, in order: first those of the scan, [`scan_places`] of them, then those
-    /// nearer to the best ones and those beside the optimum. Samples of what varies are left out.
+    /// nearer to the best ones and those beside the optimum. Samples of the fields that vary are left out.
     pub tried: Vec<Tried>,
 }
 

@@ -27,7 +27,7 @@ use crate::system::threads::Pool;
 pub use kramers::{NoKramers, depopulation, kramers_rate};
 pub use probability::{Chance, probable_threshold_table};
 
-/// Largest seed of a noise, after which the seeds of further runs go on from 0.
+/// Largest seed of a noise, after which the seeds of further runs continue from 0.
 const MAX_SEED: u64 = 1 << 53;
 
 words! {
@@ -157,7 +157,7 @@ fn with_columns(table: Table, options: &EscapeOptions, found: &[Escapes]) -> Tab
 fn prepared(scene: &Scene, run: u64, within: f64) -> Scene {
     let mut scene = scene.clone();
     reseed(&mut scene.excitation, run);
-    // without a settled window, whose averages nobody reads
+    // without a settled window, since its averages are not used
     (scene.run.duration_s, scene.run.settle_s) = (within, Some(within));
     scene
 }

@@ -13,7 +13,7 @@ use crate::study::thresholds::{faults, from_rest};
 use crate::study::{Cancelled, Family, Grid, NoThresholds, Onset, Scan, Table, Task};
 use crate::system::threads::Pool;
 
-/// What is asked of the runs.
+/// The share of runs that are to cross, their number and their time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Chance {
     /// Share of the runs that are to cross, above 0 and below 1.
@@ -32,8 +32,8 @@ type Firsts = Option<Vec<f64>>;
 /// `of,probability,value,low,high,runs,crossed`. All runs begin at rest. The thresholds of the runs are
 /// multiples of the resolution of `scan`, of whose values only the first and the last are used.
 ///
-/// A bisection takes it that a run which crosses at a value crosses at all higher ones. Where that is not so,
-/// it finds one of the values of the range at which the answer changes. Ticks for each run.
+/// The bisection assumes that a run which crosses at a value crosses at all higher ones. Where that is not
+/// so, it finds one of the values of the range at which the answer changes. Ticks for each run.
 pub fn probable_threshold_table(
     scene: &Scene,
     files: &Files,

@@ -95,7 +95,7 @@ pub(super) fn average(
     })
 }
 
-/// A sum of logarithms of factors, of which 0 makes the product 0.
+/// A sum of logarithms of factors; a factor of 0 makes the product 0.
 #[derive(Clone, Copy, Default)]
 struct LogSum {
     sum: CompensatedSum<f64>,

@@ -10,7 +10,7 @@
 //! Their sum has an exact value, since only damping, circuit and impacts contract volumes: -c/m - d, d the
 //! rate at which the circuit decays, + 2 ln(restitution) times the rate of impacts, summed over the stops.
 //! The last exponent is computed as this sum minus the others, so that it is accurate even if it is much
-//! smaller. A rest on a stop removes every perturbation but those of a circuit; all exponents, or all but
+//! smaller. A rest on a stop removes every perturbation except those of a circuit; all exponents, or all but
 //! one, are then minus infinity.
 
 mod average;

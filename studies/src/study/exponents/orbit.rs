@@ -56,7 +56,7 @@ fn growths(orbit: &Passed) -> Vec<f64> {
     let smallest = if multipliers[size - 1].im == 0.0 { 1 } else { 2 };
     let others: f64 = growths[..size - smallest].iter().sum();
     if smallest == 1 || all.is_finite() {
-        // where nothing is left of any change, no growth follows from the others
+        // if the others are minus infinity, their sum does not determine the smallest
         let left = if others == f64::NEG_INFINITY { others } else { (all - others) / smallest as f64 };
         growths[size - smallest..].fill(left);
     }

@@ -35,7 +35,7 @@ pub(super) struct Passed {
     pub measured: f64,
     /// The same from damping, circuit and impacts; `None` with compliant stops.
     pub exact: Option<f64>,
-    /// Whether the mass has rested on a stop: perturbations have vanished but for those of a circuit.
+    /// Whether the mass has rested on a stop: perturbations have vanished except those of a circuit.
     pub rested: bool,
 }
 

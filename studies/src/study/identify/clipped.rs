@@ -13,8 +13,8 @@ const WHOLE: f64 = 0.01;
 /// Distance from the limit, in multiples of the noise, below which a sample lies at the limit.
 const NEAR: f64 = 8.0;
 
-/// Samples after a flat top are looked at up to this many times the noise below it, and at least to this
-/// part of the range of the record.
+/// Samples after a flat top are examined up to this many times the noise below it, and at least to this part
+/// of the range of the record.
 const FAR: f64 = 32.0;
 const FAR_OF_RANGE: f64 = 0.02;
 

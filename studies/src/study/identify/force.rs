@@ -94,18 +94,18 @@ pub fn force(x: &[f64], force: &[f64], points: Option<usize>) -> Result<Identifi
     };
     let (curve, rests) = found
         .ok_or_else(|| Unidentified::FewSamples(x.len(), points.unwrap_or_default().max(LEAST_POINTS)))?;
-    let which = |pull: &Pull, which: usize| -> Values {
+    let forces = |pull: &Pull, direction: usize| -> Values {
         match pull.is_empty() {
             true => curve.positions.iter().map(|_| f64::NAN).collect(),
-            false => curve.directions[which].iter().map(|row| row.0.value).collect(),
+            false => curve.directions[direction].iter().map(|row| row.0.value).collect(),
         }
     };
     let rows = Table::new().each("x_m", &curve.positions, |x| *x);
     let rows = with_interval(rows, ["force_n", "force_low_n", "force_high_n"], &curve.mean, |(force, _)| {
         Identity::new("force_n", force.value, force.half())
     })
-    .with("force_rising_n", which(&rising, 0))
-    .with("force_falling_n", which(&falling, pulls.len() - 1));
+    .with("force_rising_n", forces(&rising, 0))
+    .with("force_falling_n", forces(&falling, pulls.len() - 1));
     let (mut summary, mut remarks) = curve.landscape(&rests);
     if let [one, other] = &curve.directions[..] {
         summary.extend(hysteresis(one, other, high - low));

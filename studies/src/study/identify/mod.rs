@@ -51,7 +51,7 @@ fn with_interval<R>(table: Table, names: [&str; 3], rows: &[R], of: impl Fn(&R) 
     table.each(names[1], rows, |row| of(row).interval.0).each(names[2], rows, |row| of(row).interval.1)
 }
 
-/// What was identified from a record.
+/// The quantities identified from a record.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Identified {
     /// The rows: over amplitude, impact or position.
@@ -112,7 +112,7 @@ pub enum Unidentified {
         /// Number of turning points that are left.
         found: usize,
     },
-    /// So many swings that are cut off at displacements in mm hide the impacts.
+    /// Swings that are cut off hide the impacts: their number, and the displacements in mm.
     #[error(
         "no impact is left: {0} swings have flat tops at {1} mm, at the limit of the sensor or its \
          converter: widen its range so that it covers the stops"

@@ -225,7 +225,7 @@ fn local(times: &[f64], values: &[f64], peak: &Peak, rate: f64) -> Result<Option
 /// The oscillation of a circular frequency w and a rate of decay r, and with five terms its second harmonic
 /// as well, that fits values over times, as seen at time 0.
 ///
-/// With z = e^((-r + iw)t) the terms are 1, s = Im z, c = Re (1 - z), and of (1 - z)^2 what is of a higher
+/// With z = e^((-r + iw)t) the terms are 1, s = Im z, c = Re (1 - z), and the parts of (1 - z)^2 of higher
 /// order in t: c s and s^2 - c^2 - 2 c + (2 r/w) s. So they are about as independent as powers of t.
 fn swing<const N: usize>(samples: impl Iterator<Item = (f64, f64)>, w: f64, r: f64) -> Option<Local> {
     let terms = |t: f64| {

@@ -141,7 +141,7 @@ fn mean(fits: &[Near], x: f64, order: usize) -> Option<Known> {
     fits.iter().map(|fit| fit.known(&fit.terms(x, order), order)).reduce(Known::and)
 }
 
-/// Terms of a fit: four of a cubic, three of another beyond the kink, and what moves the kink.
+/// Terms of a fit: four of a cubic, three of another beyond the kink, and the shift of the kink.
 type Terms = SVector<f64, 8>;
 
 /// The force of one direction near a place: polynomials in u = (x - centre)/reach.
@@ -184,7 +184,7 @@ impl Near {
         Some(Self { centre, reach, kink: Some(centre + kink * reach), beyond, fit })
     }
 
-    /// What each coefficient adds to the force at `x` in m, or with an order of 1 to its slope in u.
+    /// The share of each coefficient in the force at `x` in m, or with an order of 1 in its slope in u.
     fn terms(&self, x: f64, order: usize) -> Terms {
         let local = |x: f64| (x - self.centre) / self.reach;
         terms(local(x), self.kink.map_or(f64::INFINITY, local), &self.beyond, order)

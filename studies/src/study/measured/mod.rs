@@ -60,7 +60,7 @@ pub enum NoComparison {
          lie within the run from 0 to {end} s; at least 2 are needed: give another shift, or lengthen the run"
     )]
     Apart {
-        /// How many.
+        /// Number of samples within the run.
         samples: usize,
         /// Begin in s.
         from: String,

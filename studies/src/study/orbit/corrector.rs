@@ -156,8 +156,8 @@ fn bordered<const N: usize>(rows: &[SVector<f64, N>], last: &SVector<f64, N>) ->
     SMatrix::from_fn(|i, j| rows.get(i).unwrap_or(last)[j])
 }
 
-/// The direction in which the solutions of equations with these derivatives go on, with a positive component
-/// along `along`.
+/// The tangent of the curve of solutions of equations with these derivatives, with a positive component along
+/// `along`.
 pub(super) fn tangent<const N: usize>(
     slopes: &[SVector<f64, N>],
     along: &SVector<f64, N>,

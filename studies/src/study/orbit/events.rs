@@ -88,10 +88,10 @@ pub(super) fn between(
     Some(found.into_iter().map(|(_, event, point)| (event, point)).collect())
 }
 
-/// The orbit at which a branch turns back as that of the same orbits in another guise, if it does: a
-/// symmetric orbit, from orbits to their mirror images, or one of half the period, from orbits to themselves
-/// half their period later. The map over the period is singular there, so the orbit is computed with the map
-/// over the half.
+/// The orbit at which a branch turns back and repeats its orbits in another form, if it does: a symmetric
+/// orbit, from orbits to their mirror images, or one of half the period, from orbits to themselves half their
+/// period later. The map over the period is singular there, so the orbit is computed with the map over the
+/// half.
 fn joint(corrector: &Corrector, from: &Point, to: &Point) -> Option<(f64, BranchEvent, Point)> {
     if corrector.mirrored {
         return None;

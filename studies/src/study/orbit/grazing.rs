@@ -139,7 +139,7 @@ fn time_of(corrector: &Corrector, map: &StroboscopicMap, t: f64) -> f64 {
     ((t - map.first_strobe()) / map.period()).rem_euclid(f64::from(corrector.periods))
 }
 
-/// Distance of two times within a flight, of which the end is followed by the beginning.
+/// Distance of two times within a flight, whose end is followed by its beginning.
 fn apart(a: f64, b: f64, flight: f64) -> f64 {
     let far = (a - b).rem_euclid(flight);
     far.min(flight - far)

@@ -3,8 +3,8 @@
 //! A periodic orbit of n forcing periods is a fixed point of the map from a state to the state n periods
 //! later ([`StroboscopicMap`]). Its Floquet multipliers are the eigenvalues of the derivative of that map,
 //! two or, beside a circuit, three; it is stable if all are inside the unit circle. After a rest on a stop
-//! the motion no longer depends on the state before it, so that all are 0 but one beside a circuit, which
-//! remembers.
+//! the motion no longer depends on the state before it, so that all are 0, except one beside a circuit, whose
+//! state continues.
 //!
 //! [`orbit`] finds the orbit near the settled motion of a run, [`orbit_near`] the one near a state;
 //! [`branch()`] follows it over a field.
@@ -61,11 +61,11 @@ pub struct Orbit {
     pub period: u32,
     /// Its state at the phase of the map.
     pub state: MapState,
-    /// What happens on it.
+    /// Its events over a period.
     pub passage: Passage,
     /// Derivative of the map over its period.
     pub jacobian: Jacobian,
-    /// What the electrical state is; `None` without a circuit.
+    /// The kind of its electrical state; `None` without a circuit.
     pub circuit: Option<CircuitState>,
 }
 
@@ -92,7 +92,7 @@ pub enum NoOrbit {
     )]
     NotSettled,
     /// It was cancelled.
-    #[error("it was told to stop")]
+    #[error("it was cancelled")]
     Cancelled,
 }
 
@@ -118,7 +118,7 @@ impl Orbit {
     /// Floquet multipliers by falling magnitude: two, or three beside a circuit.
     pub fn multipliers(&self) -> Vec<Multiplier> {
         if self.passage.rested && self.jacobian.size() == 3 {
-            // the circuit's state at the release is all that is remembered
+            // after the release only the circuit's state depends on the state before the rest
             let nothing = Multiplier { re: 0.0, im: 0.0 };
             return vec![Multiplier { re: self.jacobian.trace(), im: 0.0 }, nothing, nothing];
         }
@@ -283,7 +283,7 @@ pub fn orbit(model: &Model, phase: f64, period: Option<u32>, cancel: &AtomicBool
     }
 }
 
-/// Among the stroboscopic states after `from`, the one with the closest return after `periods`.
+/// The stroboscopic state after `from` with the closest return after `periods`.
 fn closest_return(map: &StroboscopicMap, from: MapState, periods: u32) -> MapState {
     let units = Units::of(map.model(), 1.0);
     let next = |state: &MapState| {

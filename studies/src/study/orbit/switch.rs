@@ -20,7 +20,7 @@ const AWAY: f64 = 0.1;
 /// Largest distance in the units between the same event on two branches.
 const AT_ONCE: f64 = 1e-6;
 
-/// The start of a branch: its first motion, with the direction in which it goes on.
+/// The start of a branch: its first motion, with the direction in which it continues.
 type Start<'a> = (Corrector<'a>, Directed);
 
 /// A branch, the branches that begin at its flips and breakings of the symmetry, those that begin on them,
@@ -29,8 +29,8 @@ type Start<'a> = (Corrector<'a>, Directed);
 ///
 /// A branch leaves in the direction of the eigenvector of the multiplier -1, of the map over a period or from
 /// a motion to its mirror image (Kuznetsov 2004, section 10.2.2). Its first motion is found by Newton's
-/// method in the plane across that direction, and differs from those of the branch left. Ticks once per
-/// orbit.
+/// method in the plane across that direction, and differs from those of the branch that it leaves. Ticks once
+/// per orbit.
 pub fn switched(
     family: &Family,
     branch: Branch,
@@ -100,7 +100,7 @@ fn starts<'a>(
     };
     let beside = [place.wrapping_sub(1), place + 1].into_iter().find_map(is_symmetric);
     match beside {
-        // motions that are not their own mirror images come to those that are
+        // motions that are not their own mirror images meet the branch of those that are
         Some(false) if !is_flip => [-1.0, 1.0].into_iter().filter_map(sideways).collect(),
         _ => begun(&base, &point, is_flip).into_iter().collect(),
     }

@@ -205,7 +205,7 @@ impl<'a> Walk<'a> {
         (SHORTEST..=2.0 * self.options.step).contains(&(next.at - point.at).norm()).then_some((next, onward))
     }
 
-    /// Whether a point continues the branch: it lies in its direction, and so does its own direction.
+    /// Whether a point continues the branch: the point and its tangent lie in the direction of the branch.
     fn follows(&self, (next, onward): &Directed) -> bool {
         let (point, along) = &self.at;
         // a motion that is a function of the field does not turn back
@@ -317,7 +317,7 @@ impl<'a> Walk<'a> {
         let nearest = directed(least(beside));
         for distance in PAST_A_GRAZING {
             let Some(far) = directed(distance) else { continue };
-            // of two impacts that are hardly any, the derivatives are lost in rounding
+            // the derivatives of two very slow impacts are lost in rounding
             let near = nearest.clone().or_else(|| directed(0.1 * distance)).unwrap_or_else(|| far.clone());
             if differ(&near.0, &far.0) {
                 continue;
@@ -356,12 +356,12 @@ impl<'a> Walk<'a> {
         };
         let at = self.corrector.at(orbit.state, point.value);
         let far = self.rows.last().map_or(0.0, |(last, far)| far + (at - last).norm());
-        // only where something happens does it come to the same motion again, and not beside it
+        // the branch comes to the same motion again only at an event, and not beside it
         let left = self.rows.iter().take_while(|(_, along)| far - along > self.options.step);
         self.meets |= left.into_iter().any(|(row, _)| (at - row).amax() <= SAME);
         let event = event.filter(|_| !self.meets);
         self.rows.push((at, far));
-        // a motion at an end is so but for the rounding of its unit
+        // a motion at an end is off it by the rounding of the unit
         let far = |end: f64| (point.value - end).abs();
         let is_at = |end: &f64| far(*end) <= AT_AN_END * (self.corrector.units.range + end.abs() * 1e-3);
         let end = self.range.into_iter().find(|end| event.is_none() && is_at(end));
@@ -393,7 +393,7 @@ impl<'a> Walk<'a> {
         self.corrector.evaluate(&(point.at + Vector4::w() * along.w.signum() * UNLOCATED)).is_some()
     }
 
-    /// Goes on from the present motion without the mirror condition; false where that finds none.
+    /// Continues from the present motion without the mirror condition; false where that finds no motion.
     fn forgets_its_mirror_image(&mut self) -> bool {
         let (point, along) = &self.at;
         let corrector = Corrector { mirrored: false, ..self.corrector };
@@ -404,7 +404,7 @@ impl<'a> Walk<'a> {
         true
     }
 
-    /// Whether the last motion is the first one, but for the length of a step.
+    /// Whether the last motion is the first one to within the length of a step.
     fn is_closed(&self, step: f64) -> bool {
         let Some(((last, _), (first, _))) = self.rows.last().zip(self.rows.first()) else { return false };
         let farthest = self.rows.iter().map(|(row, _)| (row - first).norm()).fold(0.0, f64::max);

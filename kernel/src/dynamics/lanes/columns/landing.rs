@@ -35,8 +35,8 @@ impl<const W: usize> Columns<W> {
         (value, slope)
     }
 
-    /// Shortens steps of `candidates` to the break that they meet, the one ahead or the one just left, if the
-    /// root is found at once. Returns the lanes whose steps end there.
+    /// Shortens steps of `candidates` to the break that they meet, the break ahead or the one just left, if
+    /// the root is found at once. Returns the lanes whose steps end there.
     #[inline(always)]
     pub(super) fn land(
         &self,

@@ -205,7 +205,7 @@ impl March<'_> {
         true
     }
 
-    /// Attempts a step, up to its first contact. Returns whether the run goes on.
+    /// Attempts a step, up to its first contact. Returns whether the run continues.
     fn step(&mut self) -> bool {
         let (problem, now, end) = (self.problem, self.now, self.problem.model.duration());
         let start = self.slope.unwrap_or_else(|| {

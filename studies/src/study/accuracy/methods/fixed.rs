@@ -10,11 +10,11 @@ const MAX_STEPS: f64 = 1e8;
 
 /// Runs `model` by `scheme` in even steps of at most `step` in s; the last one ends at the duration.
 ///
-/// The model's tolerance has no effect. A step that ends beyond a stop is put onto it and its velocity
-/// becomes -e times what it was; there is no rest: a pressed mass hops on for ever. Statistics and samples
-/// are those of the steps, as the user of such a method sees them; an impact has the time at the end of its
-/// step. A step that is not above 0, or makes more than 1e8 of them, is taken as the shortest allowed. Ends
-/// early where the force curve ends.
+/// The model's tolerance has no effect. A step that ends beyond a stop is put onto it and its velocity is
+/// multiplied by -e; there is no rest: a pressed mass hops for ever. Statistics and samples are those of the
+/// steps, as the user of such a method sees them; an impact has the time at the end of its step. A step that
+/// is not above 0, or makes more than 1e8 of them, is taken as the shortest allowed. Ends early where the
+/// force curve ends.
 pub fn fixed_step(model: &Model, scheme: Scheme, step: f64, request: &Request) -> MethodRun {
     let problem = Problem::new(model);
     let wanted = (model.duration() / step).ceil();

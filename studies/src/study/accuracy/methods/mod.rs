@@ -61,7 +61,7 @@ fn is_cancelled(request: &Request) -> bool {
     request.cancel.is_some_and(|flag| flag.load(Ordering::Relaxed))
 }
 
-/// What a run by one of these methods returns.
+/// The result of a run by one of these methods.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct MethodRun {
     /// The state at the requested times up to the end, on a straight line between steps.
@@ -177,7 +177,7 @@ impl<'a> Problem<'a> {
         -(force + self.model.total_damping() * v) / self.model.mass() - self.base(t)
     }
 
-    /// Whether the run may go on from here.
+    /// Whether the run may continue from here.
     pub fn is_inside(&self, x: f64, v: f64) -> bool {
         x >= self.domain.0 && x <= self.domain.1 && v.is_finite()
     }

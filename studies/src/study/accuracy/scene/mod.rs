@@ -20,10 +20,10 @@ use crate::study::Table;
 
 /// Runs at tolerances and in fixed steps, a row each, in this order. SI; a cell without a value is empty.
 ///
-/// `error_m` is the largest error of the displacement, `trusted_s` up to when the path is off by less than a
-/// hundredth of the travel (empty where that is all of the time compared), `compared_s` that time. `late_s`
-/// is the median of how late arrivals at a stop are, `latest_s` the one furthest off, over `arrivals` of them
-/// in a row.
+/// `error_m` is the largest error of the displacement, `trusted_s` the time up to which the path is off by
+/// less than a hundredth of the travel (empty if it is for all the time compared), `compared_s` the time
+/// compared. `late_s` is the median delay of arrivals at a stop, `latest_s` the largest, over `arrivals` of
+/// them in a row.
 pub fn scene_table(tolerances: &Tolerances, stepped: &[StepSize]) -> Table {
     let known = |value: Option<f64>| value.unwrap_or(f64::NAN);
     let runs = &tolerances.runs;

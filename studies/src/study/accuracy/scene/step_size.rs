@@ -15,8 +15,8 @@ pub const TRUE_TOLERANCE: f64 = 1e-9;
 /// Periods of the drive, or characteristic times of the motion, that are drawn.
 const DRAWN_PERIODS: f64 = 3.0;
 
-/// Most points of a drawn path; if there are more steps, evenly spaced points take their place.
-const MOST_POINTS: usize = 4_000;
+/// Largest number of points of a drawn path; if there are more steps, evenly spaced points take their place.
+const MAX_POINTS: usize = 4_000;
 
 /// Largest number of steps of a run: a few seconds on one core.
 const MAX_STEPS: f64 = 2e7;
@@ -29,11 +29,11 @@ pub enum Unfit {
     /// Its stops are compliant, and clamp and bounce needs rigid ones.
     #[error("clamp and bounce is for rigid stops, and these give way")]
     Compliant,
-    /// Its transducer has a state of its own, which the schemes do not step.
+    /// Its transducer has an electrical state, which the schemes do not step.
     #[error("the schemes step displacement and velocity, and its transducer has a state of its own")]
     ElectricalState,
     /// It was cancelled.
-    #[error("told to stop")]
+    #[error("cancelled")]
     Cancelled,
 }
 
@@ -88,7 +88,7 @@ pub fn step_size(model: &Model, scheme: Scheme, step: f64, cancel: &AtomicBool) 
     }
     let model = &within_reach(model, step).with_tolerance(model.tolerance().min(TRUE_TOLERANCE));
     let drawn = model.duration().min(DRAWN_PERIODS * model.characteristic_time());
-    let (even, fine, steps) = (times(model), spread(drawn, MOST_POINTS), step_times(drawn, step));
+    let (even, fine, steps) = (times(model), spread(drawn, MAX_POINTS), step_times(drawn, step));
 
     let request =
         |sample_times| Request { sample_times, events: true, cancel: Some(cancel), ..Request::default() };
@@ -143,7 +143,7 @@ fn spread(end: f64, count: usize) -> Vec<f64> {
 /// The ends of steps from 0 to `end` in s, or as many even times as are drawn if there are more steps.
 fn step_times(end: f64, step: f64) -> Vec<f64> {
     let count = (end / step).ceil();
-    spread(end, if count >= 1.0 { count.min(MOST_POINTS as f64) as usize } else { 1 })
+    spread(end, if count >= 1.0 { count.min(MAX_POINTS as f64) as usize } else { 1 })
 }
 
 /// The path with its corners at impacts, which a picture with few points would cut off.
@@ -180,11 +180,11 @@ pub struct Lateness {
     pub earliest: f64,
     /// The latest.
     pub latest: f64,
-    /// How many arrivals in a row were found in both runs.
+    /// Number of arrivals in a row that were found in both runs.
     pub matched: usize,
-    /// How many of those are early.
+    /// Number of those that are early.
     pub early: usize,
-    /// How many there are.
+    /// Number of arrivals in the true run.
     pub of: usize,
 }
 

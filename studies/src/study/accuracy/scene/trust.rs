@@ -144,7 +144,7 @@ impl Course {
 /// The error of a run, known by its change against a tighter tolerance.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Trust {
-    /// Tolerance of the run, and of the one that it was compared with.
+    /// Tolerance of the run, and of the run that it was compared with.
     pub tolerances: (f64, f64),
     /// Time in s from the start over which they were compared.
     pub span: f64,
@@ -154,7 +154,7 @@ pub struct Trust {
     pub travel: f64,
     /// How the difference develops.
     pub course: Course,
-    /// How the run ended: what was compared ends with it.
+    /// How the run ended; the comparison ends with it.
     pub outcome: Outcome,
     /// Whether both runs come to the same regime.
     pub same_regime: bool,

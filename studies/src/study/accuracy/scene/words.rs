@@ -11,7 +11,7 @@ fn two(value: f64) -> String {
         return "0".to_owned();
     }
     let places = decimals(size, 2);
-    // what rounds up to another digit has one decimal less: 9.96 is 10
+    // a value that rounds up to another digit has one decimal less: 9.96 is 10
     let ten = format!("{size:.places$}").parse().is_ok_and(|shown: f64| shown >= 10.0);
     let places = if ten { 0 } else { places };
     format!("{value:.places$}")

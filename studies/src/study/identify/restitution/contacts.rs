@@ -113,12 +113,12 @@ fn impact(motion: &Motion, turn: Turn, within: Range<usize>) -> Option<Impact> {
         let sides = Sides { before: motion.fit(before.clone()), after: motion.fit(after.clone()) };
         let found = sides.meet(motion, TERMS, motion.times[turn.at], turn.maximum);
         let turns_back = |found: &Meeting| found.towards > 0.0 && found.away > 0.0 && inside(found.t);
-        if let (Some(found), Some((two, _))) = (found.filter(turns_back), sides.rest(TERMS)) {
-            let one = motion.fit_both(before, after).squared_residuals(2 * TERMS).unwrap_or(0.0);
-            let better = one - two > CLEAR.powi(2) * variance && two < 0.25 * one.max(100.0 * variance);
-            let fits = two < 4.0 * variance * samples as f64 || two < 0.1 * one;
+        if let (Some(found), Some((each, _))) = (found.filter(turns_back), sides.rest(TERMS)) {
+            let both = motion.fit_both(before, after).squared_residuals(2 * TERMS).unwrap_or(0.0);
+            let better = both - each > CLEAR.powi(2) * variance && each < 0.25 * both.max(100.0 * variance);
+            let fits = each < 4.0 * variance * samples as f64 || each < 0.1 * both;
             if better && fits {
-                let error = motion.noise * found.of_x.sqrt() + (two / samples as f64).sqrt();
+                let error = motion.noise * found.of_x.sqrt() + (each / samples as f64).sqrt();
                 let unsure = motion.noise * found.of_t.sqrt();
                 return Some(Impact { t: found.t, x: found.x, error, unsure, speed: None });
             }

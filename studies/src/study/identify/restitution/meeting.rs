@@ -42,8 +42,8 @@ impl Sides {
         let sign = if right { 1.0 } else { -1.0 };
         let mut t = near;
         for _ in 0..MAX_STEPS {
-            let (one, other) = (motion.at(&self.before, t, terms), motion.at(&self.after, t, terms));
-            let step = (other.value - one.value) / (one.slope - other.slope);
+            let (before, after) = (motion.at(&self.before, t, terms), motion.at(&self.after, t, terms));
+            let step = (after.value - before.value) / (before.slope - after.slope);
             if !step.is_finite() {
                 return None;
             }
@@ -52,26 +52,26 @@ impl Sides {
                 break;
             }
         }
-        let (one, other) = (motion.at(&self.before, t, terms), motion.at(&self.after, t, terms));
-        let jump = one.slope - other.slope;
+        let (before, after) = (motion.at(&self.before, t, terms), motion.at(&self.after, t, terms));
+        let jump = before.slope - after.slope;
         // errors l of the first and r of the second value shift the intersection by (r - l)/jump
-        let (a, b) = (one.bend / jump, other.bend / jump);
-        let (l, r) = (-other.slope / jump, one.slope / jump);
+        let (a, b) = (before.bend / jump, after.bend / jump);
+        let (l, r) = (-after.slope / jump, before.slope / jump);
         Some(Meeting {
             t,
-            x: l * one.value + r * other.value,
-            towards: sign * one.slope,
-            away: -sign * other.slope,
-            of_t: (one.value_variance + other.value_variance) / jump.powi(2),
-            of_x: l * l * one.value_variance + r * r * other.value_variance,
-            of_towards: one.slope_variance - 2.0 * a * one.covariance
-                + a * a * (one.value_variance + other.value_variance),
-            of_away: other.slope_variance
-                + 2.0 * b * other.covariance
-                + b * b * (one.value_variance + other.value_variance),
-            of_speeds: b * one.covariance
-                - a * other.covariance
-                - a * b * (one.value_variance + other.value_variance),
+            x: l * before.value + r * after.value,
+            towards: sign * before.slope,
+            away: -sign * after.slope,
+            of_t: (before.value_variance + after.value_variance) / jump.powi(2),
+            of_x: l * l * before.value_variance + r * r * after.value_variance,
+            of_towards: before.slope_variance - 2.0 * a * before.covariance
+                + a * a * (before.value_variance + after.value_variance),
+            of_away: after.slope_variance
+                + 2.0 * b * after.covariance
+                + b * b * (before.value_variance + after.value_variance),
+            of_speeds: b * before.covariance
+                - a * after.covariance
+                - a * b * (before.value_variance + after.value_variance),
         })
     }
 

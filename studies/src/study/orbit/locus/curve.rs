@@ -85,8 +85,8 @@ impl<'a> Curve<'a> {
         let path = FieldPath::new(&second.field);
         let unit = unit_of(second.range);
         let upwards = Vector5::ith(4, (second.range.1 - second.range.0).signum());
-        let there = family.with(&path, second.range.0);
-        let model = there.model(value).ok()?;
+        let shifted = family.with(&path, second.range.0);
+        let model = shifted.model(value).ok()?;
         let units = Units::of(&model, unit_of(range));
         let map = map_of(&model, options.phase, cancel)?;
         let is_symmetric = Corrector::asymmetry(&map, orbit).is_some_and(|off| off.amax() <= SAME);
@@ -132,14 +132,14 @@ impl<'a> Curve<'a> {
             at = with_fifth(&touch.solution, at[4]);
             self.touch = Some(touch);
         }
-        // the state at another phase goes on in another direction, the fields in the same
+        // at another phase the tangent has another direction in the state, and the same in the fields
         let along = across_fields(along);
         let spot = self.correct(at, &along)?;
         let along = tangent(&spot.slopes, &along)?;
         Some((self, Spot { along, ..spot }))
     }
 
-    /// What the corrector at a value of the second field in its unit makes.
+    /// The result of `of` with the corrector at a value of the second field in its unit.
     fn at_second<T>(&self, second: f64, of: impl FnOnce(&Corrector) -> T) -> T {
         let family = self.corrector.family.with(&self.path, second * self.range);
         of(&Corrector { family: &family, ..self.corrector })

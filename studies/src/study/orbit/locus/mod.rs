@@ -54,7 +54,7 @@ words! {
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Locus {
-    /// What happens at every point.
+    /// The kind of event at every point.
     pub of: BranchEvent,
     /// The fields.
     pub fields: [String; 2],

@@ -112,7 +112,7 @@ impl Walk<'_> {
                 } else {
                     return None;
                 };
-                // the first point may lie at an end, and the locus go on inside
+                // the first point may lie at an end, and the locus continue inside
                 (to != from).then(|| (3 + place, end, (end - from) / (to - from)))
             });
             crossings.min_by(|a, b| a.2.total_cmp(&b.2))
@@ -227,7 +227,7 @@ impl Walk<'_> {
     fn add(&mut self, event: Option<LocusEvent>, spot: &Spot) {
         let state = self.curve.state_at(spot, self.options.phase).unwrap_or(spot.point.orbit.state);
         let values = [spot.point.value, spot.at[4] * self.curve.range];
-        // a motion at an end is so but for the rounding of its unit
+        // a motion at an end is off it by the rounding of the unit
         let (from, to) = self.ranges[1];
         let is_at = |end: &f64| (values[1] - end).abs() <= AT_AN_END * ((to - from).abs() + end.abs() * 1e-3);
         let second = [from, to].into_iter().find(is_at).unwrap_or(values[1]);
