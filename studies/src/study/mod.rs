@@ -107,7 +107,7 @@ pub use measured::{
     Comparison, ForceComparison, MeasuredMotion, NoComparison, OffTheCurve, compare, compare_force,
 };
 pub use melnikov::{melnikov_threshold, suits_melnikov, with_melnikov};
-pub use models::Held;
+pub use models::ModelUse;
 pub use orbit::{
     Branch, BranchEnd, BranchEvent, BranchOptions, FieldRange, Locus, LocusEnd, LocusEvent, NoOrbit, Orbit,
     branch, branches_table, loci, loci_table, orbit, orbit_near, orbit_table, switched,

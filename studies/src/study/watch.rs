@@ -10,7 +10,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::models::Models;
-use super::{Held, Table, events_table};
+use super::{ModelUse, Table, events_table};
 use crate::dynamics::{Event, EventKind, Live, LiveLedger, LiveOutput, Model, Outcome, Phase, Sample, Side};
 use crate::scene::{Excitation, Scene, Start};
 
