@@ -1,7 +1,7 @@
 //! Lessons in a classroom: a strip that stays as high, what is lacking, hints, the end, notes, votes.
 
 use eframe::egui::accesskit::Role;
-use eframe::egui::{Key, Modifiers, Shape};
+use eframe::egui::{Color32, Key, Modifiers, Shape};
 use egui_kittest::kittest::Queryable as _;
 use interwell::app::ui::settings::Settings;
 use interwell::app::views::View;
@@ -240,7 +240,7 @@ fn the_starts_of_a_question_are_seen_in_the_phase_portrait() {
     let dots = |harness: &Shown| {
         let place = harness.state().tiling.place_of(View::PhasePortrait).unwrap();
         let is_dot = |clipped: &&eframe::egui::epaint::ClippedShape| match &clipped.shape {
-            Shape::Circle(circle) => circle.radius == 2.0 && place.contains(circle.center),
+            Shape::Circle(circle) => circle.fill == Color32::WHITE && place.contains(circle.center),
             _ => false,
         };
         harness.output().shapes.iter().filter(is_dot).count()
@@ -325,6 +325,22 @@ fn votes_are_counted_beside_a_prediction() {
     click_on(&mut harness, "Reveal");
     assert!(is_painted(&harness, "Votes: A 1, B 1, C 2"));
     assert_eq!(harness.state().lesson().unwrap().answer().choice, None);
+    // too late: no vote, and nothing is covered
+    shift(&mut harness, Key::C);
+    assert!(is_painted(&harness, "votes are no longer counted"));
+    assert!(!is_painted(&harness, "C shows it again"));
+    assert_eq!(harness.state().lesson().unwrap().answer().votes, [1, 1, 2]);
+}
+
+#[test]
+fn enter_at_a_prediction_says_what_to_do() {
+    let mut harness = opened_own(WIDE);
+    assert!(go_to(&mut harness, |step| matches!(step, Step::Predict { .. })));
+    press(&mut harness, Key::Enter);
+    assert!(is_painted(&harness, "Nobody has chosen yet"));
+    assert!(harness.state().lesson().unwrap().is_covering());
+    press(&mut harness, Key::Enter);
+    assert!(!harness.state().lesson().unwrap().is_covering());
 }
 
 #[test]

@@ -88,7 +88,7 @@ fn a_scene_that_cannot_be_walked_says_why() {
     command(&mut harness, Command::Arrange(Layout::Explore));
     harness.get_by_label("Up and down").click();
     harness.run_steps(3);
-    harness.get_by_label_contains("that needs shaking that repeats");
+    harness.get_by_label_contains("which needs a drive that repeats");
 }
 
 #[test]
@@ -153,7 +153,7 @@ fn under_noise_the_tab_that_has_something_is_open() {
     harness.get_by_label("Up and down").click();
     harness.run_steps(3);
     let place = harness.state().tiling.place_of(View::UpAndDown).unwrap();
-    let text = harness.get_by_label_contains("needs shaking that repeats, such as a sine").rect();
+    let text = harness.get_by_label_contains("needs a drive that repeats, such as a sine").rect();
     assert!((text.center().x - place.center().x).abs() < 10.0, "{text:?} {place:?}");
     assert!((text.center().y - place.center().y).abs() < 0.2 * place.height(), "{text:?} {place:?}");
 }

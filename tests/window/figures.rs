@@ -187,7 +187,7 @@ fn of_the_mechanism_and_its_energy_the_copied_command_makes_the_same_bytes() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = window("nominal-cubic", WIDE);
     open(&mut harness, View::Mechanism, &folder.path().join("a.pdf"));
-    harness.get_by_label_contains("There is no figure of a mechanism that is a force without flexures");
+    harness.get_by_label_contains("a force without flexures, of which there is no figure");
 }
 
 #[test]
@@ -347,7 +347,7 @@ fn a_pasted_scene_is_saved_first_and_a_changed_file_is_not_drawn_as_another() {
         harness.run_steps(1);
         harness.state().figures.problem().is_some()
     });
-    harness.get_by_label_contains("no longer what was opened");
+    harness.get_by_label_contains("has changed since it was opened");
     assert!(!folder.path().join("a.svg").exists());
 }
 

@@ -91,7 +91,7 @@ fn the_end_of_the_run_is_reached_or_given_up() {
     arrive(&mut harness);
     assert_eq!(harness.state().session.player.time(), end);
     press(&mut harness, Key::End);
-    assert!(harness.state().notice().is_some_and(|text| text.ends_with("which is behind")));
+    assert!(harness.state().notice().is_some_and(|text| text.ends_with("before the time shown")));
     // after a change it lasts as long again, and any key gives it up
     harness.state_mut().session.edit_once(|scene| scene.run.duration_s = 1e6);
     harness.run_steps(2);

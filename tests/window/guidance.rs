@@ -1,12 +1,14 @@
 //! Hints, ways to cross, and the words for a screen reader.
 
-use eframe::egui::{Key, Role};
+use eframe::egui::{Key, Role, Shape};
 use egui_kittest::kittest::{NodeT, Queryable};
 use interwell::app::ui::settings::Settings;
+use interwell::app::ui::style::{BODY, STATUS};
+use interwell::app::views::View;
 use interwell::dynamics::Regime;
-use interwell::scene::{Excitation, Stops};
+use interwell::scene::{Excitation, PRESETS, Stops};
 
-use crate::support::{LONG, WIDE, press, session, window, window_with};
+use crate::support::{LONG, PROJECTED, WIDE, press, session, window, window_with};
 
 /// What is said of the ways to cross, once it is found.
 fn ways(preset: &str, changes: &[&str]) -> String {
@@ -112,6 +114,41 @@ fn what_it_would_take_is_there_on_request() {
     harness.key_press(Key::C);
     press(&mut harness, Key::H);
     assert!(harness.query_by_label_contains("or with stops at ±").is_none());
+}
+
+/// The name of the motion and its sentence have one size each, whatever they say.
+#[test]
+fn no_sentence_has_smaller_letters() {
+    for preset in PRESETS {
+        let harness = window(preset.name, [1024.0, 700.0]);
+        let mut sizes = Vec::new();
+        for clipped in &harness.output().shapes {
+            if let Shape::Text(text) = &clipped.shape
+                && (30.0..72.0).contains(&text.pos.y)
+                && (40.0..700.0).contains(&text.pos.x)
+            {
+                sizes.extend(text.galley.job.sections.iter().map(|part| part.format.font_id.size));
+            }
+        }
+        assert!(!sizes.is_empty(), "{}", preset.name);
+        assert!(sizes.iter().all(|size| [BODY, STATUS].contains(size)), "{}: {sizes:?}", preset.name);
+    }
+}
+
+#[test]
+fn by_a_projector_what_it_would_take_stands_in_place_of_the_sentence() {
+    let settings = Settings { projector: true, ..Settings::default() };
+    let mut harness = window_with("paper", PROJECTED, settings);
+    let place = harness.state().tiling.place_of(View::Well).unwrap();
+    harness.get_by_label_contains("Interwell: will cross");
+    press(&mut harness, Key::H);
+    harness.state_mut().session.wait(LONG);
+    harness.run_steps(2);
+    let text = harness.get_by_label_contains("It crosses already").rect();
+    assert!(text.bottom() < place.top() && harness.state().tiling.place_of(View::Well) == Some(place));
+    assert!(harness.query_by_label_contains("Interwell: will cross").is_none());
+    press(&mut harness, Key::H);
+    harness.get_by_label_contains("Interwell: will cross");
 }
 
 #[test]

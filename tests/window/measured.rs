@@ -134,7 +134,7 @@ fn the_numbers_follow_the_scene_and_say_when_the_motion_is_another() {
     harness.run_steps(2);
     let other = comparison(&mut harness);
     assert!(other.rms.0 > 1e-6, "{:?}", other.rms);
-    harness.get_by_label_contains("was changed on its way");
+    harness.get_by_label_contains("was changed while it ran");
     // undone, it is the old one
     command(&mut harness, Command::Undo);
     assert!(comparison(&mut harness).rms.0 < 1e-7);
