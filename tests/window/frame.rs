@@ -66,6 +66,9 @@ fn the_next_release_and_crossing_are_found() {
         assert!(!player.is_playing() && player.time() > before);
         let event = *player.event().unwrap();
         assert_eq!(event.kind, kind);
+        // a change acts from the present on, which is hardly later
+        let later = player.watch().time() - event.t;
+        assert!((0.0..0.05 * harness.state().session.model().characteristic_time()).contains(&later));
         // it is the first one
         let between = |other: &&interwell::dynamics::Event| other.t > before && other.t < event.t;
         assert!(player.watch().events().iter().filter(between).all(|other| other.kind != kind));

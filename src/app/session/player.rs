@@ -59,8 +59,9 @@ const STEP: f64 = 1.0 / 30.0;
 
 /// Computing time that one frame spends on the way to a goal.
 const FRAME_SHARE: Duration = Duration::from_millis(12);
-/// Motion between two checks of that time, in multiples of the characteristic time.
-const CHECK_INTERVAL: f64 = 2.0;
+/// Motion between two checks of that time, in multiples of the characteristic time; and where an event is
+/// looked for, after which a change must not come much later.
+const CHECK_INTERVAL: (f64, f64) = (2.0, 0.02);
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Goal {
@@ -311,7 +312,8 @@ impl Player {
 
     fn follow(&mut self, goal: Goal) {
         let (begun, until) = (WallClock::start(), goal.until());
-        let stretch = CHECK_INTERVAL * self.watch.model_at(self.watch.time()).characteristic_time();
+        let interval = if matches!(goal, Goal::First(..)) { CHECK_INTERVAL.1 } else { CHECK_INTERVAL.0 };
+        let stretch = interval * self.watch.model_at(self.watch.time()).characteristic_time();
         loop {
             let before = self.watch.time();
             let arrived = self.watch.advance((before + stretch).min(until));

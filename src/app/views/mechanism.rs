@@ -202,13 +202,13 @@ impl Sketch {
     }
 
     /// Draws the push -m a_b on the mass as an arrow, relative to the largest push. It lies at the height of
-    /// the mass on the inner side of the body, clear of flexures; from a body on a stop the largest push does
-    /// not reach the other stop.
+    /// the mass on the inner side of the body, clear of flexures and, unless these stand close together, of
+    /// stops.
     fn push_arrow(&self, context: &ViewContext<'_>, body: Rect, base_accel: f64) {
         let model = context.drawn.model(context.session);
         let (left, right) = model.stop_positions();
-        let between = left.zip(right).map(|(left, right)| (right - left) * context.span.scale(self.rect));
-        let free = between.map_or(f64::INFINITY, |points| points - 2.0 * f64::from(BESIDE_BODY));
+        let half = left.zip(right).map(|(left, right)| 0.5 * (right - left) * context.span.scale(self.rect));
+        let free = half.map_or(f64::INFINITY, |points| points - 2.0 * f64::from(BESIDE_BODY));
         let full = (f64::from(self.rect.width()) * 0.16).min(free.max(LEAST_ARROW));
         let room = model.largest_base_acceleration().max(1e-9);
         let push = (-base_accel / room * full) as f32;
