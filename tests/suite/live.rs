@@ -257,3 +257,19 @@ fn what_was_seen_is_the_path_with_its_corners() {
     assert!((30..=40).contains(&count), "{count}");
     assert!(watch.neighbour(t, false).unwrap().t < t);
 }
+
+/// A mass that rests on a stop which is moved outward leaves it from where it rested.
+#[test]
+fn a_stop_that_is_moved_away_leaves_the_mass_where_it_was() {
+    let model = |mm: f64| preset("paper", &[&format!("stops.travel_limit_mm={mm}"), "excitation=None"]);
+    let mut watch = Watch::new(&model(2.0));
+    watch.advance(0.1);
+    assert_eq!(watch.now().x, 2e-3);
+    watch.change(&model(6.0));
+    watch.advance(0.1001);
+    assert!(watch.events().iter().any(|event| event.kind == EventKind::Release));
+    assert!(watch.samples().iter().all(|sample| sample.x < 2.1e-3));
+    // one that is moved inward takes it along
+    watch.change(&model(1.0));
+    assert_eq!((watch.now().x, watch.samples().back().unwrap().x), (1e-3, 1e-3));
+}

@@ -64,7 +64,7 @@ fn a_key_that_does_nothing_says_why() {
     }
     for (key, why) in [
         (Key::K, "In a lesson no motion is pinned: leave the lesson first"),
-        (Key::H, "A lesson has hints in its tasks only: leave the lesson first"),
+        (Key::H, "There is no hint here: a task has one, until it is done"),
     ] {
         forget_notice(&mut harness);
         press(&mut harness, key);

@@ -215,7 +215,7 @@ fn a_ramp_is_told_by_what_happens_on_it() {
 fn unequal_stops_keep_their_sides() {
     for duration in ["10", "10.17"] {
         let (_, text) = of("uneven-stops", &[&format!("run.duration_s={duration}")]);
-        assert!(text.contains("between -1.5 and 1.7 mm"), "{text}");
+        assert!(text.contains("between \u{2212}1.5 and 1.7 mm"), "{text}");
     }
 }
 

@@ -323,18 +323,18 @@ fn buttons_ui(ui: &mut Ui, lesson: &OpenLesson, urged: bool) -> Option<LessonAct
     if next.on_hover_text("The next step (PageDown)").clicked() {
         action = Some(chosen);
     }
-    if lesson.is_covering() {
-        // with a separate id: Back, which takes its place, would inherit the keyboard focus
-        let reveal = ui.push_id("reveal", |ui| ui.button("Reveal")).inner;
-        let reveal = reveal.on_hover_text("Shows what it does, without a choice");
-        urge(&reveal, urged);
-        if reveal.clicked() {
-            action = Some(LessonAction::Reveal);
-        }
-    }
     let back = ui.add_enabled(lesson.number() > 0, Button::new("Back"));
     if back.on_hover_text("The step before (PageUp)").clicked() {
         action = Some(LessonAction::Back);
+    }
+    if lesson.lesson().steps.iter().any(|step| matches!(step, Step::Predict { .. })) {
+        // its place stays free, so that a second click meets no other button
+        let reveal = ui.add_visible(lesson.is_covering(), Button::new("Reveal"));
+        let reveal = reveal.on_hover_text("Shows what it does, without a choice");
+        urge(&reveal, urged && lesson.is_covering());
+        if reveal.clicked() {
+            action = Some(LessonAction::Reveal);
+        }
     }
     action
 }

@@ -12,18 +12,20 @@ use super::{ViewContext, empty_ui};
 
 /// Height in points of a row.
 const ROW: f32 = 18.0;
+/// Width in points of a table below which its headings have no units.
+const NARROW: f32 = 400.0;
 
 /// A column: heading, name in the table, share of the width, explanation.
 type Column = (&'static str, &'static str, f32, &'static str);
 
 const COLUMNS: [Column; 7] = [
-    ("time (s)", "t_s", 1.1, "Time."),
-    ("phase (°)", "phase_deg", 0.85, "Phase of the shaking, where it repeats."),
-    ("event", "kind", 0.95, "What happened."),
-    ("side", "side", 0.65, "The stop, or the well that is entered."),
-    ("v in", "v_in_m_per_s", 1.15, "Velocity before it in mm/s, to the right positive."),
-    ("v out", "v_out_m_per_s", 1.2, "Velocity after it in mm/s, to the right positive."),
-    ("lost", "lost_j", 1.0, "Kinetic energy that it took; on a compliant stop it goes bit by bit."),
+    ("time (s)", "t_s", 0.95, "Time."),
+    ("phase (°)", "phase_deg", 1.0, "Phase of the shaking, where it repeats."),
+    ("event", "kind", 1.0, "What happened."),
+    ("side", "side", 0.7, "The stop, or the well that is entered."),
+    ("v in", "v_in_m_per_s", 1.2, "Velocity before it in mm/s, to the right positive."),
+    ("v out", "v_out_m_per_s", 1.3, "Velocity after it in mm/s, to the right positive."),
+    ("lost", "lost_j", 0.95, "Kinetic energy that it took; on a compliant stop it goes bit by bit."),
 ];
 
 pub fn events_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
@@ -53,6 +55,7 @@ pub fn events_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let (heading, _) = ui.allocate_exact_size(egui::vec2(ui.available_width(), ROW), Sense::hover());
     for (place, (name, column, _, about)) in cells(heading).into_iter().zip(COLUMNS) {
         let name = match column {
+            _ if heading.width() < NARROW => name.split(" (").next().unwrap_or(name).to_owned(),
             "v_in_m_per_s" | "v_out_m_per_s" => format!("{name} (mm/s)"),
             "lost_j" => format!("{name} ({})", smaller(unit).1),
             _ => name.to_owned(),
@@ -76,7 +79,10 @@ fn list_ui(ui: &mut Ui, context: &mut ViewContext<'_>, count: usize, unit: (f64,
     let moved = context.memory.marked != marked && marked.is_some();
     let mut list = ScrollArea::vertical().auto_shrink(false).id_salt("events");
     let room = ui.available_rect_before_wrap();
-    let (height, in_list) = (room.height(), ui.rect_contains_pointer(room));
+    // whole rows
+    let height = ROW * (room.height() / ROW).floor().max(1.0);
+    let in_list = ui.rect_contains_pointer(room);
+    list = list.max_height(height);
     // scrolls to the present event, unless the pointer is over the list during playback
     let follows = moved && !(in_list && context.session.player.is_playing());
     if let Some(row) = marked.filter(|_| follows) {
@@ -135,7 +141,7 @@ fn cells(row: Rect) -> [Rect; COLUMNS.len()] {
 fn write(ui: &Ui, style: &Style, place: Rect, column: &str, text: &str, strong: bool) {
     let color = if strong { style.ink() } else { style.faint() };
     let (at, align) = match column {
-        "kind" | "side" => (place.left_center() + egui::vec2(10.0, 0.0), Align2::LEFT_CENTER),
+        "kind" | "side" => (place.left_center() + egui::vec2(8.0, 0.0), Align2::LEFT_CENTER),
         _ => (place.right_center(), Align2::RIGHT_CENTER),
     };
     let painter = ui.painter().with_clip_rect(place.intersect(ui.clip_rect()));

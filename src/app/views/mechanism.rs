@@ -31,8 +31,8 @@ const CLEAR: f32 = 6.0;
 const ARROW_HEAD: f32 = 12.0;
 /// Distance in points of the arrow from the body.
 const BESIDE_BODY: f32 = 6.0;
-/// Length in points of the arrow of the largest push, however near the stops are.
-const LEAST_ARROW: f64 = 30.0;
+/// Distance in points of the arrow from the ends of the stops.
+const BESIDE_STOPS: f32 = 10.0;
 
 /// The foot of a flexure is its part next to the clamp, one in `FOOT` of its points.
 const FOOT: usize = 5;
@@ -95,8 +95,14 @@ fn drawing_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect) {
         painter.rect_stroke(body.expand(OUTLINE), 5.0, stroke, egui::StrokeKind::Middle);
     }
     rings(ui, context, rect, middle);
-    let arrow = body.translate(vec2(0.0, -beside.lift() * half.y));
-    sketch.push_arrow(context, arrow, state.base_accel);
+    // clear of stops, and of what is beside the flexures
+    let has_stops = context.drawn.model(context.session).stop_positions() != (None, None);
+    let y = match (has_stops, beside.stands_below()) {
+        (false, _) => middle - beside.lift() * half.y,
+        (true, false) => heights.1 + BESIDE_STOPS,
+        (true, true) => heights.0 - BESIDE_STOPS,
+    };
+    sketch.push_arrow(context, body, y, state.base_accel);
     let is_new = !was_dragged(ui) && context.cover == Cover::None && context.drawn == Drawn::WithGhosts;
     let mass = if is_new { "mass: drag me" } else { "mass" };
     sketch.part_names(context, heights, (body, mass));
@@ -201,15 +207,11 @@ impl Sketch {
         }
     }
 
-    /// Draws the push -m a_b on the mass as an arrow, relative to the largest push. It lies at the height of
-    /// the mass on the inner side of the body, clear of flexures and, unless these stand close together, of
-    /// stops.
-    fn push_arrow(&self, context: &ViewContext<'_>, body: Rect, base_accel: f64) {
+    /// Draws the push -m a_b on the mass as an arrow at the height `y`, relative to the largest push, on the
+    /// inner side of the body.
+    fn push_arrow(&self, context: &ViewContext<'_>, body: Rect, y: f32, base_accel: f64) {
         let model = context.drawn.model(context.session);
-        let (left, right) = model.stop_positions();
-        let half = left.zip(right).map(|(left, right)| 0.5 * (right - left) * context.span.scale(self.rect));
-        let free = half.map_or(f64::INFINITY, |points| points - 2.0 * f64::from(BESIDE_BODY));
-        let full = (f64::from(self.rect.width()) * 0.16).min(free.max(LEAST_ARROW));
+        let full = f64::from(self.rect.width()) * 0.16;
         let room = model.largest_base_acceleration().max(1e-9);
         let push = (-base_accel / room * full) as f32;
         if !model.is_shaken() || push.abs() <= 3.0 {
@@ -219,7 +221,7 @@ impl Sketch {
         let inner = if body.center().x > zero { -1.0 } else { 1.0 };
         let near = body.center().x + inner * (body.width() * 0.5 + BESIDE_BODY);
         let far = near + inner * push.abs();
-        let (y, stroke) = (body.center().y, self.style.arrow_stroke());
+        let stroke = self.style.arrow_stroke();
         let (tail, tip) = if push * inner > 0.0 { (near, far) } else { (far, near) };
         let head = ARROW_HEAD.min(push.abs()) * push.signum();
         self.painter.line_segment([pos2(tail, y), pos2(tip - 0.5 * head, y)], stroke);

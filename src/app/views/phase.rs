@@ -21,7 +21,7 @@ use super::context::sized_ui;
 use super::ghosts::ghosts;
 use super::hand::axes_input;
 use super::labels::pointer_rests;
-use super::pane::{LEGEND, Pane, Place, kept_pane_ui};
+use super::pane::{Pane, Place, kept_pane_ui};
 use super::stops::stops_ui;
 use super::view::Axis;
 use super::{LegendRow, View, ViewContext};
@@ -52,6 +52,8 @@ const START: f32 = 2.0;
 const LEAST_START: f32 = 1.0;
 /// Width in points of the button beside the legend.
 const BUTTON: f32 = 88.0;
+/// Its height in points.
+const POINTS_ROW: f32 = 15.0;
 
 /// A point of the picture: displacement in mm, velocity in mm/s.
 type State = (f64, f64);
@@ -154,12 +156,13 @@ pub(super) fn starts(painter: &egui::Painter, context: &ViewContext<'_>, pane: &
 /// Button in the row of the legend that hides the path.
 fn points_ui(ui: &mut Ui, area: egui::Rect, points_only: &mut bool) {
     let right = LegendRow::of(ui, area).right - 4.0;
-    let row = area.with_max_y(area.top() + LEGEND).with_max_x(right);
+    // as high as a row of the legend, whose next rows may come below it
+    let row = area.with_max_y(area.top() + POINTS_ROW).with_max_x(right);
     let layout = egui::Layout::right_to_left(egui::Align::Center);
     let builder = egui::UiBuilder::new().max_rect(row).layout(layout);
     ui.scope_builder(builder, |ui| {
-        ui.spacing_mut().interact_size.y = LEGEND - 4.0;
-        ui.spacing_mut().icon_width = 12.0;
+        ui.spacing_mut().interact_size.y = POINTS_ROW;
+        (ui.spacing_mut().icon_width, ui.spacing_mut().button_padding.y) = (11.0, 0.0);
         let text = egui::RichText::new("points only").small();
         let hover = "One point a forcing period, always at the same phase, and no path: motion that repeats \
                      is a few points, chaos is many.";

@@ -326,7 +326,9 @@ fn number_rows(columns: &[Column], now: usize, with_threshold: bool) -> Vec<Row>
 
 fn difference(value: f64, present: f64, decimals: &dyn Fn(f64) -> usize) -> String {
     let decimals = decimals(value.abs().max(present.abs()));
-    let text = with_minus(&format!("{:+.decimals$}", value - present));
+    // of the numbers as they are written
+    let written = |value: f64| format!("{value:.decimals$}").parse().unwrap_or(value);
+    let text = with_minus(&format!("{:+.decimals$}", written(value) - written(present)));
     // a difference that rounds to zero has no sign
     let is_zero = text.trim_start_matches(['+', '\u{2212}', '0', '.']).is_empty();
     if is_zero { "same".to_owned() } else { text }

@@ -130,15 +130,30 @@ fn vertical_ends(branches: &Branches<'_>, shown: Shown, span: &Span) -> (f64, f6
     (0.0, 1.08 * all.filter(|value| value.is_finite()).fold(1e-3, f64::max))
 }
 
+/// The fine ones among the runs. Between coarse ones neither a line nor a difference is known.
+fn fine<'a>(parts: &[(usize, Visit)], branches: &Branches<'a>) -> Branches<'a> {
+    let is_fine = |visit: &&Visit| {
+        let same =
+            |part: &&(usize, Visit)| part.1.direction == visit.direction && part.1.value == visit.value;
+        parts.iter().filter(|part| part.0 == 1).any(|part| same(&part))
+    };
+    [0, 1].map(|direction| branches[direction].iter().copied().filter(|visit| is_fine(visit)).collect())
+}
+
 /// The runs of both directions over the field: stroboscopic displacements as points, any other quantity as a
-/// line, and the intervals in which the two directions differ.
-fn chart(branches: &Branches<'_>, shown: Shown, axes: (PlotAxis, PlotAxis), here: Option<f64>) -> Chart {
+/// line between fine runs, and the intervals in which the two directions differ.
+fn chart(
+    (branches, fine): (&Branches<'_>, &Branches<'_>),
+    shown: Shown,
+    axes: (PlotAxis, PlotAxis),
+    here: Option<f64>,
+) -> Chart {
     let mut panel = Panel::new(axes.0, axes.1);
-    let differing = differing(branches, panel.y.high - panel.y.low);
+    let differing = differing(fine, panel.y.high - panel.y.low);
     panel.layer(Role::Closer, "the two differ", Marks::Spans(differing));
     panel.draw(Role::Drive, Marks::Verticals(here.into_iter().collect()));
-    let [up, down] = branches;
-    for (branch, role, name) in [(up, Role::Motion, "turned up"), (down, Role::Down, "turned down")] {
+    for (i, role, name) in [(0, Role::Motion, "turned up"), (1, Role::Down, "turned down")] {
+        let branch = &branches[i];
         let of_visit = |visit: &&Visit| (visit.value, number(visit, shown));
         let strobed = |visit: &&Visit| {
             let value = visit.value;
@@ -146,9 +161,12 @@ fn chart(branches: &Branches<'_>, shown: Shown, axes: (PlotAxis, PlotAxis), here
         };
         let marks = match shown.0 {
             WalkQuantity::Strobes => Marks::Cloud(branch.iter().flat_map(strobed).collect()),
-            _ => Marks::Path(branch.iter().map(of_visit).collect()),
+            _ => Marks::Path(fine[i].iter().map(of_visit).collect()),
         };
         panel.layer(role, name, marks);
+        if shown.0 != WalkQuantity::Strobes && fine[i].len() < branch.len() {
+            panel.draw(role, Marks::Cloud(branch.iter().map(of_visit).collect()));
+        }
     }
     Chart::stack(vec![panel], "", Table::new())
 }
@@ -165,7 +183,9 @@ fn picture_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axis: &SweepAxis, area
     let is_whole = walks.found.is_whole();
     let (parts, current) = walks.found.parts();
     let of_field = walks.found.question().is_some_and(|question| question.axis.field == axis.field);
-    let branches = branches(if of_field { parts } else { &[] });
+    let parts = if of_field { parts } else { &[] };
+    let branches = branches(parts);
+    let fine = fine(parts, &branches);
     let powers = branches.iter().flatten().map(|visit| load_power(visit));
     let (per_watt, unit) = suited_unit("W", powers);
     let shown = (quantity, per_watt);
@@ -185,7 +205,7 @@ fn picture_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axis: &SweepAxis, area
     if !current {
         child.set_opacity(0.4);
     }
-    let chart = chart(&branches, shown, axes, here);
+    let chart = chart((&branches, &fine), shown, axes, here);
     let pane = pane_ui(&mut child, context.memory, View::UpAndDown, &style, area, chart);
     let ball = here.zip(live).and_then(|point| pane.place(0, point));
     let frame = pane.frame(0).unwrap_or(area);
@@ -200,9 +220,13 @@ fn picture_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axis: &SweepAxis, area
     if let Some((value, _)) = pane.response.hover_pos().and_then(|at| pane.values_at(0, at)) {
         let text = reading(&branches, value.clamp(axis.from, axis.to), quantity);
         write(frame.right_top() + vec2(-4.0, 4.0), Align2::RIGHT_TOP, &text, style.ink());
+        if let Some(at) = pane.place(0, (value.clamp(axis.from, axis.to), low)) {
+            child.painter().vline(at.x, frame.y_range(), egui::Stroke::new(1.0, style.faint()));
+        }
     }
     if !is_whole && area.height() > 220.0 {
-        let text = "not complete yet";
+        let is_coarse = [0, 1].iter().any(|i| fine[*i].len() < branches[*i].len());
+        let text = if is_coarse { "in coarse steps so far" } else { "not complete yet" };
         write(area.right_bottom() - vec2(8.0, 3.0), Align2::RIGHT_BOTTOM, text, style.faint());
     }
     if !ui.input(|input| input.modifiers.shift) {

@@ -139,7 +139,12 @@ pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let over = ui.painter().with_clip_rect(frame.expand(BALL + 1.0).intersect(area));
     balls.iter().for_each(|(at, ghost)| ghost.ball(&over, &style, *at, BALL));
     // set off from a wall, over which it stands as a mark
-    over.circle_stroke(at, BALL + 2.0, Stroke::new(2.5, style.ground()));
+    let is_over = |stop: Option<f64>| {
+        stop.is_some_and(|x| (context.span.screen_from_world(x, frame) - at.x).abs() < BALL + WALL)
+    };
+    if is_over(left) || is_over(right) {
+        over.circle_stroke(at, BALL + 2.0, Stroke::new(2.5, style.ground()));
+    }
     over.circle(at, BALL, style.mass(), Stroke::new(1.5, style.mass_edge()));
     // its displacement is that of its middle
     over.circle_filled(at, MIDDLE, style.mass_edge());
@@ -182,8 +187,7 @@ fn feet(model: &Model, barrier: &Barrier) -> Option<[f64; 2]> {
 
 /// Draws the height of the barrier as a bracket below its top, with its name where no curve comes that the
 /// `largest` push tips to either side; and the names of the wells in a row below, without those that do not
-/// fit. Between stops inside the wells the bracket ends at the energy that the mass has at a stop, unless it
-/// would be too short to be seen.
+/// fit. Between stops inside the wells the bracket has a mark at the energy that the mass has at each stop.
 fn landmarks(
     painter: &egui::Painter,
     context: &ViewContext<'_>,
@@ -208,19 +212,18 @@ fn landmarks(
     let feet = feet(model, &barrier);
     let heights = feet.map_or([joule; 2], |feet| feet.map(|foot| potential(barrier.x) - potential(foot)));
     let below_top = |height: f64| place(barrier.x, (joule - height) * level.per_joule);
-    let (top, mut ends) = (below_top(0.0), heights.map(below_top));
-    let lower = |ends: [Pos2; 2]| if ends[0].y > ends[1].y { ends[0] } else { ends[1] };
-    if lower(ends).y - top.y < 4.0 * BRACKET {
-        ends = [below_top(joule); 2];
-    }
-    let foot = lower(ends);
+    let (top, foot) = (below_top(0.0), below_top(joule));
     if foot.y - top.y > 4.0 * BRACKET && foot.y < rect.bottom() {
         let stroke = Stroke::new(style.width(1.3), style.faint());
         let [left, right] = [-BRACKET, BRACKET].map(|aside| vec2(aside, 0.0));
-        let lines =
-            [[top + left, top + right], [top, foot], [ends[0], ends[0] + left], [ends[1], ends[1] + right]];
-        taken.lines.extend(lines.map(|line| line.to_vec()));
-        painter.extend(lines.map(|line| Shape::line_segment(line, stroke)));
+        let mut lines = vec![[top + left, top + right], [top, foot], [foot + left, foot + right]];
+        if feet.is_some() {
+            // as high as a mass on each stop
+            let [on_left, on_right] = heights.map(below_top);
+            lines.extend([[on_left, on_left + left], [on_right, on_right + right]]);
+        }
+        taken.lines.extend(lines.iter().map(|line| line.to_vec()));
+        painter.extend(lines.into_iter().map(|line| Shape::line_segment(line, stroke)));
     }
     let zero = place(barrier.x, 0.0).y;
     taken.lines.push(vec![pos2(rect.left(), zero), pos2(rect.right(), zero)]);

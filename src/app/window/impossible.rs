@@ -25,9 +25,9 @@ impl Window {
             }
             // a pinned motion may be the answer to a lesson's question, as the ways to cross may
             C::Pin(_) => (in_lesson, "In a lesson no motion is pinned: leave the lesson first"),
-            C::Ways => (in_lesson, "A lesson has hints in its tasks only: leave the lesson first"),
+            C::Ways => (in_lesson, "There is no hint here: a task has one, until it is done"),
             C::OpenMeasured => (in_lesson, "Leave the lesson first"),
-            C::BestStops if in_lesson => (true, "Leave the lesson first"),
+            C::BestStops if in_lesson => (true, "The best stops may be an answer: leave the lesson first"),
             C::BestStops => (!session.model().is_shaken(), "Nothing shakes the mass: shake it first."),
             C::LeaveLesson | C::LessonAnew | C::LecturerNotes => (!in_lesson, "No lesson is open"),
             C::ArrangeOwn => (

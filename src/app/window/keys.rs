@@ -1,6 +1,8 @@
 //! Keys of the commands, and the list of keys that F1 shows.
 
-use eframe::egui::{self, Context, Grid, Key, KeyboardShortcut, Modifiers, Popup, RichText, Ui};
+use eframe::egui::{
+    self, Align, Context, Key, KeyboardShortcut, Label, Layout, Modifiers, Popup, RichText, Ui, vec2,
+};
 
 use crate::app::session::player::SPEEDS;
 use crate::app::ui::settings::Setting;
@@ -15,7 +17,11 @@ pub(super) const SPEED_KEYS: [Key; SPEEDS.len()] =
 /// Headings of the list of keys, in two columns.
 const GROUPS: [&[&str]; 2] = [&["Time", "Hands", "Lesson"], &["Views", "Scene"]];
 /// Width in points from which the two columns are side by side.
-const SIDE_BY_SIDE: f32 = 800.0;
+const SIDE_BY_SIDE: f32 = 880.0;
+/// Width in points of the list, of its column of keys, and between two columns of commands.
+const LIST: f32 = 1140.0;
+const KEYS: f32 = 150.0;
+const BETWEEN: f32 = 24.0;
 
 /// The commands of the pressed keys; none while text is edited. To be called only while no dialog is open.
 pub fn pressed(ctx: &Context, filled: bool) -> Vec<Command> {
@@ -81,33 +87,44 @@ fn rows(ctx: &Context, heading: &str, projector: bool) -> Vec<(String, &'static 
 /// Height in points of a row of the list.
 const ROW: f32 = 20.0;
 
-fn group_ui(ui: &mut Ui, group: &str, projector: bool) {
+/// Rows of `width` points under a heading; a long text is wrapped.
+fn group_ui(ui: &mut Ui, group: &str, projector: bool, width: f32) {
     ui.label(RichText::new(group).heading());
     ui.spacing_mut().interact_size.y = ROW;
-    Grid::new(group).num_columns(2).spacing([16.0, 2.0]).show(ui, |ui| {
-        for (keys, does) in rows(ui.ctx(), group, projector) {
-            ui.label(keys);
-            ui.label(does);
-            ui.end_row();
-        }
-    });
+    let left = Layout::left_to_right(Align::Center);
+    for (keys, does) in rows(ui.ctx(), group, projector) {
+        ui.horizontal_top(|ui| {
+            ui.allocate_ui_with_layout(vec2(KEYS, ROW), left, |ui| {
+                ui.set_min_width(KEYS);
+                ui.label(keys)
+            });
+            let text = ui.available_width().min(width - KEYS);
+            ui.allocate_ui(vec2(text, ROW), |ui| ui.add(Label::new(does).wrap()));
+        });
+    }
     ui.add_space(8.0);
 }
 
 /// Shows the list of keys, opened at time `opened` in s. Returns `false` once it is to be closed.
 pub fn list_ui(ui: &Ui, opened: f64, projector: bool) -> bool {
-    let (is_read, is_closed) = dialog_ui(ui, ("shortcuts", 960.0), ("Keys", 4.0), |ui| {
+    let (is_read, is_closed) = dialog_ui(ui, ("shortcuts", LIST), ("Keys", 4.0), |ui| {
         let room = (ui.ctx().content_rect().height() - 130.0).max(120.0);
         // the list is scrolled to its top whenever it is opened
         let list = egui::ScrollArea::vertical().id_salt(opened.to_bits());
         list.max_height(room).min_scrolled_height(room).show(ui, |ui| {
-            if ui.available_width() < SIDE_BY_SIDE {
-                return GROUPS.concat().iter().for_each(|group| group_ui(ui, group, projector));
+            let width = ui.available_width();
+            if width < SIDE_BY_SIDE {
+                return GROUPS.concat().iter().for_each(|group| group_ui(ui, group, projector, width));
             }
+            let width = 0.5 * (width - BETWEEN);
             ui.horizontal_top(|ui| {
+                ui.spacing_mut().item_spacing.x = BETWEEN;
                 for groups in GROUPS {
-                    ui.vertical(|ui| groups.iter().for_each(|group| group_ui(ui, group, projector)));
-                    ui.add_space(24.0);
+                    ui.vertical(|ui| {
+                        ui.set_width(width);
+                        ui.spacing_mut().item_spacing.x = 8.0;
+                        groups.iter().for_each(|group| group_ui(ui, group, projector, width));
+                    });
                 }
             });
         });

@@ -32,6 +32,9 @@ pub(super) const CANNOT_OPEN_LESSON: &str = "This lesson cannot be opened";
 /// Distance in points between a control and the outline around it.
 const OUTLINE_DISTANCE: f32 = 2.0;
 
+/// Number of the letters that count votes at a prediction with as many options.
+const MOST_LETTERS: usize = 3;
+
 #[derive(Default)]
 pub(super) struct Lessons {
     pub open: Option<OpenLesson>,
@@ -270,7 +273,10 @@ impl Window {
             LessonAction::Reveal => lesson.reveal(),
             LessonAction::Finish => return self.finish_lesson(),
             LessonAction::Vote(..) if !lesson.is_covering() => {
-                return self.messages.notify("The answer is shown: votes are no longer counted");
+                return self.messages.notify(match lesson.options().is_empty() {
+                    true => "This step has nothing to vote on",
+                    false => "The answer is shown: votes are no longer counted",
+                });
             }
             LessonAction::Vote(option, more) => {
                 lesson.vote(option, more);
@@ -347,7 +353,13 @@ impl Window {
         self.show_named_views();
         let (Some(lesson), Turn::Show(scene, plays)) = (&self.lessons.open, turn) else { return };
         match self.session_on(lesson, *scene, plays) {
-            Ok(session) => (self.session, self.memory) = (session, self.memory.for_another_step()),
+            Ok(mut session) => {
+                // what was computed of the same question is not computed again
+                let chosen = session.explore.walks.chosen.take();
+                session.explore = std::mem::take(&mut self.session.explore);
+                session.explore.walks.chosen = chosen;
+                (self.session, self.memory) = (session, self.memory.for_another_step());
+            }
             Err(error) => {
                 self.messages.alert("This step of the lesson cannot be shown", error.to_string());
                 self.leave_lesson();
@@ -364,23 +376,28 @@ impl Window {
         }
         let covers = lesson.is_covering();
         if covers && ctx.memory(|memory| memory.focused().is_none()) {
-            keys.push(plain(Key::Enter, LessonAction::Next));
+            let has_votes = lesson.answer().votes.iter().any(|votes| *votes > 0);
+            keys.push(plain(Key::Enter, if has_votes { LessonAction::Reveal } else { LessonAction::Next }));
         }
-        for option in 0..lesson.options().len() {
+        // also at a step without options, where no other command is meant by a letter with Shift
+        for option in 0..lesson.options().len().max(MOST_LETTERS) {
             let names = [letter(option).to_string(), (option + 1).to_string()];
             let pair = names.iter().filter_map(|name| Key::from_name(name));
-            let chosen = pair.clone().filter(|_| covers);
+            let chosen = pair.clone().filter(|_| covers && option < lesson.options().len());
             keys.extend(chosen.map(|key| plain(key, LessonAction::Choose(option))));
             let vote = LessonAction::Vote(option, 1);
             keys.extend(pair.take(1).map(|key| (Modifiers::SHIFT, key, vote)));
         }
         // keys with Shift first: the same key without it would consume them
         keys.sort_by_key(|key| !key.0.shift);
-        let is_pressed = |(modifiers, key, _): &(Modifiers, Key, LessonAction)| {
-            ctx.input_mut(|input| input.consume_key(*modifiers, *key))
-        };
-        if let Some((.., act)) = keys.into_iter().find(is_pressed) {
-            self.act_in_lesson(act);
+        // all votes that were pressed since the last frame, but one of the other actions
+        let mut has_acted = false;
+        for (modifiers, key, act) in keys {
+            let presses = ctx.input_mut(|input| input.count_and_consume_key(modifiers, key));
+            let is_vote = matches!(act, LessonAction::Vote(..));
+            let count = if is_vote { presses } else { presses.min(usize::from(!has_acted)) };
+            has_acted |= !is_vote && count > 0;
+            (0..count).for_each(|_| self.act_in_lesson(act));
         }
     }
 

@@ -77,6 +77,7 @@ impl Window {
         let is_close = |a: f32, b: f32| (a - b).abs() < 0.01 * b;
         if !zoom.zip(self.zoom).map_or(zoom == self.zoom, |(zoom, applied)| is_close(zoom, applied)) {
             self.zoom = zoom;
+            self.deferred.scale = ctx.zoom_factor() / zoom.unwrap_or(1.0);
             ctx.set_zoom_factor(zoom.unwrap_or(1.0));
         }
         self.window_size.follow(ctx);
@@ -370,6 +371,7 @@ impl eframe::App for Window {
     }
 
     fn raw_input_hook(&mut self, ctx: &egui::Context, input: &mut egui::RawInput) {
+        self.deferred.rescale(ctx.input(|input| input.pointer.latest_pos()), input);
         if self.deferred.hold_back(input) {
             ctx.request_repaint();
         }
@@ -405,12 +407,29 @@ pub fn begin(creation: &CreationContext<'_>, spec: Option<&str>, dark: bool) -> 
 /// All events between two frames arrive together in the next frame, and a slider takes the last position of
 /// the pointer as the one at which it was released. If a frame takes long, a pointer that moves on after the
 /// release would drag the slider along.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 struct DeferredInput {
     events: Vec<egui::Event>,
+    /// The zoom before over that of the next frame; 1 where it stays.
+    scale: f32,
+}
+
+impl Default for DeferredInput {
+    fn default() -> Self {
+        Self { events: Vec::new(), scale: 1.0 }
+    }
 }
 
 impl DeferredInput {
+    /// After a change of the zoom puts the pointer, which was at this place in points, where it is now: egui
+    /// keeps its place until it is moved.
+    fn rescale(&mut self, pointer: Option<egui::Pos2>, input: &mut egui::RawInput) {
+        let scale = std::mem::replace(&mut self.scale, 1.0);
+        if let Some(at) = pointer.filter(|_| scale != 1.0) {
+            input.events.insert(0, egui::Event::PointerMoved((scale * at.to_vec2()).to_pos2()));
+        }
+    }
+
     /// Leaves in `input` the deferred and new events up to the first release. Returns whether more wait.
     fn hold_back(&mut self, input: &mut egui::RawInput) -> bool {
         let mut events = std::mem::take(&mut self.events);
@@ -452,5 +471,17 @@ mod tests {
         let mut input = RawInput::default();
         assert!(!deferred.hold_back(&mut input));
         assert_eq!(input.events, [moved(10.0)]);
+    }
+
+    #[test]
+    fn after_a_change_of_the_zoom_the_pointer_is_where_it_was_on_the_screen() {
+        let mut deferred = DeferredInput { scale: 0.8, ..DeferredInput::default() };
+        let mut input = RawInput::default();
+        deferred.rescale(Some(pos2(100.0, 50.0)), &mut input);
+        assert_eq!(input.events, [Event::PointerMoved(pos2(80.0, 40.0))]);
+        // once
+        let mut input = RawInput::default();
+        deferred.rescale(Some(pos2(80.0, 40.0)), &mut input);
+        assert!(input.events.is_empty());
     }
 }

@@ -116,7 +116,9 @@ impl Window {
             Command::FreeAxes => self.memory.free_axes(self.active_view()),
             Command::Zoom { upwards, closer } => self.memory.zoom_by_key(self.active_view(), upwards, closer),
             Command::Fill => {
-                let wanted = self.memory.hovered.unwrap_or(View::Well);
+                let shown = |view: &View| self.tiling.place_of(*view).is_some();
+                let first = || View::ALL.into_iter().find(shown);
+                let wanted = self.memory.hovered.filter(shown).or_else(first).unwrap_or(View::Well);
                 self.filled = self.filled.is_none().then_some(wanted);
             }
             Command::Cover => self.covered = !self.covered,

@@ -213,16 +213,18 @@ pub fn length_unit(largest: f64) -> (f64, &'static str) {
 /// A range in m near stops in m as text, `between 5.6 and 7.3 mm`; its decimals distinguish the ends.
 pub fn between(low: f64, high: f64, stops: (Option<f64>, Option<f64>)) -> String {
     let (factor, unit) = length_unit(low.abs().max(high.abs()));
-    let text = |m: f64, decimals: usize| format!("{:.decimals$}", m * factor + 0.0);
+    let text = |m: f64, decimals: usize| with_minus(&format!("{:.decimals$}", m * factor + 0.0));
     let apart = |decimals: &usize| text(low, *decimals) != text(high, *decimals);
     if unit == "m" {
         let decimals = (2..=6).find(apart).unwrap_or(2);
         return format!("between {} and {} m", text(low, decimals), text(high, decimals));
     }
     match (1..=6).find(apart) {
-        Some(1) => format!("between {} and {} mm", mm_beside(low, stops), mm_beside(high, stops)),
+        Some(1) => {
+            with_minus(&format!("between {} and {} mm", mm_beside(low, stops), mm_beside(high, stops)))
+        }
         Some(decimals) => format!("between {} and {} mm", text(low, decimals), text(high, decimals)),
-        None => format!("at {} mm", mm_beside(high, stops)),
+        None => with_minus(&format!("at {} mm", mm_beside(high, stops))),
     }
 }
 
@@ -302,8 +304,8 @@ mod tests {
         let open = (None, None);
         assert_eq!(between(5.61e-3, 7.29e-3, open), "between 5.6 and 7.3 mm");
         assert_eq!(between(6.0012e-3, 6.0037e-3, open), "between 6.001 and 6.004 mm");
-        assert_eq!(between(-1.0001, -1.0, open), "between -1.0001 and -1.0000 m");
-        assert_eq!(between(-1.5363, 1.5, open), "between -1.54 and 1.50 m");
+        assert_eq!(between(-1.0001, -1.0, open), "between \u{2212}1.0001 and \u{2212}1.0000 m");
+        assert_eq!(between(-1.5363, 1.5, open), "between \u{2212}1.54 and 1.50 m");
         assert_eq!(between(2e-3, 2e-3, open), "at 2.0 mm");
     }
 
@@ -318,6 +320,6 @@ mod tests {
         assert_eq!(mm_beside(7.9e-3, (None, None)), "7.9");
         let lengths = [1.4435, 1.5363, 0.2345, 0.0999, 7.9e-3].map(|m| length_beside(m, (None, None)));
         assert_eq!(lengths, ["1.44 m", "1.54 m", "234 mm", "99.9 mm", "7.9 mm"]);
-        assert_eq!(between(-2.25e-3, 1.11e-3, stops(2.25)), "between -2.25 and 1.1 mm");
+        assert_eq!(between(-2.25e-3, 1.11e-3, stops(2.25)), "between \u{2212}2.25 and 1.1 mm");
     }
 }

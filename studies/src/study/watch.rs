@@ -60,7 +60,7 @@ impl Watch {
             now,
             step: sampling_step(model),
         };
-        watch.take(LiveOutput { samples: vec![now], events: Vec::new() });
+        watch.take(LiveOutput { samples: vec![now], events: Vec::new() }, None);
         watch.advance(0.0);
         watch
     }
@@ -102,7 +102,7 @@ impl Watch {
             self.ledgers.push_back((mark, self.live.ledger()));
         }
         arrived = arrived && self.live.advance(to, &times[done..], &mut passage);
-        self.take(passage);
+        self.take(passage, None);
         self.now = self.live.state();
         arrived
     }
@@ -138,8 +138,9 @@ impl Watch {
         }
         let mut passage = LiveOutput::default();
         change(&mut self.live, &mut passage);
-        self.take(passage);
         self.now = self.live.state();
+        // a mass that a stop was moved away from is not on it any more
+        self.take(passage, Some(self.now.x));
     }
 
     /// The present time in s.
@@ -278,16 +279,17 @@ impl Watch {
         found.map(|i| self.events[i])
     }
 
-    /// Stores the samples and events of a passage, with samples at its events where the path has corners.
-    fn take(&mut self, passage: LiveOutput) {
+    /// Stores the samples and events of a passage, with samples at its events where the path has corners: at
+    /// the stop that was touched, or if the present state or model was changed at `changed` in m.
+    fn take(&mut self, passage: LiveOutput, changed: Option<f64>) {
         let mut events = passage.events.iter().peekable();
         for sample in &passage.samples {
             while let Some(event) = events.next_if(|event| event.t <= sample.t) {
-                self.corner(event);
+                self.corner(event, changed);
             }
             self.samples.push_back(*sample);
         }
-        events.for_each(|event| self.corner(event));
+        events.for_each(|event| self.corner(event, changed));
         self.events.extend(passage.events);
         keep_last(&mut self.samples, MAX_KEPT_SAMPLES);
         self.dropped_events += keep_last(&mut self.events, MAX_KEPT_EVENTS);
@@ -295,9 +297,10 @@ impl Watch {
         self.models.forget(self.begin());
     }
 
-    fn corner(&mut self, event: &Event) {
+    fn corner(&mut self, event: &Event, changed: Option<f64>) {
         let (left, right) = self.live.model().stop_positions();
-        let Some(x) = (if event.side == Side::Left { left } else { right }) else { return };
+        let stop = if event.side == Side::Left { left } else { right };
+        let Some(x) = changed.or(stop) else { return };
         let base_accel = self.live.base_acceleration(event.t);
         // Events have no electrical state; NaN becomes a missing value in a table.
         let electrical = if self.live.model().has_electrical_state() { f64::NAN } else { 0.0 };
