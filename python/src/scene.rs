@@ -288,6 +288,7 @@ impl Simulation {
             let times = sample_times(shown.scene(), model, &Sampling::At(Vec::new()), until_settled);
             let keep = Keep { times: times.unwrap_or_default(), events: false, until_settled };
             let (run, trace) = simulate_with_trace(model, &keep, asked.ranges.x, Some(asked.cancel));
+            let trace = RunPanel::complete(&panels, trace, model, asked.cancel);
             let ranges = Ranges { x: None, y: asked.ranges.y };
             Ok(run_chart(&trace, &run.summary, (model.mechanism(), model.mass()), &panels, ranges))
         };

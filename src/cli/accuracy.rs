@@ -4,12 +4,12 @@
 use std::path::Path;
 
 use clap::Args;
-use interwell::output::{accuracy_chart, aligned};
+use interwell::output::{accuracy_chart, aligned, scene_accuracy_chart};
 use interwell::scene::Document;
-use interwell::study::Task;
 use interwell::study::accuracy::methods::Scheme;
 use interwell::study::accuracy::scene::{Unfit, scene_table, step_name, step_size, tolerances, trust};
 use interwell::study::accuracy::{PROBLEMS, Report, Selection, Stopped, accuracy, description, names};
+use interwell::study::{Task, stop_positions};
 
 use super::progress::bar_on_terminal;
 use super::support::{Watch, inputs, load_model};
@@ -18,7 +18,7 @@ use super::{Common, Failure, Output, Outputs, Picture, PlotOptions, interrupt, r
 #[derive(Debug, Args)]
 pub struct Arguments {
     /// Scene file or built-in scene whose run is examined; without one the built-in problems and cases
-    #[arg(value_name = "SCENE", conflicts_with_all = ["case", "list", "picture"])]
+    #[arg(value_name = "SCENE", conflicts_with_all = ["case", "list"])]
     pub scene: Option<String>,
 
     /// With a scene: run it in fixed steps too, each in s or as a fraction such as 1/60; a step that ends
@@ -28,7 +28,7 @@ pub struct Arguments {
 
     /// With --step-s: the method, euler (semi-implicit), verlet or rk4 (repeatable) [default: all]
     #[arg(long, value_name = "NAME", requires = "step_s",
-          value_parser = SCHEMES.map(|(word, _)| word))]
+          value_parser = Scheme::ALL.map(Scheme::word))]
     pub method: Vec<String>,
 
     /// Run this case alone (repeatable): p1, p2 or flexures for speed against error, or a hard case
@@ -39,7 +39,8 @@ pub struct Arguments {
     #[arg(long)]
     pub list: bool,
 
-    /// The picture: error over time, of the problems p1, p2 and flexures.
+    /// The picture: error over processor time, of the problems p1, p2 and flexures, or of the scene, with its
+    /// runs in fixed steps.
     #[command(flatten)]
     pub plot: PlotOptions,
 }
@@ -47,13 +48,13 @@ pub struct Arguments {
 /// Runs the selected problems and cases and shows the results. Returns an error, after all is written, if a
 /// case falls short.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
+    let picture = Picture::new(&options.plot, common)?;
     if let Some(scene) = &options.scene {
-        return of_scene(scene, options, common);
+        return of_scene(scene, options, picture, common);
     }
     if let Some(option) = common.given(&["set", "tolerance"]) {
         refuse!("--{option} needs a SCENE, such as interwell --headless accuracy paper --{option} ..");
     }
-    let picture = Picture::new(&options.plot, common)?;
     let selection = Selection::of(&options.case)?;
     if options.list {
         return write_alone(Output::DATA, Path::new("-"), &list(&options.case));
@@ -130,10 +131,16 @@ fn list(wanted: &[String]) -> String {
     names().filter(is_shown).map(description).collect()
 }
 
-fn of_scene(spec: &str, options: &Arguments, common: &Common) -> Result<(), Failure> {
+fn of_scene(
+    spec: &str,
+    options: &Arguments,
+    picture: Option<Picture>,
+    common: &Common,
+) -> Result<(), Failure> {
     let steps = options.step_s.as_deref().map_or_else(|| Ok(Vec::new()), steps)?;
     let (document, model) = load_model(spec, common)?;
-    let mut outputs = Outputs::new(&inputs(spec, &document)).with_rows(common.out.as_deref())?;
+    let outputs = Outputs::new(&inputs(spec, &document)).with_rows(common.out.as_deref())?;
+    let mut outputs = outputs.with_picture(picture)?;
     let cancel = interrupt::listen();
 
     let trusted = trust(&model, cancel).ok_or_else(Failure::interrupted)?;
@@ -144,7 +151,7 @@ fn of_scene(spec: &str, options: &Arguments, common: &Common) -> Result<(), Fail
     let cost = tolerances(&model, cancel).ok_or_else(Failure::interrupted)?;
     let mut stepped = Vec::new();
     let is_chosen = |word: &str| options.method.is_empty() || options.method.iter().any(|name| name == word);
-    for (_, scheme) in SCHEMES.into_iter().filter(|(word, _)| is_chosen(word)) {
+    for scheme in Scheme::ALL.into_iter().filter(|scheme| is_chosen(scheme.word())) {
         for step in &steps {
             let run = step_size(&model, scheme, *step, cancel).map_err(|unfit| match unfit {
                 Unfit::Cancelled => Failure::interrupted(),
@@ -157,12 +164,12 @@ fn of_scene(spec: &str, options: &Arguments, common: &Common) -> Result<(), Fail
     }
     let table = scene_table(&cost, &stepped);
     outputs.table(Output::DATA, &table)?;
+    outputs.draw(picture, &document, |_| {
+        let (tolerance, stops) = (model.tolerance(), stop_positions(&document.scene));
+        Ok(scene_accuracy_chart(&cost, tolerance, &stepped, stops))
+    })?;
     finish(outputs, Some(&document), &format!("{text}\n{}", aligned(&table)), common)
 }
-
-/// The words of `--method`, in the order in which the methods are shown.
-const SCHEMES: [(&str, Scheme); 3] =
-    [("euler", Scheme::SemiImplicitEuler), ("verlet", Scheme::VelocityVerlet), ("rk4", Scheme::RungeKutta4)];
 
 /// The shortest and the longest step in s that a run is made with.
 const STEPS: (f64, f64) = (1e-6, 1.0);

@@ -7,7 +7,9 @@ use clap::Args;
 use interwell::dynamics::Model;
 use interwell::mechanics::Mechanism;
 use interwell::numeric::extent;
-use interwell::output::{contact_chart, curve_chart, landscape, measured_force_chart, shapes_chart};
+use interwell::output::{
+    contact_chart, curve_chart, landscape, measured_force_chart, mechanism_chart, shapes_chart,
+};
 use interwell::scene::Document;
 use interwell::study::{
     CURVE_PICTURE_POINTS, CURVE_POINTS, OutsideCurve, StatesError, Table, contact, curve, default_positions,
@@ -54,6 +56,11 @@ pub struct Arguments {
     #[arg(long, value_name = "FILE", allow_hyphen_values = true, group = "picture")]
     pub shapes_plot: Option<PathBuf>,
 
+    /// Draw the mechanism between its stops, with the mass at the first of the positions that are named, else
+    /// where a run starts; the name ends in .png, .svg or .pdf
+    #[arg(long, value_name = "FILE", allow_hyphen_values = true, group = "picture")]
+    pub mechanism_plot: Option<PathBuf>,
+
     /// Of a compliant stop: write the effect of one impact over the impact speed as CSV, speed_m_per_s,
     /// restitution, rigid_restitution, contact_time_s, depth_m, peak_force_n, peak_pressure_pa, in closed
     /// form
@@ -91,9 +98,11 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let mut shapes_picture = Picture::of(Output::SHAPES_PLOT, options.shapes_plot.as_deref(), plot, common)?;
     let mut contact_picture =
         Picture::of(Output::CONTACT_PLOT, options.contact_plot.as_deref(), plot, common)?;
+    let mechanism_path = options.mechanism_plot.as_deref();
+    let mut mechanism_picture = Picture::of(Output::MECHANISM_PLOT, mechanism_path, plot, common)?;
     // with several pictures, --plot-data holds the numbers of the first of them
     let mut has_data = picture.is_some();
-    for another in [&mut shapes_picture, &mut contact_picture].into_iter().flatten() {
+    for another in [&mut shapes_picture, &mut mechanism_picture, &mut contact_picture].into_iter().flatten() {
         another.data = another.data.filter(|_| !has_data);
         has_data = true;
     }
@@ -139,6 +148,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         .with(Output::CONTACT, options.contact.as_deref())?
         .with_picture(picture)?
         .with_picture(shapes_picture)?
+        .with_picture(mechanism_picture)?
         .with_picture(contact_picture)?
         .with(Output::COMPARISON, options.measured.comparison.as_deref())?;
     let measured = options.measured.compare(&mechanism, common)?;
@@ -181,6 +191,11 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         let at = if is_named { positions(SHAPES) } else { equilibria() };
         let drawn = solved(&at, "--shapes-plot")?;
         Ok(shapes_chart(&drawn, &mechanism, stops))
+    })?;
+    outputs.draw(mechanism_picture, &document, |_| {
+        let (model, named) = (model(&document, &mechanism)?, listed.as_ref().and_then(|at| at.first()));
+        let drawn = mechanism_chart(&model, named.copied().unwrap_or(model.start().0));
+        drawn.map_err(|error| unknown(&document.name, "--mechanism-plot", error))
     })?;
     if let Some((table, model)) = &contacts {
         outputs.table(Output::CONTACT, table)?;

@@ -37,6 +37,7 @@ impl Output {
     pub const LANDSCAPE: Self = Self("--landscape");
     pub const SHAPES: Self = Self("--shapes");
     pub const SHAPES_PLOT: Self = Self("--shapes-plot");
+    pub const MECHANISM_PLOT: Self = Self("--mechanism-plot");
     pub const CONTACT: Self = Self("--contact");
     pub const CONTACT_PLOT: Self = Self("--contact-plot");
     pub const LESSON: Self = Self("--new");

@@ -48,7 +48,8 @@ pub struct Arguments {
 
     /// With --plot: these panels alone, in this order one under the other: displacement, velocity,
     /// acceleration (of the base), power (into the load, or of the base), energy (potential and kinetic),
-    /// portrait (velocity over displacement) [default: all but power and energy, with numbers beside them]
+    /// ledger (work, losses and what is stored over the times shown), portrait (velocity over displacement)
+    /// [default: displacement, velocity, acceleration and portrait, with numbers beside them]
     #[arg(long, value_name = "A,B,..", requires = "plot", conflicts_with = "measured", value_delimiter = ',',
           value_parser = RunPanel::ALL.map(RunPanel::name))]
     pub panels: Vec<String>,
@@ -104,7 +105,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         (simulate(&model, &keep, Some(cancel)), None)
     } else {
         let (simulation, trace) = simulate_with_trace(&model, &keep, inset.or(window), Some(cancel));
-        (simulation, Some(trace))
+        (simulation, Some(RunPanel::complete(&panels, trace, &model, cancel)))
     };
     interrupt::check()?;
     let compared =

@@ -112,12 +112,20 @@ fn every_command_draws_light_and_dark() {
 fn pictures_say_what_they_show() {
     says(
         "curve",
-        &["Prototype with travel limits", "displacement (mm)", "force to hold (N)", "potential (mJ)"],
+        &[
+            "Prototype with travel limits",
+            "displacement (mm)",
+            "holding force (N)",
+            "potential above the well (mJ)",
+        ],
     );
     says("curve", &["stable equilibrium", "unstable equilibrium", "kink of the force", "stop", "barrier"]);
     let version =
         format!("interwell {} \u{b7} built-in paper \u{b7} tolerance 1e-9", env!("CARGO_PKG_VERSION"));
-    says("simulate", &[&version, "time (s)", "displacement (mm)", "velocity (mm/s)", "base accel. (g)"]);
+    says(
+        "simulate",
+        &[&version, "time (s)", "displacement (mm)", "velocity (mm/s)", "base acceleration (g)"],
+    );
     says(
         "simulate",
         &["impact", "at rest on a stop", "phase portrait", "interwell", "RMS velocity 49.49 mm/s"],
@@ -152,7 +160,7 @@ fn pictures_say_what_they_show() {
 fn a_wall_leaves_the_picture_and_the_picture_says_so() {
     // 25 N at 8 mm against 0.2 N between the wells: the axis shows the wells.
     let texts =
-        says("curve paper-table", &["force leaves the picture (", " N at 8 mm)", "0.2", "force to hold (N)"]);
+        says("curve paper-table", &["force leaves the picture (", " N at 8 mm)", "0.2", "holding force (N)"]);
     assert!(!texts.iter().any(|text| text == "20" || text == "10"), "{texts:?}");
     // The rows have all of it.
     let force =

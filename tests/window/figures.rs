@@ -180,14 +180,37 @@ fn of_every_view_of_a_survey_the_copied_command_makes_the_same_bytes() {
 fn of_the_mechanism_and_its_energy_the_copied_command_makes_the_same_bytes() {
     let mut harness = window("paper", WIDE);
     let line = same_bytes(&mut harness, View::Energy, "svg");
-    assert!(line.contains("--panels energy"), "{line}");
+    assert!(line.contains("--panels energy --panels ledger"), "{line}");
     let line = same_bytes(&mut harness, View::Mechanism, "pdf");
-    assert!(line.contains("curve paper --at-mm ") && line.contains(" --shapes-plot "), "{line}");
-    // a force without flexures has a sketch alone
+    assert!(line.contains("curve paper --at-mm ") && line.contains(" --mechanism-plot "), "{line}");
+    // a force without flexures, and one with magnets, a coil and its load
+    for scene in ["nominal-cubic", "magnet", "harvester"] {
+        same_bytes(&mut window(scene, WIDE), View::Mechanism, "svg");
+    }
+}
+
+/// The picture has times of the processor, so that its bytes differ from run to run.
+#[test]
+fn of_the_accuracy_the_copied_command_makes_a_picture_with_the_same_lines() {
+    let mut harness = window("paper", WIDE);
+    harness.state_mut().session.edit_once(|scene| {
+        (scene.run.duration_s, scene.run.settle_s) = (1.0, None);
+    });
+    harness.run_steps(3);
     let folder = tempfile::tempdir().unwrap();
-    let mut harness = window("nominal-cubic", WIDE);
-    open(&mut harness, View::Mechanism, &folder.path().join("a.pdf"));
-    harness.get_by_label_contains("a force without flexures, of which there is no figure");
+    let path = folder.path().join("a.svg");
+    open(&mut harness, View::Accuracy, &path);
+    let line = copy(&mut harness);
+    assert!(line.contains("accuracy paper --step-s 0.0166") && line.contains("--method rk4"), "{line}");
+    save(&mut harness);
+    let drawn = fs::read_to_string(&path).unwrap();
+    let status =
+        assert_cmd::Command::cargo_bin("interwell").unwrap().args(arguments(&line)).output().unwrap();
+    assert!(status.status.success(), "{line}: {}", String::from_utf8_lossy(&status.stderr));
+    let again = fs::read_to_string(&path).unwrap();
+    for words in ["the tolerance of the scene", "fixed steps", "RK4", "processor time (s)", "1e-9"] {
+        assert!(drawn.contains(words) && again.contains(words), "{words}: {drawn}");
+    }
 }
 
 #[test]
@@ -226,6 +249,7 @@ fn each_box_of_the_dialog_is_the_panel_that_it_names() {
         ("base acceleration", "acceleration"),
         ("power", "power"),
         ("energy", "energy"),
+        ("ledger", "ledger"),
         ("phase portrait", "portrait"),
     ];
     for (name, panel) in boxes {
@@ -242,7 +266,7 @@ fn each_box_of_the_dialog_is_the_panel_that_it_names() {
 fn a_view_without_a_figure_says_so_and_the_keyboard_alone_saves_one() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = window("first-look", WIDE);
-    for view in [View::Compare, View::Accuracy] {
+    for view in [View::Compare, View::Events] {
         open(&mut harness, view, &folder.path().join("a.pdf"));
         harness.get_by_label_contains("There is no figure of");
         press(&mut harness, Key::Escape);

@@ -179,7 +179,7 @@ fn names_stand_where_the_thing_is_drawn() {
 fn the_force_is_that_which_holds_the_mass() {
     let mut harness = opened("paper", WIDE);
     press_with_ctrl(&mut harness, Key::Num2);
-    assert!(is_painted(&harness, "holds the mass there") && is_painted(&harness, "force to the right (N)"));
+    assert!(is_painted(&harness, "holds the mass there") && is_painted(&harness, "holding force (N)"));
     assert!(!is_painted(&harness, "force of the mechanism"));
 }
 

@@ -7,6 +7,7 @@ use interwell::app::views::{Memory, Span, View, energy};
 use interwell::app::window::Command;
 use interwell::app::window::Window;
 use interwell::app::window::layouts::Room;
+use interwell::output::{ledger_decimals, ledger_number};
 use interwell::scene::{Layout, PRESETS, Stops};
 
 use crate::cursors::wheel;
@@ -185,7 +186,7 @@ fn the_energy_view_says_what_the_ledger_says() {
     for ledger in [whole, period] {
         assert!(ledger.energy_residual() < 1e-6, "{ledger:?}");
         for joule in [ledger.work_j, ledger.by_hand_j, -ledger.damping_j, -ledger.impact_j, ledger.stored_j] {
-            let text = energy::written(joule, unit, energy::decimals(&ledger, unit));
+            let text = ledger_number(joule, unit, ledger_decimals(&ledger, unit));
             assert!(harness.query_all_by_label(&text).next().is_some(), "{text}");
         }
     }

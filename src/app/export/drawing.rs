@@ -15,15 +15,17 @@ use crate::mechanics::Mechanism;
 use crate::numeric::extent;
 use crate::output::{
     Caption, Chart, Figure, Overlay, Ranges, RunPanel, SpectrumQuantity, SweepPicture, Theme, View,
-    basins_chart, can_show, curve_chart, measured_chart, measured_force_chart, run_chart, section_chart,
-    shapes_chart, spectrum_chart, sweep_chart,
+    basins_chart, can_show, curve_chart, measured_chart, measured_force_chart, mechanism_chart, run_chart,
+    scene_accuracy_chart, section_chart, spectrum_chart, sweep_chart,
 };
 use crate::scene::{Document, Fault, FieldPath, arguments};
+use crate::study::accuracy::methods::Scheme;
+use crate::study::accuracy::scene::{step_size, tolerances};
 use crate::study::{
     Basins, CURVE_PICTURE_POINTS, Carry, EvenRange, Grid, GridStudy, Keep, MeasuredMotion, NoBasins,
     Question, STANDARD_COLUMNS, Sampling, SectionOptions, Sections, Signal, SpectrumOptions, Starts,
     SummaryField, Sweep, SweepOptions, Table, Task, compare, compare_force, curve, default_positions,
-    even_positions, metres, sample_times, section, simulate_with_trace, spectrum, states, stop_positions,
+    even_positions, metres, sample_times, section, simulate_with_trace, spectrum, stop_positions,
 };
 use crate::system::threads::Pool;
 
@@ -46,7 +48,8 @@ fn figure(order: &FigureOrder, cancel: &AtomicBool) -> Result<Figure> {
     let chart = match &order.subject {
         Subject::Run(times, panels) => drawing.run(*times, panels),
         Subject::Curve => drawing.curve(),
-        Subject::Shapes(mm) => drawing.shapes(*mm),
+        Subject::Mechanism(mm) => drawing.mechanism_at(*mm),
+        Subject::Accuracy(stepped) => drawing.accuracy(*stepped),
         Subject::Measured(over) => drawing.measured(over),
         Subject::Sweep(_, quantity, view) => drawing.sweep(&order.subject, quantity, view.clone()),
         Subject::Diagram(_) => drawing.diagram(&order.subject),
@@ -123,6 +126,7 @@ impl Drawing<'_> {
         let sample_times = sample_times(&document.scene, &model, &Sampling::Default, None)?;
         let keep = Keep { times: sample_times, events: false, until_settled: None };
         let (simulation, trace) = simulate_with_trace(&model, &keep, times, Some(self.task.cancel));
+        let trace = RunPanel::complete(panels, trace, &model, self.task.cancel);
         let (mechanism, ranges) = (model.mechanism(), Ranges { x: times, y: None });
         Ok(run_chart(&trace, &simulation.summary, (mechanism, model.mass()), panels, ranges))
     }
@@ -133,10 +137,16 @@ impl Drawing<'_> {
         Ok(curve_chart(&table, &mechanism, stop_positions(scene), Ranges::default()))
     }
 
-    fn shapes(&self, mm: f64) -> Result<Chart> {
-        let mechanism = self.mechanism()?;
-        let states = states(&mechanism, &[metres(mm)], &self.task)?;
-        Ok(shapes_chart(&states, &mechanism, stop_positions(&self.document.scene)))
+    fn mechanism_at(&self, mm: f64) -> Result<Chart> {
+        Ok(mechanism_chart(&self.model()?, metres(mm))?)
+    }
+
+    fn accuracy(&self, stepped: Option<(Scheme, f64)>) -> Result<Chart> {
+        let (model, cancel) = (self.model()?, self.task.cancel);
+        let known = tolerances(&model, cancel).ok_or_else(cancelled)?;
+        let stepped = stepped.map(|(scheme, step)| step_size(&model, scheme, step, cancel)).transpose()?;
+        let stops = stop_positions(&self.document.scene);
+        Ok(scene_accuracy_chart(&known, model.tolerance(), stepped.as_slice(), stops))
     }
 
     fn measured(&self, over: &Laid) -> Result<Chart> {

@@ -18,6 +18,7 @@ use crate::output::{
 };
 use crate::scene::{FieldPath, Scene, Start, SweepAxis, arguments};
 use crate::study::Signal;
+use crate::study::accuracy::methods::Scheme;
 use crate::system::files;
 
 use super::drawing::draw;
@@ -30,8 +31,10 @@ pub enum Subject {
     Run(Option<(f64, f64)>, Vec<RunPanel>),
     /// Force and potential of the mechanism.
     Curve,
-    /// Centre lines of the flexures at a displacement in mm.
-    Shapes(f64),
+    /// The mechanism with the mass at a displacement in mm.
+    Mechanism(f64),
+    /// Error over processor time, and the run by a method of fixed step in s, if one suits the scene.
+    Accuracy(Option<(Scheme, f64)>),
     /// A record over the run or over the force curve.
     Measured(Overlay),
     /// A quantity over two fields, or over one that is walked up and down.
@@ -133,14 +136,15 @@ impl Subject {
         Ok(Self::Sweep(axes, quantity.to_owned(), view))
     }
 
-    /// The flexures with the mass at `x` in m.
-    pub fn shapes(session: &Session, x: f64) -> Result<Self, String> {
-        if session.model().mechanism().flexures.is_none() {
-            return Err("This mechanism is a force without flexures, of which there is no figure: File, \
-                        Save a picture of the window shows its sketch."
-                .to_owned());
-        }
-        Ok(Self::Shapes((x * 1e7).round() / 1e4))
+    /// The mechanism with the mass at `x` in m.
+    pub fn mechanism(x: f64) -> Self {
+        Self::Mechanism((x * 1e7).round() / 1e4)
+    }
+
+    pub fn accuracy(session: &Session) -> Self {
+        let (model, accuracy) = (session.model(), &session.accuracy);
+        let is_stepped = model.compliant().is_none() && !model.has_electrical_state();
+        Self::Accuracy(is_stepped.then_some((accuracy.scheme, accuracy.step)))
     }
 
     /// The record with its shift, scale and offset in the view.
@@ -188,9 +192,16 @@ impl Subject {
                 "simulate"
             }
             Self::Curve => "curve",
-            Self::Shapes(mm) => {
+            Self::Mechanism(mm) => {
                 options.push(Argument::of("at-mm", mm.to_string()));
                 "curve"
+            }
+            Self::Accuracy(stepped) => {
+                if let Some((scheme, step)) = stepped {
+                    options.push(Argument::of("step-s", step.to_string()));
+                    options.push(Argument::of("method", scheme.word()));
+                }
+                "accuracy"
             }
             Self::Measured(over) => {
                 options.extend(over.arguments());
@@ -275,7 +286,7 @@ impl FigureOrder {
         let mut all = vec![Argument { option: None, value: Some(self.origin.clone()) }];
         all.extend(options);
         let Place { path, sheet, data, .. } = &self.place;
-        let plot = if let Subject::Shapes(_) = self.subject { "shapes-plot" } else { "plot" };
+        let plot = if let Subject::Mechanism(_) = self.subject { "mechanism-plot" } else { "plot" };
         all.push(Argument::of(plot, path.to_string_lossy()));
         all.push(Argument::of("plot-width-mm", sheet.width_mm.to_string()));
         all.push(Argument::of("font-pt", sheet.font_pt.to_string()));

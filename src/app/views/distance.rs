@@ -6,7 +6,7 @@ use crate::app::session::pins::{Pin, PinKind};
 use crate::app::ui::widgets::tell;
 use crate::app::words::numbers::{UNKNOWN, three};
 use crate::numeric::elementary;
-use crate::output::{Chart, Marks, Panel, PlotAxis, Role};
+use crate::output::{Chart, Marks, Panel, PlotAxis, Role, TIME};
 use crate::study::{Table, distances};
 
 use super::cursors::{cursors_ui, readout_height, readout_ui};
@@ -64,7 +64,7 @@ pub fn distance_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         format!("exponential rate {}", of_all(&|pin| text(rate(pin))))
     };
     let readout = readout_height(ui, context);
-    let (x, y) = (PlotAxis::between(from, to, "time (s)"), PlotAxis::powers(low, high, "distance (mm)"));
+    let (x, y) = (PlotAxis::between(from, to, TIME), PlotAxis::powers(low, high, "distance (mm)"));
     let mut panel = Panel::new(x, y);
     panel.draw(Role::Reference, Marks::Verticals(vec![now]));
     for (_, path) in &lines {

@@ -3,16 +3,16 @@
 //! Every number is from the ledger of the live run, or a difference of two ledgers. Energy supplied is
 //! positive, energy taken negative, so that a column adds up to the stored energy.
 
-use eframe::egui::{self, Align, Align2, Color32, Layout, Rect, RichText, Sense, Stroke, Ui, pos2, vec2};
+use eframe::egui::{self, Align, Align2, Layout, Rect, RichText, Sense, Stroke, Ui, pos2, vec2};
 
 use crate::app::ui::style::Style;
-use crate::app::words::numbers::{UNKNOWN, with_minus};
+use crate::app::words::numbers::UNKNOWN;
 use crate::dynamics::LiveLedger;
-use crate::numeric::{self, elementary};
+use crate::output::{LedgerTerm, ledger_bars, ledger_decimals, ledger_number, share_of_work, three_digits};
 use crate::study::Watch;
 
 use super::ViewContext;
-use super::ghosts::dashed;
+use super::pane::bare_panel;
 use super::ranges::{axis_end, bottom};
 
 /// Width in points of the names.
@@ -24,9 +24,6 @@ const SHARE: (f32, f32) = (44.0, 190.0);
 
 /// Gap in points between a number and the bars beside it.
 const GAP: f32 = 10.0;
-
-/// Distance in points between the lines of two pinned motions.
-const GHOSTS: f32 = 2.5;
 
 /// Smallest and largest height of a row in points.
 const ROWS: (f32, f32) = (17.0, 30.0);
@@ -40,67 +37,22 @@ const LEGEND: f32 = 11.0;
 /// Units of energy in J, with their names.
 const UNITS: [(f64, &str); 5] = [(1.0, "J"), (1e-3, "mJ"), (1e-6, "µJ"), (1e-9, "nJ"), (1e-12, "pJ")];
 
-/// A row of the ledger: name, explanation, signed value, colour.
-type Row = (&'static str, &'static str, fn(&LiveLedger) -> f64, fn(&Style) -> Color32);
-
-const STORED: &str = "stored";
 const OF_WORK: &str = "The share of the work of the base that is taken so.";
-const BY_HAND: &str = "Put in or taken out by you: a stop dragged over the mass, a mass put elsewhere, \
-                       another potential under it.";
-const IN_IMPACTS: &str = "Taken by impacts: (1 - e²) of the kinetic energy each.";
-const IN_TRANSDUCER: &str = "Taken by the load and the coil of the transducer.";
 
-/// The row that only a scene with a transducer has.
-const TRANSDUCER: &str = "transducer";
-
-const LEDGER: [Row; 6] = [
-    ("work in", "Work of the base on the mass.", |ledger| ledger.work_j, Style::base),
-    ("by hand", BY_HAND, |ledger| ledger.by_hand_j, Style::mass),
-    ("damping", "Taken by damping.", |ledger| -ledger.damping_j, Style::faint),
-    ("impacts", IN_IMPACTS, |ledger| -ledger.impact_j, Style::impact),
-    (TRANSDUCER, IN_TRANSDUCER, |ledger| -(ledger.harvested_j + ledger.coil_j), Style::ink),
-    (STORED, "The energy left in the mass and its mechanism.", |ledger| ledger.stored_j, Style::ink),
+/// What a row of the ledger means, in the order of [`LedgerTerm::ALL`].
+const MEANINGS: [&str; LedgerTerm::ALL.len()] = [
+    "Work of the base on the mass.",
+    "Put in or taken out by you: a stop dragged over the mass, a mass put elsewhere, another potential under \
+     it.",
+    "Taken by damping.",
+    "Taken by impacts: (1 - e²) of the kinetic energy each.",
+    "Taken by the load and the coil of the transducer.",
+    "The energy left in the mass and its mechanism.",
 ];
 
 /// The largest unit not above `energy`, which callers take from the speed scale so that the unit stays.
 pub fn unit_of(energy: f64) -> (f64, &'static str) {
     UNITS.into_iter().find(|unit| energy >= unit.0).unwrap_or(UNITS[4])
-}
-
-/// Decimals of all numbers of a ledger: three, or one if any number has three digits before the point, or
-/// where all are small as many as give the largest three digits, but no more than five.
-pub fn decimals(ledger: &LiveLedger, unit: f64) -> usize {
-    let largest = LEDGER.iter().map(|row| row.2(ledger).abs()).fold(0.0, f64::max) / unit;
-    match largest {
-        largest if largest >= 100.0 => 1,
-        largest if largest > 0.0 => numeric::decimals(largest, 3).clamp(3, 5),
-        _ => 3,
-    }
-}
-
-/// An energy that was taken, in whole percent of the work of the base; `None` for an energy that was
-/// supplied, without work, and for a value that rounds to 0.
-fn share_of_work(joule: f64, ledger: &LiveLedger, is_nothing: bool) -> Option<String> {
-    let share = -100.0 * joule / ledger.work_j;
-    (ledger.work_j > 0.0 && joule < 0.0 && !is_nothing).then(|| format!("{share:.0} %"))
-}
-
-fn is_nothing(joule: f64, unit: f64, decimals: usize) -> bool {
-    (joule / unit).abs() < 0.5 * elementary::powi(0.1, decimals as i32)
-}
-
-/// The length of the bar of a value as a share of the longest bar; 0 for a value that rounds to 0.
-fn share(joule: f64, unit: f64, decimals: usize, largest: f64) -> f64 {
-    if is_nothing(joule, unit, decimals) { 0.0 } else { joule / largest }
-}
-
-/// A value of the ledger as text with its sign, in the given unit in J.
-pub fn written(joule: f64, unit: f64, decimals: usize) -> String {
-    let value = joule / unit;
-    match is_nothing(joule, unit, decimals) {
-        true => format!("{:.decimals$}", 0.0),
-        false => with_minus(&format!("{value:+.decimals$}")),
-    }
 }
 
 /// Percentage of the energy that the ledger accounts for, without decimals if it is 100.
@@ -136,10 +88,14 @@ pub fn energy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         (heads[0].1, heads[1].1) = ("total", "period");
     }
     let heads = &heads[..if shaken { 2 } else { 1 }];
+    let terms: Vec<(LedgerTerm, &str)> = LedgerTerm::ALL.into_iter().zip(MEANINGS).collect();
+    let is_shown = |term: &LedgerTerm| term.name != LedgerTerm::TRANSDUCER.name || model.has_transducer();
+    let terms: Vec<(LedgerTerm, &str)> = terms.into_iter().filter(|(term, _)| is_shown(term)).collect();
     // the columns share a scale
     let ghosts = pins.iter().flat_map(|pin| &pin.1[..heads.len()]);
     let all = heads.iter().map(|head| &head.0).chain(ghosts).flatten();
-    let largest = all.flat_map(|ledger| LEDGER.map(|row| row.2(ledger).abs())).fold(0.0, f64::max);
+    let energies = all.flat_map(|ledger| LedgerTerm::ALL.map(|term| (term.energy)(ledger).abs()));
+    let largest = energies.fold(0.0, f64::max);
     let mut y = area.top();
     for (i, (_, head, hover)) in heads.iter().rev().enumerate() {
         let rect = cell(area.left() + NAMES + column * i as f32, y, column, row);
@@ -149,24 +105,26 @@ pub fn energy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let unit_name = RichText::new(format!("in {name}")).color(style.faint());
     put_ui(ui, cell(area.left(), y, NAMES, row), unit_name, Align::Min, hover);
     y += row;
-    for entry in LEDGER.iter().filter(|entry| entry.0 != TRANSDUCER || model.has_transducer()) {
-        let names = cell(area.left(), y, NAMES, row);
-        put_ui(ui, names, RichText::new(entry.0).color(style.ink()), Align::Min, entry.1);
-        for (i, (ledger, ..)) in heads.iter().rev().enumerate() {
-            let rect = cell(area.left() + NAMES + column * i as f32, y, column, row);
-            let Some(ledger) = ledger else {
-                let hover = "Not kept: a whole period has to pass while this view is open.";
-                let nothing = RichText::new(UNKNOWN).color(style.faint());
-                put_ui(ui, rect.with_min_x(rect.right() - NUMBERS), nothing, Align::Max, hover);
-                continue;
-            };
-            // the columns are drawn in reverse order of `heads`
-            let column = heads.len() - 1 - i;
-            let ghosts = pins.iter().filter_map(|pin| Some((pin.0, entry.2(pin.1[column].as_ref()?))));
-            entry_ui(ui, &style, rect, entry, (ledger, unit, largest), &ghosts.collect::<Vec<_>>());
-        }
-        y += row;
+    for (i, (term, about)) in terms.iter().enumerate() {
+        let names = cell(area.left(), y + row * i as f32, NAMES, row);
+        put_ui(ui, names, RichText::new(term.name).color(style.ink()), Align::Min, about);
     }
+    let height = row * terms.len() as f32;
+    for (i, (ledger, ..)) in heads.iter().enumerate() {
+        let place = (heads.len() - 1 - i) as f32;
+        let rect = cell(area.left() + NAMES + column * place, y, column, height);
+        let Some(ledger) = ledger else {
+            let hover = "Not kept: a whole period has to pass while this view is open.";
+            for part in (0..terms.len()).map(|i| cell(rect.left(), y + row * i as f32, column, row)) {
+                let nothing = RichText::new(UNKNOWN).color(style.faint());
+                put_ui(ui, part.with_min_x(part.right() - NUMBERS), nothing, Align::Max, hover);
+            }
+            continue;
+        };
+        let others: Vec<_> = pins.iter().filter_map(|pin| Some((pin.0, pin.1[i]?))).collect();
+        ledger_ui(ui, &style, rect, &terms, (ledger, &others), (unit, largest));
+    }
+    y += height;
     if let Some((upto, whole)) = watch.ledger_at(now) {
         let residual = whole.energy_residual();
         let hover = format!(
@@ -182,45 +140,37 @@ pub fn energy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     present_ui(ui, context, area.with_min_y(y), (unit, name));
 }
 
-/// Draws the bar of a row of a ledger with those of the pinned motions, its share of the work where that has
-/// room, and its number in a unit in J. The bar of the `largest` value is longest.
-fn entry_ui(
+/// Draws the bars of a ledger with those of the pinned motions, and beside them the numbers in a unit in J,
+/// with the shares of the work where these have room. The bar of the `largest` value is longest.
+fn ledger_ui(
     ui: &mut Ui,
     style: &Style,
     rect: Rect,
-    (name, hover, value, color): &Row,
-    (ledger, unit, largest): (&LiveLedger, f64, f64),
-    ghosts: &[(usize, f64)],
+    terms: &[(LedgerTerm, &str)],
+    (ledger, others): (&LiveLedger, &[(usize, LiveLedger)]),
+    (unit, largest): (f64, f64),
 ) {
-    let (joule, decimals) = (value(ledger), decimals(ledger, unit));
-    let numbers = rect.with_min_x(rect.right() - NUMBERS);
-    let shares = if rect.width() >= SHARE.1 { SHARE.0 } else { 0.0 };
-    let right = numbers.left() - shares;
+    let decimals = ledger_decimals(ledger, unit);
+    let left = rect.right() - NUMBERS;
+    let right = left - if rect.width() >= SHARE.1 { SHARE.0 } else { 0.0 };
     let bars = Rect::from_min_max(rect.min + vec2(GAP, 0.0), pos2(right - 4.0, rect.bottom()));
-    let (middle, half) = (bars.center().x, 0.5 * bars.width() - 2.0);
-    // to the right for energy supplied, to the left for energy taken
-    let end = |joule: f64| middle + share(joule, unit, decimals, largest) as f32 * half;
-    if half > 4.0 {
-        let thick = (0.5 * bars.height()).min(12.0);
-        let from = pos2(middle, bars.center().y - 0.5 * thick);
-        if end(joule) != middle {
-            let to = pos2(end(joule), bars.center().y + 0.5 * thick);
-            ui.painter().rect_filled(Rect::from_two_pos(from, to), 0.0, color(style));
-        }
-        ui.painter().vline(middle, bars.y_range(), style.ghost_stroke());
-        for (place, ghost) in ghosts.iter().filter(|ghost| end(ghost.1) != middle) {
-            let y = bars.bottom() - 1.0 - GHOSTS * *place as f32;
-            let ends = [pos2(middle, y), pos2(end(*ghost), y)];
-            ui.painter().extend(dashed(&ends, *place, style.motion_stroke()));
-        }
+    if bars.width() > 12.0 {
+        let shown: Vec<LedgerTerm> = terms.iter().map(|(term, _)| *term).collect();
+        bare_panel(ui.painter(), style, bars, &ledger_bars(&shown, ledger, others, (unit, largest)));
     }
-    // the stored energy has no share of the work
-    let taken = share_of_work(joule, ledger, is_nothing(joule, unit, decimals));
-    if let Some(text) = taken.filter(|_| shares > 0.0 && *name != STORED) {
-        let place = numbers.with_min_x(right).with_max_x(numbers.left());
-        put_ui(ui, place, RichText::new(text).color(style.faint()), Align::Max, OF_WORK);
+    let row = rect.height() / terms.len() as f32;
+    for (i, (term, about)) in terms.iter().enumerate() {
+        let part = cell(rect.left(), rect.top() + row * i as f32, rect.width(), row);
+        let joule = (term.energy)(ledger);
+        // the stored energy has no share of the work
+        let taken = share_of_work(joule, ledger, (unit, decimals));
+        if let Some(text) = taken.filter(|_| right < left && term.name != LedgerTerm::STORED.name) {
+            let place = part.with_min_x(right).with_max_x(left);
+            put_ui(ui, place, RichText::new(text).color(style.faint()), Align::Max, OF_WORK);
+        }
+        let number = RichText::new(ledger_number(joule, unit, decimals));
+        put_ui(ui, part.with_min_x(left), number, Align::Max, about);
     }
-    put_ui(ui, numbers, RichText::new(written(joule, unit, decimals)), Align::Max, hover);
 }
 
 fn cell(x: f32, y: f32, width: f32, height: f32) -> Rect {
@@ -245,7 +195,7 @@ fn present_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect, (unit, nam
     let (kinetic, potential) = model.energies(state.x, state.v);
     let mechanism = model.mechanism();
     // without a well, energy is counted from the lower stop
-    let bottom = bottom(model);
+    let (bottom, _) = bottom(model);
     let potential = (potential - bottom).max(0.0);
     let barrier = mechanism.landscape.barrier.map(|barrier| mechanism.curve.potential(barrier.x) - bottom);
     let scale = axis_end(kinetic_room.max(1.3 * barrier.unwrap_or(0.0)).max(1e-300));
@@ -267,7 +217,7 @@ fn present_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect, (unit, nam
         let legend = painter.text(at, Align2::LEFT_TOP, "potential", style.small(), style.ink());
         let at = pos2(legend.right() + 8.0, below);
         painter.text(at, Align2::LEFT_TOP, "+ kinetic now", style.small(), style.mass_ink());
-        let end = format!("{} {name}", short(scale / unit));
+        let end = format!("{} {name}", three_digits(scale / unit));
         painter.text(pos2(track.right(), below), Align2::RIGHT_TOP, end, style.small(), style.faint());
     }
     if let Some(barrier) = barrier {
@@ -278,7 +228,7 @@ fn present_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect, (unit, nam
         let at = pos2(x, track.top() - 2.0);
         painter.text(at, Align2::CENTER_BOTTOM, "barrier", style.small(), style.faint());
     }
-    let (potential, kinetic) = (short(potential / unit), short(kinetic / unit));
+    let (potential, kinetic) = (three_digits(potential / unit), three_digits(kinetic / unit));
     response.on_hover_text(format!(
         "Now: potential {potential} and kinetic energy {kinetic} {name}, counted from the bottom of the \
          deeper well, or without one from the lower stop. Without shaking the mass crosses only where their \
@@ -286,34 +236,14 @@ fn present_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect, (unit, nam
     ));
 }
 
-/// A number with three digits.
-fn short(value: f64) -> String {
-    let decimals = (2.0 - elementary::log10(value.abs().max(1e-6)).floor()).clamp(0.0, 3.0) as usize;
-    let text = format!("{value:.decimals$}");
-    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn numbers_are_written_with_their_sign_and_unit() {
+    fn numbers_are_written_with_their_unit() {
         assert_eq!(unit_of(6.9e-3), (1e-3, "mJ"));
         assert_eq!(unit_of(0.0), (1e-12, "pJ"));
-        assert_eq!(written(1.2345e-3, 1e-3, 3), "+1.234");
-        assert_eq!(written(-0.25, 1e-3, 1), "\u{2212}250.0");
-        assert_eq!(written(-1e-9, 1e-3, 3), "0.000");
-        assert_eq!(share(4e-7, 1e-3, 3, 1e-6), 0.0);
-        assert_eq!((share(6e-7, 1e-3, 3, 1e-6), share(0.0, 1e-3, 3, 0.0)), (0.6, 0.0));
-        // one large number sets the decimals of all
-        let ledger = LiveLedger { work_j: 0.3, damping_j: 1e-3, ..LiveLedger::default() };
-        assert_eq!((decimals(&ledger, 1e-3), decimals(&LiveLedger::default(), 1e-3)), (1, 3));
-        let small = LiveLedger { work_j: 3.12e-6, impact_j: 2.91e-6, ..LiveLedger::default() };
-        assert_eq!((decimals(&small, 1e-3), written(small.work_j, 1e-3, 5)), (5, "+0.00312".to_owned()));
-        assert_eq!(share_of_work(-small.impact_j, &small, false).as_deref(), Some("93 %"));
-        assert_eq!(share_of_work(small.work_j, &small, false), None);
         assert_eq!([0.0, 1e-9, 3e-4, 2.0].map(accounted), ["100", "100", "99.97", "0.00"]);
-        assert_eq!((short(1.2), short(1000.0), short(0.0)), ("1.2".into(), "1000".into(), "0".into()));
     }
 }

@@ -12,7 +12,9 @@ use eframe::egui::{Align2, Painter, Pos2, Rect, Sense, Stroke, Ui, pos2, vec2};
 use crate::app::task::Identity;
 use crate::app::words::numbers::three;
 use crate::dynamics::{Model, STANDARD_GRAVITY};
-use crate::output::{Chart, Layer, Marks, PlotAxis, Role, force_panel};
+use crate::output::{
+    Chart, DISPLACEMENT, HOLDING_FORCE, Layer, Marks, PlotAxis, Role, axis_name, force_panel,
+};
 use crate::study::Table;
 
 use super::ghosts::ghosts;
@@ -51,8 +53,8 @@ pub fn force_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let measured = context.session.measured.over.clone();
     let key = (Identity(Arc::clone(&model)), measured, [span.low, span.high, low, high], style);
     let pane = kept_pane_ui(ui, &style, Place::in_line(ui, area, Sense::DRAG, (0.0, 0.0)), key, || {
-        let across = PlotAxis::between(span.low * 1e3, span.high * 1e3, "displacement (mm)");
-        let up = PlotAxis::between(low, high, "force to the right (N)");
+        let across = PlotAxis::between(span.low * 1e3, span.high * 1e3, DISPLACEMENT);
+        let up = PlotAxis::between(low, high, &axis_name(HOLDING_FORCE, "N"));
         still(&model, span, (across, up), measured_force(context.session))
     });
     let Some(frame) = pane.frame(0) else { return };

@@ -13,7 +13,8 @@ use crate::app::ui::style::{BODY, SMALL, STATUS, Style, colour, strong_family};
 use crate::app::words::meanings::explained;
 use crate::app::words::numbers::with_minus;
 use crate::output::{
-    Area, Chart, Figure, Frame, Layer, PlotAxis, Room, Shape as Drawn, SurfaceFrame, TICK, Text, is_fine,
+    Area, Chart, Figure, Frame, Layer, Panel, PlotAxis, Room, Shape as Drawn, SurfaceFrame, TICK, Text,
+    is_fine,
 };
 
 use super::LegendRow;
@@ -166,12 +167,17 @@ impl Painting {
         if room.is_some() {
             shapes.remove(0); // the ground, on which the view may have written
         }
-        let (mesh, texts) = (Arc::default(), Vec::new());
-        let mut painting = Self { origin: area.min, frames, surface, legend: Vec::new(), mesh, texts };
+        let mut painting = Self { frames, surface, ..Self::bare(area.min) };
         painting.legend = legend.into_iter().map(|(area, words)| (painting.rect(area), words)).collect();
         let (mesh, texts) = painting.mesh(ui.pixels_per_point(), style, shapes);
         (painting.mesh, painting.texts) = (Arc::new(mesh), texts);
         painting
+    }
+
+    /// An empty canvas with its corner at a place of the screen.
+    fn bare(origin: Pos2) -> Self {
+        let (mesh, texts) = (Arc::default(), Vec::new());
+        Self { origin, frames: Vec::new(), surface: None, legend: Vec::new(), mesh, texts }
     }
 
     /// Shapes of the canvas as a mesh on the screen, and the texts among them.
@@ -223,6 +229,15 @@ impl Painting {
     fn rect(&self, Area { left, top, right, bottom }: Area) -> Rect {
         Rect::from_min_max(self.place((left, top)), self.place((right, bottom)))
     }
+}
+
+/// Paints the layers of a panel over all of `rect`, without its axes.
+pub fn bare_panel(painter: &Painter, style: &Style, rect: Rect, Panel { x, y, layers, .. }: &Panel) {
+    let (right, bottom) = (f64::from(rect.width() / UNIT), f64::from(rect.height() / UNIT));
+    let frame = Frame { area: Area::new(0.0, 0.0, right, bottom), x: x.clone(), y: y.clone() };
+    let canvas = Painting::bare(rect.min);
+    let (mesh, _) = canvas.mesh(painter.pixels_per_point(), style, frame.shapes(layers, &style.theme()));
+    painter.add(Shape::mesh(mesh));
 }
 
 /// Whether the soft edge of a polygon, which has no limit at its corners, would stand out by more than three
@@ -333,15 +348,7 @@ mod tests {
     use crate::output::BLACK;
 
     fn canvas() -> (Painting, Style) {
-        let painting = Painting {
-            origin: Pos2::ZERO,
-            frames: Vec::new(),
-            surface: None,
-            legend: Vec::new(),
-            mesh: Arc::default(),
-            texts: Vec::new(),
-        };
-        (painting, Style { dark: false, projector: false })
+        (Painting::bare(Pos2::ZERO), Style { dark: false, projector: false })
     }
 
     /// The soft edges of thin triangles, such as those of a surface, do not stand out of them.

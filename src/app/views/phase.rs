@@ -14,7 +14,7 @@ use crate::app::ui::widgets::{kind_shapes, tell};
 use crate::app::words::numbers::three;
 use crate::app::words::status::Kind;
 use crate::dynamics::{Model, Phase, Sample};
-use crate::output::{Chart, Layer, Marks, PlotAxis, Role, portrait_panel};
+use crate::output::{Chart, DISPLACEMENT, Layer, Marks, PlotAxis, Role, VELOCITY, axis_name, portrait_panel};
 use crate::study::{Table, between};
 
 use super::context::sized_ui;
@@ -88,7 +88,7 @@ pub fn states_ui(ui: &mut Ui, context: &mut ViewContext<'_>, is_section: bool) {
     let key = (Identity(Arc::clone(&model)), [span.low, span.high, low, high], points_only, style);
     let pane = kept_pane_ui(ui, &style, place, key, || {
         let axis = |low: f64, high: f64, name: &str| PlotAxis::between(low * 1e3, high * 1e3, name);
-        let axes = (axis(span.low, span.high, "displacement (mm)"), axis(low, high, "velocity (mm/s)"));
+        let axes = (axis(span.low, span.high, DISPLACEMENT), axis(low, high, &axis_name(VELOCITY, "mm/s")));
         still(&model, axes, points_only)
     });
     tell(&pane.response, egui::Role::Canvas, "states of the mass");

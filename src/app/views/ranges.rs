@@ -6,6 +6,7 @@
 use crate::app::session::Session;
 use crate::dynamics::{Model, STANDARD_GRAVITY};
 use crate::numeric::round::round_up;
+use crate::output::zero_of_energy;
 
 use super::stretch;
 
@@ -42,11 +43,10 @@ pub fn floor(model: &Model) -> Option<f64> {
     places.map(|x| model.mechanism().curve.potential(x)).reduce(f64::min)
 }
 
-/// The potential in J from which energy is counted: of the deepest well, or else the [`floor`], or else 0.
-pub fn bottom(model: &Model) -> f64 {
-    let wells = model.mechanism().landscape.equilibria.iter().filter(|point| point.stable);
-    let wells = wells.map(|well| model.mechanism().curve.potential(well.x)).reduce(f64::min);
-    wells.or(floor(model)).unwrap_or(0.0)
+/// The potential in J from which energy is counted, and the name of its axis.
+pub fn bottom(model: &Model) -> (f64, &'static str) {
+    let (left, right) = model.stop_positions();
+    zero_of_energy(model.mechanism(), (left.unwrap_or(f64::NAN), right.unwrap_or(f64::NAN)))
 }
 
 /// Largest speed in m/s, powers in W and kinetic energy in J, and the range of displacements in m.

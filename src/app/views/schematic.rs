@@ -4,6 +4,7 @@ use eframe::egui::{Pos2, Shape, Stroke, pos2};
 
 use crate::app::words::numbers::three;
 use crate::mechanics::Mechanism;
+use crate::output::depends_on_place;
 
 use super::beside::{Attachments, coil};
 use super::flexures::{CLAMP, DrawingArea, Sketch};
@@ -29,14 +30,7 @@ pub(super) enum Schematic {
 impl Schematic {
     /// A spring if the force depends on the displacement, springs and magnets not counted.
     pub fn of(mechanism: &Mechanism, span: Span) -> Self {
-        let depends = |part: &Mechanism| {
-            let forces = [0.0, 0.21, 0.5, 0.83, 1.0].map(|share| {
-                let (low, high) = part.curve.domain();
-                part.curve.force((span.low + share * (span.high - span.low)).clamp(low, high))
-            });
-            forces.iter().any(|force| (force - forces[0]).abs() > 1e-9 * forces[0].abs())
-        };
-        match other_parts(mechanism).any(depends) {
+        match depends_on_place(mechanism, (span.low, span.high)) {
             true => Self::Spring,
             false => Self::Mass { pulled: other_force(mechanism) != 0.0 },
         }
@@ -58,18 +52,13 @@ impl Schematic {
     }
 }
 
-/// The parts of a mechanism except springs and magnets.
-fn other_parts(mechanism: &Mechanism) -> impl Iterator<Item = &Mechanism> {
-    mechanism.parts_or_self().iter().filter(|part| part.element.is_none())
-}
-
-/// The force of these parts at x = 0.
+/// The force of a mechanism without its springs and magnets at x = 0.
 fn other_force(mechanism: &Mechanism) -> f64 {
     let force = |part: &Mechanism| {
         let (low, high) = part.curve.domain();
         part.curve.force(0.0_f64.clamp(low, high))
     };
-    other_parts(mechanism).map(force).sum()
+    mechanism.parts_or_self().iter().filter(|part| part.element.is_none()).map(force).sum()
 }
 
 impl Sketch {

@@ -10,7 +10,7 @@ use crate::app::session::Session;
 use crate::app::session::pins::Pin;
 use crate::app::words::numbers::decimals_for;
 use crate::dynamics::{EventKind, Model, Phase, STANDARD_GRAVITY, Sample, Side};
-use crate::output::{Chart, Layer, Marks, OverTime, PlotAxis, Role, RunPanel};
+use crate::output::{Chart, Layer, Marks, OverTime, PlotAxis, Role, RunPanel, TIME};
 use crate::scene::Quantity;
 use crate::study::{Table, Watch};
 
@@ -207,7 +207,7 @@ fn chart(session: &Session, quantity: TraceQuantity, (from, to): Point, (low, hi
     lines.push(Layer::new(role, "", line(watch, &mut samples.iter().copied())));
     let stable = session.shown().mechanism().landscape.equilibria.iter().filter(|point| point.stable);
     let beside = OverTime {
-        time: PlotAxis::between(from, to, "time (s)"),
+        time: PlotAxis::between(from, to, TIME),
         rests: (rest_spans(&samples), "at rest on a stop"),
         impacts: [Side::Left, Side::Right].map(|side| impact_times(watch, side, (from, now.min(to)))),
         stops,

@@ -16,7 +16,7 @@ use crate::app::words::numbers::{energy, three};
 use crate::app::words::wells::well_name;
 use crate::dynamics::Model;
 use crate::mechanics::Barrier;
-use crate::output::{Chart, Layer, Marks, Panel, PlotAxis, Role, suited_unit};
+use crate::output::{Chart, DISPLACEMENT, Layer, Marks, Panel, PlotAxis, Role, axis_name, suited_unit};
 use crate::study::Table;
 
 use super::ghosts::{Ghost, PINNED, ghosts};
@@ -62,7 +62,7 @@ impl Potential<'_> {
     fn at(&self, mm: f64) -> f64 {
         let curve = &self.model.mechanism().curve;
         let (low, high) = curve.domain();
-        let (x, zero) = (mm * 1e-3, bottom(self.model));
+        let (x, zero) = (mm * 1e-3, bottom(self.model).0);
         (curve.potential(x.clamp(low, high)) - zero + self.tilt * x) * self.per_joule
     }
 
@@ -108,8 +108,8 @@ pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let other: Vec<Role> = layers.iter().map(|layer| layer.role).collect();
     let key = (Identity(Arc::clone(&model)), [span.low, span.high, low, high], other.clone(), style);
     let pane = kept_pane_ui(ui, &style, Place::in_line(ui, area, Sense::DRAG, (0.0, 0.0)), key, || {
-        let across = PlotAxis::between(span.low * 1e3, span.high * 1e3, "displacement (mm)");
-        let up = PlotAxis::between(low * per_joule, high * per_joule, &format!("energy ({unit})"));
+        let across = PlotAxis::between(span.low * 1e3, span.high * 1e3, DISPLACEMENT);
+        let up = PlotAxis::between(low * per_joule, high * per_joule, &axis_name(bottom(&model).1, unit));
         still(&level, span, (across, up), &other)
     });
     let Some(frame) = pane.frame(0) else { return };
@@ -207,7 +207,7 @@ fn landmarks(
     let stops = [left.map(|x| (x, -1.0)), right.map(|x| (x, 1.0))].into_iter().flatten();
     taken.places.extend(stops.map(wall));
     let potential = |x: f64| model.mechanism().curve.potential(x);
-    let joule = potential(barrier.x) - bottom(model);
+    let joule = potential(barrier.x) - bottom(model).0;
     let place = |x: f64, energy: f64| pane.place(0, (x * 1e3, energy)).unwrap_or(rect.min);
     let feet = feet(model, &barrier);
     let heights = feet.map_or([joule; 2], |feet| feet.map(|foot| potential(barrier.x) - potential(foot)));
@@ -278,7 +278,7 @@ fn energy_ends(ui: &Ui, context: &mut ViewContext<'_>, height: f32) -> (f64, f64
     let room = room_for_push(model.largest_base_acceleration());
     let curve = &model.mechanism().curve;
     let landscape = &model.mechanism().landscape;
-    let (tilt, zero, push) = (model.mass() * room, bottom(model), room);
+    let (tilt, zero, push) = (model.mass() * room, bottom(model).0, room);
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
     let mut show = |x: f64, tilted: bool| {
         let (v, side) = (curve.potential(x) - zero, if tilted { tilt * x.abs() } else { 0.0 });

@@ -10,7 +10,7 @@ use crate::app::session::Session;
 use crate::app::task::Background;
 use crate::app::ui::widgets::{dialog_ui, primary};
 use crate::app::views::{Memory, View, stretch};
-use crate::output::{Format, RunPanel, Sheet, SheetText};
+use crate::output::{BASE_ACCELERATION, Format, RunPanel, Sheet, SheetText};
 use crate::system::files;
 
 use super::Window;
@@ -76,7 +76,7 @@ impl Figures {
         self.choose(&folder.join(format!("{stem}-{name}.{ending}")));
         self.times = times(session, memory)
             .map_or_else(Default::default, |(from, to)| [from, to].map(|t| t.to_string()));
-        self.panels = RunPanel::ALL.map(|shown| panel(view) == Some(shown));
+        self.panels = RunPanel::ALL.map(|shown| panels(view).contains(&shown));
         if !self.is_open() {
             self.before = [self.width.clone(), self.font.clone()];
         }
@@ -103,7 +103,7 @@ impl Figures {
     /// What a figure of a view shows, or why there is none.
     fn subject(&self, view: View, session: &Session, memory: &Memory) -> Result<Subject, String> {
         match view {
-            _ if panel(view).is_some() => {
+            _ if !panels(view).is_empty() => {
                 let panels = RunPanel::ALL.into_iter().zip(self.panels);
                 let shown: Vec<RunPanel> = panels.filter_map(|(panel, on)| on.then_some(panel)).collect();
                 if shown.is_empty() {
@@ -112,23 +112,24 @@ impl Figures {
                 Ok(Subject::Run(self.typed_times()?, shown))
             }
             View::Section => Ok(Subject::Section),
-            View::Mechanism => Subject::shapes(session, self.x),
+            View::Mechanism => Ok(Subject::mechanism(self.x)),
             View::Measured => Subject::measured(session),
             View::Well | View::ForceCurve => Ok(Subject::Curve),
             View::Map => Subject::map(session, memory.map_look.surface, memory.map_look.cuts),
             View::UpAndDown => Subject::walks(session),
             View::Basins => Subject::basins(session),
             View::Spectrum => Ok(Subject::spectrum(session)),
+            View::Accuracy => Ok(Subject::accuracy(session)),
             View::Compare | View::Distance | View::BeforeNow => {
                 Err("There is no figure of this view: it shows several scenes, a figure only one.".to_owned())
             }
-            _ => {
-                let why = match view {
-                    View::Accuracy => "its processor times differ from run to run",
-                    _ => "File, Save a picture of the window shows it",
-                };
-                Err(format!("There is no figure of {}: {why}.", view.name()))
+            View::Events => {
+                Err("There is no figure of a table: the button Copy as CSV in the view has its rows."
+                    .to_owned())
             }
+            _ => Err("There is no figure of this view: save one of Mechanism for each motion, or \
+                                     a picture of the window (File)."
+                .to_owned()),
         }
     }
 
@@ -154,14 +155,15 @@ impl Figures {
             return (false, fault.to_owned());
         }
         let mut words = match view {
-            _ if panel(view).is_some() && session.is_continued => {
+            _ if !panels(view).is_empty() && session.is_continued => {
                 "The run of the present scene from its start: no command repeats the changes that were made \
                  during this motion."
             }
-            _ if panel(view).is_some() => "The run of the scene from its start.",
+            _ if !panels(view).is_empty() => "The run of the scene from its start.",
             View::Section => "The states of the run of the scene from its start.",
             View::Well | View::ForceCurve => "Force and potential over displacement.",
-            View::Mechanism => "The centre lines of the flexures where the mass was when this dialog opened.",
+            View::Mechanism => "The mechanism with the mass where it was when this dialog opened.",
+            View::Accuracy => "All runs are computed again; times of the processor differ from run to run.",
             View::Measured => "The record over the run of the scene from its start, or over its force.",
             View::Map | View::UpAndDown | View::Basins => "All runs are computed again. This takes a while.",
             _ => "",
@@ -175,15 +177,16 @@ impl Figures {
     }
 }
 
-fn panel(view: View) -> Option<RunPanel> {
+/// The panels of a run with which the figure of a view begins.
+fn panels(view: View) -> &'static [RunPanel] {
     match view {
-        View::Displacement => Some(RunPanel::Displacement),
-        View::Velocity => Some(RunPanel::Velocity),
-        View::BaseAcceleration => Some(RunPanel::Acceleration),
-        View::Power => Some(RunPanel::Power),
-        View::Energy => Some(RunPanel::Energy),
-        View::PhasePortrait => Some(RunPanel::Portrait),
-        _ => None,
+        View::Displacement => &[RunPanel::Displacement],
+        View::Velocity => &[RunPanel::Velocity],
+        View::BaseAcceleration => &[RunPanel::Acceleration],
+        View::Power => &[RunPanel::Power],
+        View::Energy => &[RunPanel::Energy, RunPanel::Ledger],
+        View::PhasePortrait => &[RunPanel::Portrait],
+        _ => &[],
     }
 }
 
@@ -291,13 +294,16 @@ impl Figures {
             .inner;
         ui.end_row();
         let mut fields = vec![path.inner, width, font];
-        if panel(view).is_some() {
+        if !panels(view).is_empty() {
             ui.label("Panels");
-            ui.horizontal(|ui| {
-                let names: [&str; RunPanel::ALL.len()] =
-                    ["displacement", "velocity", "base acceleration", "power", "energy", "phase portrait"];
-                for (name, panel) in names.into_iter().zip(&mut self.panels) {
-                    ui.checkbox(panel, name);
+            ui.horizontal_wrapped(|ui| {
+                for (panel, is_shown) in RunPanel::ALL.into_iter().zip(&mut self.panels) {
+                    let name = match panel {
+                        RunPanel::Acceleration => BASE_ACCELERATION,
+                        RunPanel::Portrait => "phase portrait",
+                        panel => panel.name(),
+                    };
+                    ui.checkbox(is_shown, name);
                 }
             });
             ui.end_row();

@@ -45,9 +45,9 @@ fn recorded(option: &str) -> Recorded {
         "out" | "jobs" | "quiet" | "plot-data" | "events" | "summary" | "landscape" | "shapes"
         | "contact" | "attractors" | "comparison" | "strict" | "resume" | "force" => Recorded::Nowhere,
         "set" | "tolerance" | "shard" | "check" | "measured" | "shift-s" | "offset-mm" | "time-scale"
-        | "inset" | "plot" | "shapes-plot" | "contact-plot" | "plot-size" | "plot-width-mm"
-        | "plot-height-mm" | "font-pt" | "dpi" | "plot-x" | "plot-y" | "dark" | "no-title" | "panels"
-        | "quantity" | "surface" | "cut" => Recorded::WithPicture,
+        | "inset" | "plot" | "shapes-plot" | "mechanism-plot" | "contact-plot" | "plot-size"
+        | "plot-width-mm" | "plot-height-mm" | "font-pt" | "dpi" | "plot-x" | "plot-y" | "dark"
+        | "no-title" | "panels" | "quantity" | "surface" | "cut" => Recorded::WithPicture,
         _ => Recorded::WithRows,
     }
 }
@@ -61,7 +61,7 @@ pub fn picture_arguments(command: &str, given: impl IntoIterator<Item = Argument
     let words = kept.flat_map(|mut argument| {
         let ending = argument.value.as_deref().and_then(|value| Path::new(value).extension());
         let ending = ending.map(|ending| ending.to_string_lossy().to_ascii_lowercase());
-        if let (Some(name @ ("plot" | "contact-plot" | "shapes-plot")), Some(ending)) =
+        if let (Some(name @ ("plot" | "contact-plot" | "shapes-plot" | "mechanism-plot")), Some(ending)) =
             (argument.option.as_deref(), ending)
         {
             argument.value = Some(format!("{}.{ending}", name.replace('-', "_")));

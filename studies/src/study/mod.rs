@@ -127,7 +127,7 @@ pub use thresholds::{Found, NoThresholds, Onset, Scan, Verdict, threshold, thres
 pub use trace::{Trace, between, simulate_with_trace};
 pub use uncertain::{Draws, MAX_DRAWS, share_in_range};
 pub use walk::{Carry, Direction, Family, NoModel, Visit, up_and_down};
-pub use watch::{Watch, continued_scene, distances, watched_events};
+pub use watch::{Watch, continued_scene, distances, ledger_over, watched_events};
 
 /// Progress and cancellation of a long study.
 #[derive(Clone, Copy)]

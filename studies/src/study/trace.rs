@@ -2,9 +2,12 @@
 //!
 //! A picture must be right even if few samples are requested, so its samples are separate.
 
+use std::sync::atomic::AtomicBool;
+
 use super::simulate::in_order;
+use super::watch::ledger_over;
 use super::{Keep, Recorded, Table, events_table, samples_table};
-use crate::dynamics::{Event, EventKind, Model, Outcome, Phase, Request, Sample, Side};
+use crate::dynamics::{Event, EventKind, LiveLedger, Model, Outcome, Phase, Request, Sample, Side};
 
 /// The data of a run that a picture shows.
 #[derive(Debug, Clone, PartialEq)]
@@ -35,6 +38,17 @@ pub struct Trace {
     pub stops: (f64, f64),
     /// Time in s at which the run ended.
     pub end: f64,
+    /// The energy ledger over the times that are shown; all zero unless [asked for](Self::with_ledger).
+    pub ledger: LiveLedger,
+}
+
+impl Trace {
+    /// The trace with the ledger of this model, whose run it is, over the times that are shown.
+    #[must_use]
+    pub fn with_ledger(self, model: &Model, cancel: Option<&AtomicBool>) -> Self {
+        let ledger = ledger_over(model, (self.shown_from, self.shown_to), cancel);
+        Self { ledger, ..self }
+    }
 }
 
 /// Smallest and largest number of samples over the whole run: several per pixel column, and a bound on
@@ -67,7 +81,7 @@ pub fn simulate_with_trace(
     model: &Model,
     keep: &Keep,
     window: Option<(f64, f64)>,
-    cancel: Option<&std::sync::atomic::AtomicBool>,
+    cancel: Option<&AtomicBool>,
 ) -> (Recorded, Trace) {
     let request = Request { cancel, until_settled: keep.until_settled, ..Request::default() };
     // the sample times depend on the end of the run and on its settled window
@@ -123,6 +137,7 @@ pub fn simulate_with_trace(
         is_section: window.is_some(),
         stops,
         end,
+        ledger: LiveLedger::default(),
     };
     let samples = samples_table(&in_order(&keep.times, &run.samples), |sample| model.output(sample));
     let events = events_table(if keep.events { &run.events } else { &[] });

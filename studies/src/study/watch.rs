@@ -8,6 +8,7 @@
 use std::collections::VecDeque;
 use std::ops::Range;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::models::Models;
 use super::{ModelUse, Table, events_table};
@@ -334,6 +335,27 @@ fn sampling_step(model: &Model) -> f64 {
 
 /// Smallest share of samples at common times for which only these are compared.
 const MIN_COMMON: f64 = 0.25;
+
+/// Parts in which a motion is advanced, between which it may be cancelled.
+const PARTS: u32 = 100;
+
+/// The energy ledger of a model from one time in s to another; that so far if the run ends or is cancelled.
+pub fn ledger_over(model: &Model, (from, to): (f64, f64), cancel: Option<&AtomicBool>) -> LiveLedger {
+    let mut watch = Watch::new(model);
+    let is_cancelled = || cancel.is_some_and(|cancel| cancel.load(Ordering::Relaxed));
+    let mut reach = |end: f64| {
+        let begin = watch.time();
+        for part in 1..=PARTS {
+            let at =
+                if part == PARTS { end } else { begin + (end - begin) * f64::from(part) / f64::from(PARTS) };
+            // one call stops where impacts follow each other closely
+            while !watch.advance(at) && watch.ended().is_none() && !is_cancelled() {}
+        }
+        watch.ledger()
+    };
+    let before = reach(from);
+    reach(to).since(&before)
+}
 
 /// Times in s from `from` to `to` with the distance in m of two motions, about `limit` of them at most.
 ///

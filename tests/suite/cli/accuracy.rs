@@ -56,7 +56,8 @@ fn speed_against_error_comes_with_a_picture() {
     let line = format!("accuracy --case p1 --plot {} --out {}", picture.display(), data.display());
     headless(&line).assert().success().stdout(contains("Dormand-Prince 5(4)").and(contains("least error")));
     let picture = std::fs::read_to_string(picture).unwrap();
-    for word in ["cubic well, no stops (p1)", "Taylor series", "RK4", "velocity Verlet", "CPU time (s)"] {
+    for word in ["cubic well, no stops (p1)", "Taylor series", "RK4", "velocity Verlet", "processor time (s)"]
+    {
         assert!(picture.contains(word), "{word}");
     }
     let csv = std::fs::read_to_string(data).unwrap();

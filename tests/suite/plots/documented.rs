@@ -10,9 +10,15 @@ const OUTPUT: &str = include_str!("../../../docs/output.md");
 const PICTURES: [(&str, &[&str]); 7] = [
     (
         "force.pdf",
-        &["displacement (mm)", "force to hold (N)", "potential (mJ)", "stable equilibrium", "stop"],
+        &[
+            "displacement (mm)",
+            "holding force (N)",
+            "potential above the well (mJ)",
+            "stable equilibrium",
+            "stop",
+        ],
     ),
-    ("ramp.pdf", &["displacement (mm)", "velocity (mm/s)", "base accel. (g)", "time (s)", "impact"]),
+    ("ramp.pdf", &["displacement (mm)", "velocity (mm/s)", "base acceleration (g)", "time (s)", "impact"]),
     ("ramp-section.pdf", &["displacement (mm)", "106", "109", "phase portrait, 106 to 109 s"]),
     ("map.pdf", &["travel limit (mm)", "amplitude (g)", "RMS velocity (mm/s)", "first crossing cell"]),
     ("surface.pdf", &["travel limit (mm)", "amplitude (g)", "RMS velocity (mm/s)"]),
@@ -86,7 +92,7 @@ fn panels_of_a_run_are_drawn_alone_or_one_under_the_other() {
     let all = [
         ("displacement", "displacement (mm)", [true, false, false]),
         ("velocity", "velocity (mm/s)", [false, true, false]),
-        ("acceleration", "base accel. (g)", [false, false, true]),
+        ("acceleration", "base acceleration (g)", [false, false, true]),
     ];
     for (name, words, drawn) in all {
         let line = format!("{run} --panels {name} --plot-data {}", data.display());
@@ -112,7 +118,7 @@ fn panels_of_a_run_are_drawn_alone_or_one_under_the_other() {
     let order = |panels: &str| {
         let texts = says(&format!("{run} --panels {panels}"), &["time (s)"]);
         let place = |label: &str| texts.iter().position(|text| text == label).unwrap();
-        place("velocity (mm/s)") < place("base accel. (g)")
+        place("velocity (mm/s)") < place("base acceleration (g)")
     };
     assert!(order("velocity,acceleration") && !order("acceleration,velocity"));
     // all of them is the picture with its numbers

@@ -170,6 +170,9 @@ fn no_text_lies_on_another_in_a_picture_of_one_motion_or_of_a_record() {
     let lines = [
         "curve paper",
         "curve paper --at-mm 0,7 > --shapes-plot",
+        "curve paper --at-mm -1.5 > --mechanism-plot",
+        "curve harvester > --mechanism-plot",
+        "curve magnet > --mechanism-plot",
         &format!("curve paper --set {hertz} > --contact-plot"),
         &format!("curve paper --measured {pull}"),
         &format!("identify {pull} --of force"),
@@ -181,6 +184,8 @@ fn no_text_lies_on_another_in_a_picture_of_one_motion_or_of_a_record() {
         &format!("simulate paper {SHORT} --panels portrait"),
         &format!("simulate paper {SHORT} --panels velocity,portrait"),
         &format!("simulate paper {SHORT} --panels energy"),
+        &format!("simulate harvester {SHORT} --panels ledger"),
+        &format!("accuracy paper {SHORT} --step-s 1/60"),
         &format!("simulate harvester {SHORT} --panels displacement,power"),
         &format!("simulate paper {SHORT} --measured {record} --inset 1:1.5"),
         &format!("section paper {SHORT}"),

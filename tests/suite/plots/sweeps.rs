@@ -1,6 +1,6 @@
 //! Pictures of sweeps: rest, missing values and categories, in all of them by the same words.
 
-use interwell::output::{Marks, Overlay, Ranges, SweepPicture, View, sweep_chart};
+use interwell::output::{Cut, Marks, NoPicture, Overlay, Ranges, SweepPicture, View, sweep_chart};
 use interwell::study::{Grid, Table};
 
 use super::*;
@@ -105,4 +105,33 @@ fn neighbouring_values_that_are_missing_are_hatched_spans() {
         let Marks::Spans(spans) = &layer.unwrap().marks else { panic!("{layer:?}") };
         assert_eq!((spans.len(), spans[0], spans[count - 1]), (count, (1.5, 2.5), (2.5, 3.5)));
     }
+}
+
+#[test]
+fn a_cut_and_rows_of_another_sweep_are_faults() {
+    let document = changed("paper", &[]);
+    let over = ["stops.travel_limit_mm=1:2:1", "excitation.amplitude_g=0:1:1"];
+    let grid = Grid::new(document.axes(&over).unwrap()).unwrap();
+    let rows = [(1.0, 0.0), (1.0, 1.0), (2.0, 0.0), (2.0, 1.0)];
+    let of_limit = Table::new().each("travel_limit_mm", &rows, |row| row.0);
+    let of_limit = of_limit.each("rms_velocity_m_per_s", &rows, |row| row.1);
+    let of_both = of_limit.clone().each("amplitude_g", &rows, |row| row.1);
+    let fault = |rows, column: &str| {
+        let picture = SweepPicture {
+            rows,
+            grid: &grid,
+            scene: &document.scene,
+            until_settled: None,
+            quantity: "rms_velocity_m_per_s",
+            overlay: Overlay::default(),
+            view: View::Cuts(vec![Cut { column: column.to_owned(), value: 1.0 }]),
+            ranges: Ranges::default(),
+            draws: "",
+        };
+        sweep_chart(&picture).err()
+    };
+    assert_eq!(fault(&of_both, "amplitude_g"), None);
+    let fields = "travel_limit_mm and amplitude_g".to_owned();
+    assert_eq!(fault(&of_both, "mass_g"), Some(NoPicture::NoSuchCut("mass_g".to_owned(), fields)));
+    assert_eq!(fault(&of_limit, "amplitude_g"), Some(NoPicture::NoSuchColumn("amplitude_g".to_owned())));
 }

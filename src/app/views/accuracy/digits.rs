@@ -4,12 +4,9 @@ use eframe::egui::{self, Grid, RichText, Ui};
 
 use crate::app::ui::style::Style;
 use crate::app::ui::widgets::tell;
-use crate::numeric::elementary;
-use crate::output::{Chart, Marks, Panel, PlotAxis, Role};
+use crate::output::{Chart, cost_panel};
 use crate::study::Table;
-use crate::study::accuracy::scene::{
-    AtTolerance, StepSize, Tolerances, duration, length_mm, moment, small_length, step_name,
-};
+use crate::study::accuracy::scene::{AtTolerance, Tolerances, duration, length_mm, moment, small_length};
 
 use super::super::ViewContext;
 use super::super::pane::fresh_pane_ui;
@@ -45,7 +42,8 @@ pub fn digits_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         }
         let rest = ui.available_rect_before_wrap();
         if rest.height() > PICTURE && rest.width() > 200.0 {
-            let pane = fresh_pane_ui(ui, &style, rest, chart(&known, tolerance, stepped.as_ref()));
+            let panel = cost_panel(&known, tolerance, stepped.as_slice());
+            let pane = fresh_pane_ui(ui, &style, rest, Chart::stack(vec![panel], "", Table::new()));
             tell(&pane.response, egui::Role::Image, "error over processor time");
         }
     });
@@ -99,36 +97,4 @@ fn error(run: &AtTolerance, known: &Tolerances) -> (String, String) {
         None => small_length(run.error, known.travel).replace("about ", ""),
     };
     (error, format!("Off by {mm} mm at most, in {}.", duration(known.span)))
-}
-
-/// Share of the travel at which a zero error is drawn: the digits of a double.
-const MIN_ERROR: f64 = 1e-16;
-
-/// Error over processor time, of each run by its tolerance, and of one in fixed steps.
-fn chart(known: &Tolerances, tolerance: f64, stepped: Option<&StepSize>) -> Chart {
-    let smallest = MIN_ERROR * known.travel.max(f64::MIN_POSITIVE);
-    let point = |time: f64, error: f64| (time.max(1e-9), 1e3 * error.max(smallest));
-    let logs = |(x, y): (f64, f64)| (elementary::log10(x), elementary::log10(y));
-    let runs: Vec<(f64, f64)> = known.runs.iter().map(|run| point(run.statistics.cpu_s, run.error)).collect();
-    let ghost = stepped.filter(|run| run.stepped.ended_at.is_none());
-    let ghost = ghost.map(|run| (point(run.stepped.cpu_s, run.error), run));
-    let all = || runs.iter().copied().chain(ghost.map(|ghost| ghost.0));
-    let across = PlotAxis::decades(all().map(|point| point.0), "processor time (s)");
-    let mut panel = Panel::new(across, PlotAxis::decades(all().map(|point| point.1), "error (mm)"));
-    let places: Vec<(f64, f64)> = runs.iter().map(|point| logs(*point)).collect();
-    let names = known.runs.iter().map(|run| format!("{:e}", run.tolerance));
-    let mut words: Vec<((f64, f64), String)> = places.iter().copied().zip(names).collect();
-    panel.draw(Role::Motion, Marks::Path(places.clone()));
-    panel.draw(Role::Interval, Marks::Points(places.clone()));
-    let is_of_scene = |run: &(&AtTolerance, (f64, f64))| run.0.tolerance == tolerance;
-    let of_scene: Vec<_> = known.runs.iter().zip(places).filter(is_of_scene).map(|run| run.1).collect();
-    if !of_scene.is_empty() {
-        panel.layer(Role::Unstable, "the tolerance of the scene", Marks::Points(of_scene));
-    }
-    if let Some((at, run)) = ghost {
-        panel.layer(Role::Method(1), "fixed steps", Marks::Points(vec![logs(at)]));
-        words.push((logs(at), format!("{} in steps of {}", run.scheme.name(), step_name(run.step))));
-    }
-    panel.draw(Role::Motion, Marks::Words(words));
-    Chart::stack(vec![panel], "", Table::new())
 }

@@ -3,7 +3,7 @@
 use eframe::egui::{self, ComboBox, TextStyle, Ui, UiBuilder};
 
 use crate::app::session::accuracy::Accuracy;
-use crate::output::{Chart, Marks, Panel, PlotAxis, Role};
+use crate::output::{Chart, steps_panel};
 use crate::scene::read_number;
 use crate::study::Table;
 use crate::study::accuracy::methods::Scheme;
@@ -34,12 +34,6 @@ const PLOT: f32 = 70.0;
 /// Height in points of a line of text below the plot.
 const LINE_HEIGHT: f32 = 19.0;
 
-/// Room above and below the true motion, as a share of its range.
-const ROOM: f64 = 0.12;
-
-/// Largest number of steps that are drawn as dots.
-const MAX_DOTS: usize = 150;
-
 pub fn steps_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     choice_ui(ui, context);
     let style = context.style;
@@ -54,7 +48,7 @@ pub fn steps_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
             return;
         }
     };
-    let stops = <[_; 2]>::from(model.stop_positions()).map(|stop| stop.map_or(f64::NAN, |x| x * 1e3));
+    let stops = <[_; 2]>::from(model.stop_positions()).map(|stop| stop.unwrap_or(f64::NAN));
     ui.scope(|ui| {
         if !current {
             ui.set_opacity(0.5);
@@ -80,7 +74,8 @@ pub fn steps_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         let plot = rest.with_max_y((rest.bottom() - below).max(rest.top()));
         let mut top = rest.top();
         if plot.height() >= PLOT {
-            pane_ui(ui, context.memory, View::Accuracy, &style, plot, chart(&known, stops.into()));
+            let chart = Chart::stack(vec![steps_panel(&known, stops.into())], "", Table::new());
+            pane_ui(ui, context.memory, View::Accuracy, &style, plot, chart);
             top = plot.bottom() + 4.0;
         }
         ui.scope_builder(UiBuilder::new().max_rect(rest.with_min_y(top)), |ui| {
@@ -179,21 +174,6 @@ fn parsed(text: &str) -> Option<f64> {
     let units = [("ms", 1e-3), ("µs", 1e-6), ("us", 1e-6), ("s", 1.0), ("", 1.0)];
     let (number, unit) = units.iter().find_map(|(name, unit)| Some((text.strip_suffix(name)?, *unit)))?;
     Some(read_number(number).ok()? * unit).filter(|step| step.is_finite())
-}
-
-fn chart(known: &StepSize, stops: (f64, f64)) -> Chart {
-    let path = |points: &[(f64, f64)]| points.iter().map(|(t, x)| (*t, x * 1e3)).collect::<Vec<_>>();
-    let (truth, stepped) = (path(&known.truth), path(&known.ghost));
-    // a diverging run leaves the picture
-    let up = PlotAxis::around(truth.iter().map(|point| point.1), ROOM, "displacement (mm)");
-    let mut panel = Panel::new(PlotAxis::between(0.0, known.drawn, "time (s)"), up);
-    panel.level_stops(stops);
-    panel.layer(Role::Motion, "true", Marks::Trace(truth));
-    panel.layer(Role::Method(1), known.scheme.name(), Marks::Trace(stepped.clone()));
-    if stepped.len() <= MAX_DOTS {
-        panel.draw(Role::Method(1), Marks::Points(stepped));
-    }
-    Chart::stack(vec![panel], "", Table::new())
 }
 
 #[cfg(test)]

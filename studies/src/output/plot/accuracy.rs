@@ -1,4 +1,5 @@
-//! Picture of accuracy against cost: error over CPU time, both logarithmic, one panel for each problem.
+//! Pictures of accuracy against cost: error over processor time, both logarithmic, of the problems, a panel
+//! each, and of one scene, beside its run in fixed steps.
 
 use serde_json::json;
 
@@ -7,11 +8,13 @@ use super::chart::{Chart, Column, Marks, Panel};
 use super::drawn::Drawn;
 use super::figure::Point;
 use super::mark::Caption;
+use super::names::{DISPLACEMENT, PROCESSOR_TIME, TIME};
 use super::role::Role;
 use crate::numeric::elementary;
 use crate::scene::PROGRAM;
 use crate::study::Table;
 use crate::study::accuracy::PROBLEMS;
+use crate::study::accuracy::scene::{StepSize, Tolerances, duration, step_name};
 
 /// An error of 0 is drawn here; smaller errors cannot be told apart in double precision.
 const LEAST: f64 = 1e-17;
@@ -29,7 +32,7 @@ pub fn accuracy_chart(table: &Table, version: &str) -> (Chart, Caption) {
     let (shown, named) = (distinct(problems), distinct(methods));
     let floored = |error: f64| if error == 0.0 { LEAST } else { error };
     let known = times.iter().zip(errors).filter(|(_, error)| error.is_finite()).map(|(time, _)| *time);
-    let across = PlotAxis::decades(known, "CPU time (s)");
+    let across = PlotAxis::decades(known, PROCESSOR_TIME);
     let up = PlotAxis::decades(errors.iter().map(|error| floored(*error).min(10.0)), "error");
     let panel_of = |problem: &&'static str| {
         let mut panel = Panel::new(across.clone(), up.clone());
@@ -56,8 +59,93 @@ pub fn accuracy_chart(table: &Table, version: &str) -> (Chart, Caption) {
         1 => "ten seconds of motion: error against the same motion in twice the digits".to_owned(),
         n => format!("{n} problems of ten seconds each: error against the same motion in twice the digits"),
     };
-    let footer = format!("interwell {version} \u{b7} CPU time on one core of the machine that drew this");
+    let footer =
+        format!("interwell {version} \u{b7} processor time on one core of the machine that drew this");
     let origin = json!({ "program": PROGRAM, "version": version });
     let caption = Caption::of("What accuracy costs", footer, &origin);
     (Chart { columns, subtitle, data: drawn.table() }, caption)
+}
+
+/// Largest number of steps of a run in fixed steps that are drawn as dots.
+const MAX_DOTS: usize = 150;
+
+/// Room above and below the true motion, as a share of its range.
+const ROOM: f64 = 0.12;
+
+/// Share of the travel at which an error of 0 is drawn: the digits of a double.
+const LEAST_SHARE: f64 = 1e-16;
+
+/// The picture of the accuracy of one scene of this `tolerance`, with stops in m, NaN where there is none:
+/// its error over processor time at several tolerances, and beside it each run in fixed steps over the true
+/// one.
+pub fn scene_accuracy_chart(
+    known: &Tolerances,
+    tolerance: f64,
+    stepped: &[StepSize],
+    stops: (f64, f64),
+) -> Chart {
+    let mut columns = vec![Column { width: 1.0, panels: vec![cost_panel(known, tolerance, stepped)] }];
+    let panels: Vec<Panel> = stepped.iter().map(|run| steps_panel(run, stops)).collect();
+    if !panels.is_empty() {
+        columns.push(Column { width: 1.3, panels });
+    }
+    let mut drawn = Drawn::new(["t_s", "x_m", "cpu_s", "error_m", "tolerance", "step_s"], &["method"]);
+    for run in &known.runs {
+        let row = [f64::NAN, f64::NAN, run.statistics.cpu_s, run.error, run.tolerance];
+        drawn.put("tolerance", &row, &[]);
+    }
+    for run in stepped {
+        let word = [run.scheme.name()];
+        let row = [f64::NAN, f64::NAN, run.stepped.cpu_s, run.error, f64::NAN, run.step];
+        drawn.put("fixed_step", &row, &word);
+        run.truth.iter().for_each(|(t, x)| drawn.put("true", &[*t, *x], &[]));
+        let row = |(t, x): &Point| [*t, *x, f64::NAN, f64::NAN, f64::NAN, run.step];
+        run.ghost.iter().for_each(|point| drawn.put("stepped", &row(point), &word));
+    }
+    let about = format!("error of the displacement over {} of motion", duration(known.span));
+    Chart { columns, subtitle: about, data: drawn.table() }
+}
+
+/// Error over processor time, of each run by its tolerance, and of those in fixed steps that reached their
+/// end.
+pub fn cost_panel(known: &Tolerances, tolerance: f64, stepped: &[StepSize]) -> Panel {
+    let least = LEAST_SHARE * known.travel.max(f64::MIN_POSITIVE);
+    let point = |time: f64, error: f64| (time.max(1e-9), 1e3 * error.max(least));
+    let logs = |(x, y): Point| (elementary::log10(x), elementary::log10(y));
+    let runs: Vec<Point> = known.runs.iter().map(|run| point(run.statistics.cpu_s, run.error)).collect();
+    let whole = || stepped.iter().filter(|run| run.stepped.ended_at.is_none());
+    let ghosts: Vec<Point> = whole().map(|run| point(run.stepped.cpu_s, run.error)).collect();
+    let all = || runs.iter().chain(&ghosts);
+    let across = PlotAxis::decades(all().map(|point| point.0), PROCESSOR_TIME);
+    let mut panel = Panel::new(across, PlotAxis::decades(all().map(|point| point.1), "error (mm)"));
+    let places: Vec<Point> = runs.into_iter().map(logs).collect();
+    let names = known.runs.iter().map(|run| format!("{:e}", run.tolerance));
+    let mut words: Vec<(Point, String)> = places.iter().copied().zip(names).collect();
+    panel.draw(Role::Motion, Marks::Path(places.clone()));
+    panel.draw(Role::Interval, Marks::Points(places.clone()));
+    let of_scene = known.runs.iter().zip(places).filter(|run| run.0.tolerance == tolerance);
+    let of_scene = of_scene.map(|run| run.1).collect();
+    panel.layer_if_any(Role::Unstable, "the tolerance of the scene", Marks::Points(of_scene));
+    let ghosts: Vec<Point> = ghosts.into_iter().map(logs).collect();
+    let named = whole().map(|run| format!("{} in steps of {}", run.scheme.name(), step_name(run.step)));
+    words.extend(ghosts.iter().copied().zip(named));
+    panel.layer_if_any(Role::Method(1), "fixed steps", Marks::Points(ghosts));
+    panel.draw(Role::Motion, Marks::Words(words));
+    panel
+}
+
+/// A run in fixed steps over the true one, with stops in m.
+pub fn steps_panel(run: &StepSize, stops: (f64, f64)) -> Panel {
+    let path = |points: &[Point]| points.iter().map(|(t, x)| (*t, x * 1e3)).collect::<Vec<_>>();
+    let (truth, stepped) = (path(&run.truth), path(&run.ghost));
+    // a run that diverges leaves the picture
+    let up = PlotAxis::around(truth.iter().map(|point| point.1), ROOM, DISPLACEMENT);
+    let mut panel = Panel::new(PlotAxis::between(0.0, run.drawn, TIME), up);
+    panel.level_stops((stops.0 * 1e3, stops.1 * 1e3));
+    panel.layer(Role::Motion, "true", Marks::Trace(truth));
+    panel.layer(Role::Method(1), run.scheme.name(), Marks::Trace(stepped.clone()));
+    if stepped.len() <= MAX_DOTS {
+        panel.draw(Role::Method(1), Marks::Points(stepped));
+    }
+    panel
 }

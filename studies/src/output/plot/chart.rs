@@ -116,7 +116,7 @@ pub enum Marks {
     Wall(f64, Side),
     /// Short ticks along this edge; close ticks are left out.
     Ticks(Vec<f64>, Side),
-    /// Texts that begin at their places, shifted to the left if they would leave the frame.
+    /// Texts beside their places: to the right, or where a line or a marker lies there on another side.
     Words(Vec<(Point, String)>),
     /// A colour for each cell of a grid.
     Cells(Cells),

@@ -88,8 +88,8 @@ impl Shown {
     }
 }
 
-/// A number rounded to three digits, as text.
-fn three(value: f64) -> String {
+/// A number rounded to three digits, as text without zeros at its end.
+pub fn three_digits(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return short(value);
     }
@@ -137,7 +137,7 @@ fn shown(rated: &[Rated], frequency_hz: f64) -> Vec<Shown> {
                 to if to.is_nan() => "\u{2013}".to_owned(),
                 to if to.is_infinite() => "lost".to_owned(),
                 0.0 => "none".to_owned(),
-                to => three(to),
+                to => three_digits(to),
             };
             Entry { from: 0.0, to, words }
         };
@@ -177,7 +177,11 @@ fn bands(rated: &[Rated], frequency_hz: f64) -> Shown {
         };
         let at_most = if from < frequency_hz / SEARCHED_SPAN * NEAR { "\u{2264}" } else { "" };
         let at_least = if to * NEAR > frequency_hz * SEARCHED_SPAN { "\u{2265}" } else { "" };
-        Entry { from, to, words: format!("{at_most}{}\u{2013}{at_least}{}", three(from), three(to)) }
+        Entry {
+            from,
+            to,
+            words: format!("{at_most}{}\u{2013}{at_least}{}", three_digits(from), three_digits(to)),
+        }
     };
     let (title, unit, entries) = ("crosses at", "Hz".to_owned(), rated.iter().map(entry).collect());
     Shown { title, mark: Mark::None, unit, best: Best::Most, entries, is_band: true }

@@ -5,6 +5,7 @@ use super::axis::{PlotAxis, Ranges, superscript};
 use super::chart::{Chart, Layer, Marks, Panel};
 use super::drawn::{Drawn, of_rows};
 use super::figure::Point;
+use super::names::{DISPLACEMENT, HOLDING_FORCE, axis_name};
 use super::role::Role;
 use crate::mechanics::{Hertz, Landscape, Mechanism};
 use crate::numeric::round::decade;
@@ -22,27 +23,43 @@ pub fn curve_chart(table: &Table, mechanism: &Mechanism, stops: (f64, f64), rang
     let ends = landscape.equilibria.first().zip(landscape.equilibria.last());
     let ends = ends.map(|(left, right)| (left.x * 1e3, right.x * 1e3));
     let force_range = telling(&pairs(column("force_n"), 1.0), ends);
-    let potential_range = telling(&pairs(column("potential_j"), 1.0), ends);
+    let (zero, from) = zero_of_energy(mechanism, stops);
+    let energies: Vec<f64> = column("potential_j").iter().map(|joule| joule - zero).collect();
+    let potential_range = telling(&pairs(&energies, 1.0), ends);
     let (force, force_unit) = scaled(force_range, &[(1.0, "N"), (1e-3, "mN")]);
     let (potential, potential_unit) = scaled(potential_range, &[(1.0, "J"), (1e-3, "mJ"), (1e-6, "\u{b5}J")]);
-    let across = PlotAxis::around(x.iter().copied(), 0.0, "displacement (mm)").or_given(ranges.x);
+    let across = PlotAxis::around(x.iter().copied(), 0.0, DISPLACEMENT).or_given(ranges.x);
     let height = |(low, high): (f64, f64), scale: f64, least: f64, label: &str| {
         PlotAxis::around([low * scale, high * scale, least], 0.08, label)
     };
-    let up = height(force_range, force, 0.0, &format!("force to hold ({force_unit})")).or_given(ranges.y);
-    let below = height(potential_range, potential, f64::NAN, &format!("potential ({potential_unit})"));
+    let up = height(force_range, force, 0.0, &axis_name(HOLDING_FORCE, force_unit)).or_given(ranges.y);
+    let below = height(potential_range, potential, f64::NAN, &axis_name(from, potential_unit));
     let inside = |at: f64| across.contains(at * 1e3);
     let of_force = pairs(column("force_n"), force);
-    let of_potential = pairs(column("potential_j"), potential);
+    let of_potential = pairs(&energies, potential);
     let (stops_mm, curve) = ((stops.0 * 1e3, stops.1 * 1e3), &mechanism.curve);
     let axes = (across.clone(), up);
     let upper = force_panel(mechanism, axes, force, stops_mm, ("", of_force.clone()));
-    let energy = |mm: f64| curve.potential(mm * 1e-3) * potential;
-    let mut lower = curve_panel((across.clone(), below), landscape, stops_mm, ("", of_potential), energy);
-    lower.equilibria(landscape, |equilibrium| curve.potential(equilibrium.x) * potential);
+    let energy = |mm: f64| (curve.potential(mm * 1e-3) - zero) * potential;
+    let mut lower = curve_panel((across.clone(), below), landscape, stops_mm, ("", of_potential), &energy);
+    lower.equilibria(landscape, |equilibrium| energy(equilibrium.x * 1e3));
     let mut words = subtitle(landscape);
     words.extend(wall(&of_force, &upper, force));
     Chart::stack(vec![upper, lower], words, drawn(table, mechanism, stops, inside))
+}
+
+/// The potential in J from which the energy of the mass is counted: of the deepest well, or else of the lower
+/// of the stops at these positions in m, NaN where there is none, or else 0. Beside it the name of an axis.
+pub fn zero_of_energy(mechanism: &Mechanism, stops: (f64, f64)) -> (f64, &'static str) {
+    let lowest = |places: &mut dyn Iterator<Item = f64>| {
+        places.map(|x| mechanism.curve.potential(x)).filter(|joule| joule.is_finite()).reduce(f64::min)
+    };
+    let wells = mechanism.landscape.equilibria.iter().filter(|equilibrium| equilibrium.stable);
+    if let Some(well) = lowest(&mut wells.map(|well| well.x)) {
+        return (well, "potential above the well");
+    }
+    let stop = lowest(&mut [stops.0, stops.1].into_iter().filter(|stop| stop.is_finite()));
+    stop.map_or((0.0, "potential"), |stop| (stop, "potential above the stop"))
 }
 
 /// Panel of the holding force over displacement in mm, with `per_newton` units of the axis per N: stops in

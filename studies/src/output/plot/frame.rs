@@ -4,12 +4,12 @@ use super::axis::PlotAxis;
 use super::cells::{Cell, Cells, Colours};
 use super::chart::{Layer, Marks, Side};
 use super::figure::{Align, Area, Figure, Point, Shape, Text, distance};
-use super::font;
 use super::mark::{REGIMES, dot, mark, marker};
 use super::page::wrapped;
 use super::role::{Look, Role};
 use super::style::{self, Theme};
 use super::thinned::{extremes, once, thinned};
+use super::{font, labels};
 use crate::numeric::elementary;
 
 /// Half the size of the points of a cloud of few points, and of one of many.
@@ -230,11 +230,9 @@ impl Frame {
             }
             Marks::Words(places) => {
                 for (point, words) in places {
-                    let (x, y) = self.place(*point);
                     let size = style::FOOTER.min(0.95 * self.height_of_one());
-                    let width = font::width(words, size, false);
-                    let x = (x + 8.0).min(right - width - 4.0).max(left + 4.0);
-                    figure.text(Text::new(words, (x, y + 0.5 * size * font::CAPITAL), size, theme.ink));
+                    let at = labels::beside(figure, self.area, self.place(*point), words, size);
+                    figure.text(Text::new(words, at, size, theme.ink));
                 }
             }
             Marks::Cells(cells) => self.cells(figure, cells, theme),

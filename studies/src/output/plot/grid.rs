@@ -2,7 +2,7 @@
 //! below the frames.
 
 use super::axis::PlotAxis;
-use super::cells::Cells;
+use super::cells::{Cells, Colours};
 use super::chart::{Chart, Column, Layer, Marks, Panel};
 use super::figure::{Align, Area, Figure, Text};
 use super::font;
@@ -49,7 +49,9 @@ pub struct Slot<'a> {
     /// Its axes, with as many ticks as they have room for.
     x: PlotAxis,
     y: PlotAxis,
-    bar: Option<PlotAxis>,
+    /// The axis and the colours of the bar to its right: its own, or that of the panel to its left with the
+    /// same vertical axis, so that the name of the bar does not stand beside that axis.
+    bar: Option<(PlotAxis, &'a Colours)>,
     /// Whether the axes show numbers and a label; otherwise they share those of a neighbour.
     shows_x: bool,
     shows_y: bool,
@@ -113,7 +115,7 @@ impl<'a> Grid<'a> {
                     panel,
                     x: panel.x.clone(),
                     y: panel.y.clone(),
-                    bar: panel.bar.clone(),
+                    bar: panel.bar.clone().zip(panel.cells().map(|cells| &cells.colours)),
                     shows_x: panels.get(i + 1).filter(shares_x).is_none(),
                     shows_y: left.is_none_or(|left| left.panel.y != panel.y),
                     x_label: Lines::default(),
@@ -124,7 +126,14 @@ impl<'a> Grid<'a> {
                     area: Area::new(0.0, 0.0, 0.0, 0.0),
                 }
             };
-            let slots = panels.iter().enumerate().map(slot).collect();
+            let mut slots: Vec<Slot> = panels.iter().enumerate().map(slot).collect();
+            if let Some(beside) = stacks.last_mut() {
+                for (left, slot) in beside.slots.iter_mut().zip(&mut slots) {
+                    if !slot.shows_y && slot.bar.is_none() {
+                        slot.bar = left.bar.take();
+                    }
+                }
+            }
             stacks.push(Stack { slots, share: share / total, unit: USUAL, ..Stack::default() });
         }
         let aligned = stacks.iter().flat_map(|stack| &stack.slots).any(|slot| !slot.shows_y);
@@ -201,15 +210,21 @@ impl<'a> Grid<'a> {
 
 /// Smallest relative size at which a label is kept in one line.
 const ONE_LINE: f64 = 0.85;
+/// Smallest relative size at which a label that would need three lines has two.
+const TWO_LINES: f64 = 0.7;
 
 impl Lines {
-    /// The label of an axis in lines no longer than `room`. It is drawn smaller if it then fits in one line,
-    /// or if a word is too long.
+    /// The label of an axis in lines no longer than `room`. It is drawn smaller if it then fits in one line
+    /// or in two, or if a word is too long.
     fn of_axis(axis: &PlotAxis, room: f64) -> Self {
         let fits = |words: &str| (room / font::width(words, style::AXIS, false).max(1.0)).min(1.0);
         let whole = fits(&axis.label);
         let share =
             if whole >= ONE_LINE { whole } else { axis.label.split(' ').map(fits).fold(1.0, f64::min) };
+        let lines = |share: f64| wrapped(&axis.label, share * style::AXIS, false, room + 1e-6).len();
+        // a smaller size where two lines then do
+        let smaller = (0..).map(|i| share - 0.05 * f64::from(i)).take_while(|share| *share >= TWO_LINES);
+        let share = smaller.into_iter().find(|share| lines(*share) <= 2).unwrap_or(share);
         let size = share * style::AXIS;
         // the measured width may exceed the room by a rounding error
         let mut lines = wrapped(&axis.label, size, false, room + 1e-6);
@@ -236,14 +251,14 @@ impl Stack<'_> {
             if slot.shows_y && slot.panel.surface().is_none() {
                 numbers = numbers.max(slot.y.widest_number().min(most));
             }
-            slot.bar = slot.panel.bar.as_ref().map(|axis| axis.with_ticks(count));
+            slot.bar = slot.bar.take().map(|(axis, colours)| (axis.with_ticks(count), colours));
             let count = (self.width / TICK_ROOM.1).round().clamp(2.0, 9.0) as usize;
             slot.x = slot.panel.x.with_ticks(count);
             let along = height + BETWEEN - 6.0;
             slot.y_label = if slot.shows_y { Lines::of_axis(&slot.y, along) } else { Lines::default() };
             let under = self.width.max(USUAL) + 10.0;
             slot.x_label = if slot.shows_x { Lines::of_axis(&slot.x, under) } else { Lines::default() };
-            if let Some(axis) = &slot.bar {
+            if let Some((axis, _)) = &slot.bar {
                 slot.bar_label = Lines::of_axis(axis, along);
                 let label = slot.bar_label.across(LABEL_WIDTH);
                 let right = BAR.0 + BAR.1 + TO_NUMBERS + axis.widest_number() + TO_LABEL + label;
@@ -378,7 +393,7 @@ impl Slot<'_> {
             let x = area.left - numbers - LABEL_WIDTH * (self.y_label.lines.len() - 1 - i) as f64 - 8.0;
             figure.text(centred(line, (x, middle.1), self.y_label.size, true));
         }
-        if let (Some(axis), Some(Cells { colours, .. })) = (&self.bar, self.panel.cells()) {
+        if let Some((axis, colours)) = &self.bar {
             let from = area.right + BAR.0;
             let place = Area::new(from, area.top, from + BAR.1, area.bottom);
             colours.bar(figure, place, axis, theme);

@@ -18,8 +18,12 @@ mod figure;
 mod font;
 mod frame;
 mod grid;
+mod labels;
+mod ledger;
 mod map;
 mod mark;
+mod mechanism;
+mod names;
 mod over_field;
 mod over_time;
 mod page;
@@ -48,19 +52,24 @@ use std::path::Path;
 
 use crate::study::words;
 
-pub use accuracy::accuracy_chart;
+pub use accuracy::{accuracy_chart, cost_panel, scene_accuracy_chart, steps_panel};
 pub use axis::{PlotAxis, Ranges};
 pub use basins::{basins_chart, can_show_starts};
 pub use best::best_chart;
 pub use branch::{branch_chart, loci_chart};
 pub use cells::{Cell, Cells, Colours};
 pub use chart::{Chart, Column, Layer, Marks, Note, Panel, Side};
-pub use comparison::comparison_chart;
-pub use curve::{contact_chart, curve_chart, force_panel};
+pub use comparison::{comparison_chart, three_digits};
+pub use curve::{contact_chart, curve_chart, force_panel, zero_of_energy};
 pub use figure::{Area, Figure, Shape, Text};
 pub use font::{HACK, INTER, width as text_width};
 pub use frame::Frame;
+pub use ledger::{LedgerTerm, ledger_bars, ledger_decimals, ledger_number, share_of_work};
 pub use mark::Caption;
+pub use mechanism::{depends_on_place, mechanism_chart};
+pub use names::{
+    BASE_ACCELERATION, DISPLACEMENT, FREQUENCY, HOLDING_FORCE, PROCESSOR_TIME, TIME, VELOCITY, axis_name,
+};
 pub use over_field::{can_show_over_field, escape_chart, exponents_chart};
 pub use over_time::OverTime;
 pub use page::Room;

@@ -2,6 +2,7 @@
 
 use super::axis::PlotAxis;
 use super::chart::{Layer, Marks, Panel, Side};
+use super::names::{BASE_ACCELERATION, VELOCITY, axis_name};
 use super::role::Role;
 use super::run::RunPanel;
 
@@ -24,12 +25,13 @@ impl RunPanel {
     /// Label of the axis of this quantity in a unit. With a load, power is that into the load.
     pub fn label(self, unit: &str, has_load: bool) -> String {
         let name = match self {
-            Self::Acceleration => "base accel.",
+            Self::Velocity => VELOCITY,
+            Self::Acceleration => BASE_ACCELERATION,
             Self::Power if has_load => "power into the load",
             Self::Power => "power of the base",
             _ => self.name(),
         };
-        format!("{name} ({unit})")
+        axis_name(name, unit)
     }
 
     /// The role of its line.

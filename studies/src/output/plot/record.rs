@@ -6,6 +6,7 @@ use super::chart::{Chart, Marks, Panel};
 use super::curve::{telling, wall};
 use super::drawn::Drawn;
 use super::figure::Point;
+use super::names::{BASE_ACCELERATION, DISPLACEMENT, HOLDING_FORCE, TIME, VELOCITY, axis_name};
 use super::quantity::suited_unit;
 use super::role::Role;
 use crate::dynamics::STANDARD_GRAVITY;
@@ -113,7 +114,7 @@ pub fn identified_chart(
         }
     };
     let is_force = of == "force";
-    let (label, name, k) = if is_force { ("position (mm)", "x_m", 1e3) } else { ("time (s)", "t_s", 1.0) };
+    let (label, name, k) = if is_force { (DISPLACEMENT, "x_m", 1e3) } else { (TIME, "t_s", 1.0) };
     let picture = RecordPicture {
         across: label,
         up,
@@ -140,7 +141,7 @@ pub fn measured_force_chart(found: &ForceComparison, curve: &Table, ranges: Rang
     let name = "computed";
     let computed = Series { name, series: name, points: near.collect(), role: Role::Curve, is_marks: false };
     let picture = RecordPicture {
-        across: "displacement (mm)",
+        across: DISPLACEMENT,
         up,
         unit,
         columns: ["x_m".to_owned(), column_of(Quantity::Force)],
@@ -201,11 +202,11 @@ fn axis_of(quantity: Quantity, values: &[f64]) -> (f64, &'static str, &'static s
     match quantity {
         Quantity::Velocity => {
             let (scale, unit) = suited_unit("m/s", values.iter().copied());
-            (scale, "velocity", unit)
+            (scale, VELOCITY, unit)
         }
-        Quantity::Acceleration => (1.0 / STANDARD_GRAVITY, "acceleration", "g"),
-        Quantity::Force if largest < 0.1 => (1e3, "force", "mN"),
-        Quantity::Force => (1.0, "force", "N"),
+        Quantity::Acceleration => (1.0 / STANDARD_GRAVITY, BASE_ACCELERATION, "g"),
+        Quantity::Force if largest < 0.1 => (1e3, HOLDING_FORCE, "mN"),
+        Quantity::Force => (1.0, HOLDING_FORCE, "N"),
         _ => (1e3, "displacement", "mm"),
     }
 }
@@ -237,7 +238,7 @@ impl RecordPicture {
         let drawn = self.over.iter().flat_map(|series| &series.points).filter(inside);
         let seen: Vec<Point> = shown().chain(drawn).copied().collect();
         let (low, high) = telling(&seen, self.over.first().filter(|_| !self.rises).and_then(Series::zeros));
-        let up_label = format!("{} ({})", self.up, self.unit);
+        let up_label = axis_name(self.up, self.unit);
         let up = PlotAxis::around([low, high], 0.08, &up_label).or_given(ranges.y);
         let mut upper = Panel::new(across.clone(), up);
         let is_cloud = shown().count() < DOTS;
@@ -323,10 +324,11 @@ pub fn measured_chart(
 ) -> Chart {
     let column = |name: &str| trace.path.numbers(name).unwrap_or_default();
     let (scale, words, unit) = axis_of(quantity, &found.measured);
-    let (name, label) = match quantity {
-        Quantity::Velocity => ("v_m_per_s", format!("{words} ({unit})")),
-        Quantity::Acceleration => ("base_accel_m_per_s2", format!("base {words} ({unit})")),
-        _ => ("x_m", format!("{words} ({unit})")),
+    let label = axis_name(words, unit);
+    let name = match quantity {
+        Quantity::Velocity => "v_m_per_s",
+        Quantity::Acceleration => "base_accel_m_per_s2",
+        _ => "x_m",
     };
     let scaled = |times: &[f64], values: &[f64]| -> Vec<Point> {
         let pairs = times.iter().zip(values).map(|(t, value)| (*t, value * scale));
@@ -341,7 +343,7 @@ pub fn measured_chart(
         let (seen_computed, seen_measured) = (seen(&computed), seen(&measured));
         let all = seen_computed.iter().chain(&seen_measured).map(|point| point.1);
         let up = PlotAxis::around(all, 0.09, &label).or_given(given);
-        let mut panel = Panel::new(PlotAxis::between(from, to, "time (s)"), up);
+        let mut panel = Panel::new(PlotAxis::between(from, to, TIME), up);
         if let Some(times) = closer {
             panel.layer(Role::Closer, "shown closer below", Marks::Spans(vec![times]));
         }

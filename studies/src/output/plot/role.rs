@@ -112,6 +112,20 @@ pub enum Role {
     Pin(usize),
     /// The mass at rest.
     Resting,
+    /// The frame.
+    Frame,
+    /// The proof mass.
+    Mass,
+    /// A travel limit.
+    Limit,
+    /// A magnet.
+    Magnet,
+    /// A coil or a piezoelectric layer.
+    Transducer,
+    /// Energy that a person put in.
+    ByHand,
+    /// Energy that damping took.
+    Taken,
 }
 
 /// Dash and gap of the pinned motions, by which they can be distinguished.
@@ -225,6 +239,12 @@ impl Theme {
             Role::Several => of(self.paper),
             Role::Closer => of(self.rest),
             Role::Potential => fine(self.unstable),
+            Role::ByHand | Role::Mass => of(self.unstable),
+            Role::Frame => Look { hatch: Some(self.rest_hatch), ..of(self.rest) },
+            Role::Limit => of(self.wall),
+            Role::Magnet => of(self.impact),
+            Role::Transducer => Look { width: 3.0 * style::LINE, ..of(self.second) },
+            Role::Taken => of(self.soft),
             Role::Total => of(self.energy),
             Role::Barrier => dotted(self.soft),
             Role::Resting => marked(self.unstable, Marker::Square),

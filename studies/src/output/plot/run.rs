@@ -1,17 +1,20 @@
 //! Picture of one run: displacement, velocity and base acceleration over time, and the phase portrait.
 
 use std::ops::Range;
+use std::sync::atomic::AtomicBool;
 
 use super::axis::{PlotAxis, Ranges};
 use super::chart::{Chart, Column, Layer, Marks, Note, Panel};
 use super::drawn::Drawn;
 use super::figure::Point;
+use super::ledger::{LedgerTerm, ledger_panel};
 use super::mark::REGIMES;
+use super::names::{DISPLACEMENT, TIME};
 use super::over_time::OverTime;
 use super::portrait::portrait_panel;
 use super::quantity::suited_unit;
 use super::role::Role;
-use crate::dynamics::{Outcome, STANDARD_GRAVITY, Summary};
+use crate::dynamics::{Model, Outcome, STANDARD_GRAVITY, Summary};
 use crate::mechanics::Mechanism;
 use crate::numeric::{extent, short};
 use crate::study::{Table, Trace, words};
@@ -29,6 +32,8 @@ words! {
         Power = "power",
         /// Potential and kinetic energy over time.
         Energy = "energy",
+        /// Work, losses and stored energy over the times shown, as bars.
+        Ledger = "ledger",
         /// Velocity over displacement.
         Portrait = "portrait",
     }
@@ -37,6 +42,11 @@ words! {
 impl RunPanel {
     /// The default panels. If they are shown together, numbers are printed beside them.
     pub const USUAL: [Self; 4] = [Self::Displacement, Self::Velocity, Self::Acceleration, Self::Portrait];
+
+    /// The trace of a run of this model with the ledger, if one of these panels shows it.
+    pub fn complete(panels: &[Self], trace: Trace, model: &Model, cancel: &AtomicBool) -> Trace {
+        if panels.contains(&Self::Ledger) { trace.with_ledger(model, Some(cancel)) } else { trace }
+    }
 }
 
 /// The picture of a run from its trace and its summary, of a mass in kg, with these panels. The trace says
@@ -114,7 +124,7 @@ impl Seen<'_> {
     }
 
     fn is_over_time(&self) -> bool {
-        self.panels.iter().any(|panel| *panel != RunPanel::Portrait)
+        self.panels.iter().any(|panel| !matches!(panel, RunPanel::Portrait | RunPanel::Ledger))
     }
 
     /// The rows from a time on up to where the picture ends.
@@ -132,14 +142,13 @@ impl Seen<'_> {
         let room = if low < high { NEAR * (high - low) } else { 3.0 * high.abs() };
         let stops = [self.trace.stops.0, self.trace.stops.1];
         let near = stops.into_iter().filter(|stop| (low - room..=high + room).contains(stop));
-        let axis =
-            PlotAxis::around(x.iter().copied().chain(near).map(|x| x * 1e3), 0.11, "displacement (mm)");
+        let axis = PlotAxis::around(x.iter().copied().chain(near).map(|x| x * 1e3), 0.11, DISPLACEMENT);
         axis.or_given(self.displacements)
     }
 
     fn velocity(&self, v: &[f64]) -> PlotAxis {
         let (scale, unit) = self.speed;
-        PlotAxis::around(v.iter().map(|v| v * scale), 0.08, &format!("velocity ({unit})"))
+        PlotAxis::around(v.iter().map(|v| v * scale), 0.08, &RunPanel::Velocity.label(unit, false))
     }
 
     fn stops_mm(&self) -> (f64, f64) {
@@ -166,6 +175,7 @@ impl Seen<'_> {
                 self.quantity(kind, (self.power, per_watt), up, 1.0)
             }
             RunPanel::Energy => self.energy(),
+            RunPanel::Ledger => self.ledger(),
             RunPanel::Portrait => self.portrait(),
         }
     }
@@ -186,7 +196,7 @@ impl Seen<'_> {
         let on =
             |side: &str| impacts.clone().filter(|impact| *impact.1 == side).map(|impact| *impact.0).collect();
         OverTime {
-            time: PlotAxis::between(trace.shown_from, trace.shown_to, "time (s)"),
+            time: PlotAxis::between(trace.shown_from, trace.shown_to, TIME),
             rests: (self.rest_spans().collect(), self.rests),
             impacts: [on("left"), on("right")],
             stops: self.stops_mm(),
@@ -222,7 +232,11 @@ impl Seen<'_> {
         let barrier = self.mechanism.landscape.barrier.map(|barrier| self.potential(barrier.x));
         let values = || total.iter().map(|point| point.1).chain(barrier).chain([0.0]);
         let (scale, unit) = suited_unit("J", values());
-        let up = PlotAxis::around(values().map(|energy| energy * scale), 0.08, &format!("energy ({unit})"));
+        let up = PlotAxis::around(
+            values().map(|energy| energy * scale),
+            0.08,
+            &RunPanel::Energy.label(unit, false),
+        );
         let beside = self.beside();
         let mut panel = Panel::new(beside.time.clone(), up);
         panel.rests(&beside);
@@ -236,6 +250,14 @@ impl Seen<'_> {
         panel.layer(Role::Total, "potential and kinetic energy", scaled(total));
         panel.layer(Role::Potential, "potential energy", scaled(potential));
         panel
+    }
+
+    fn ledger(&self) -> Panel {
+        let trace = self.trace;
+        let terms = LedgerTerm::ALL.iter().map(|term| (term.energy)(&trace.ledger));
+        let (per_joule, name) = suited_unit("J", terms);
+        let times = [trace.shown_from, trace.shown_to].map(short);
+        ledger_panel(&trace.ledger, trace.has_load, (&times[0], &times[1]), (1.0 / per_joule, name))
     }
 
     /// Time, displacement and velocity once a forcing period, in SI.
@@ -277,7 +299,10 @@ impl Seen<'_> {
         let has_power = self.has(RunPanel::Power);
         let names = names.chain(has_power.then_some("power_w"));
         let names = names.chain(has_energy.then_some(["potential_j", "kinetic_j"]).into_iter().flatten());
-        let mut drawn = Drawn::new(names, &["side"]);
+        let has_ledger = self.has(RunPanel::Ledger);
+        let names: Vec<&str> = names.chain(has_ledger.then_some("energy_j")).collect();
+        let count = names.len();
+        let mut drawn = Drawn::new(names, if has_ledger { &["side", "term"] } else { &["side"] });
         let shown =
             [RunPanel::Displacement, RunPanel::Velocity, RunPanel::Acceleration].map(|panel| self.has(panel));
         for i in self.rows(trace.shown_from).filter(|_| self.is_over_time()) {
@@ -288,6 +313,11 @@ impl Seen<'_> {
                 row.extend([self.potential(x[i]), 0.5 * self.mass * v[i] * v[i]]);
             }
             drawn.put("run", &row, &[]);
+        }
+        for term in LedgerTerm::ALL.iter().filter(|term| has_ledger && term.role != Role::ByHand) {
+            let mut row = vec![f64::NAN; count];
+            row[count - 1] = (term.energy)(&trace.ledger);
+            drawn.put("ledger", &row, &["", term.name]);
         }
         for i in self.rows(trace.portrait_from).filter(|_| self.has(RunPanel::Portrait)) {
             drawn.put("portrait", &[t[i], x[i], v[i]], &[]);

@@ -3,6 +3,7 @@
 use super::axis::{PlotAxis, Ranges};
 use super::chart::{Chart, Marks, Panel};
 use super::drawn::Drawn;
+use super::names::{DISPLACEMENT, VELOCITY, axis_name};
 use super::quantity::suited_unit;
 use super::role::Role;
 use super::swept::label;
@@ -105,11 +106,11 @@ impl Along {
     fn of(numbers: &[f64], name: &str) -> Self {
         let speed = |words: &str| {
             let (scale, unit) = suited_unit("m/s", numbers.iter().copied());
-            (scale, format!("{words} ({unit})"))
+            (scale, axis_name(words, unit))
         };
         let (scale, label) = match name {
-            "x_m" => (1e3, "displacement (mm)".to_owned()),
-            "v_m_per_s" => speed("velocity"),
+            "x_m" => (1e3, DISPLACEMENT.to_owned()),
+            "v_m_per_s" => speed(VELOCITY),
             "v_in_m_per_s" => speed("velocity of the impact"),
             _ => (1.0, "phase of the drive (\u{b0})".to_owned()),
         };

@@ -4,10 +4,12 @@ use super::axis::PlotAxis;
 use super::chart::{Chart, Marks, Panel};
 use super::drawn::Drawn;
 use super::figure::Point;
+use super::names::DISPLACEMENT;
 use super::role::Role;
 use crate::mechanics::Mechanism;
 use crate::mechanics::flexure::State;
 use crate::numeric::short;
+use crate::study::Table;
 
 /// Number of states up to which each has a name in the legend; of more the first and the last have one.
 const NAMED: usize = 6;
@@ -22,7 +24,7 @@ pub fn shapes_chart(states: &[State], mechanism: &Mechanism, stops: (f64, f64)) 
     let all: Vec<Vec<Vec<Point>>> = states.iter().map(lines).collect();
     let places = || all.iter().flatten().flatten();
     let ends = [stops.0, stops.1].map(|stop| stop * 1e3);
-    let across = PlotAxis::around(places().map(|at| at.0).chain(ends), 0.08, "displacement (mm)");
+    let across = PlotAxis::around(places().map(|at| at.0).chain(ends), 0.08, DISPLACEMENT);
     let along = PlotAxis::around(places().map(|at| at.1), 0.04, "along the flexures (mm)");
     let mut panel = Panel::new(across, along);
     panel.upright_stops((ends[0], ends[1]));
@@ -45,10 +47,11 @@ pub fn shapes_chart(states: &[State], mechanism: &Mechanism, stops: (f64, f64)) 
         1 => "centre line of the flexures",
         _ => "centre lines: above the mass the buckling flexures, below it the parallel ones",
     };
-    Chart::stack(vec![panel], format!("{about}; sideways stretched"), drawn(states, stops))
+    Chart::stack(vec![panel], format!("{about}; sideways stretched"), drawn(states, stops, &[]))
 }
 
-fn drawn(states: &[State], stops: (f64, f64)) -> crate::study::Table {
+/// The flexures in these states, stops and masses in m.
+pub(super) fn drawn(states: &[State], stops: (f64, f64), masses: &[f64]) -> Table {
     let mut drawn = Drawn::new(["x_m", "s_m", "px_m", "py_m"], &["flexure"]);
     for state in states {
         for line in &state.lines {
@@ -60,6 +63,7 @@ fn drawn(states: &[State], stops: (f64, f64)) -> crate::study::Table {
     for at in [stops.0, stops.1].into_iter().filter(|at| at.is_finite()) {
         drawn.put("stop", &[at], &[]);
     }
+    masses.iter().for_each(|x| drawn.put("mass", &[*x], &[]));
     drawn.table()
 }
 

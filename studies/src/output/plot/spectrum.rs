@@ -4,6 +4,7 @@ use super::axis::{PlotAxis, Ranges};
 use super::chart::{Chart, Marks, Panel};
 use super::drawn::Drawn;
 use super::figure::Point;
+use super::names::{BASE_ACCELERATION, FREQUENCY, VELOCITY};
 use super::role::Role;
 use crate::numeric::{Taper, elementary, extent, short};
 use crate::study::{Signal, Spectrum, words};
@@ -33,7 +34,7 @@ pub fn spectrum_chart(spectrum: &Spectrum, quantity: SpectrumQuantity, ranges: R
     let (frequencies, values) = (column("frequency_hz"), column(quantity.name()));
     let label = &label(spectrum.signal, quantity);
     let decades = if quantity == SpectrumQuantity::Density { 2.0 * DECADES } else { DECADES };
-    let across = PlotAxis::between(0.0, shown_to(spectrum, frequencies, column("psd")), "frequency (Hz)");
+    let across = PlotAxis::between(0.0, shown_to(spectrum, frequencies, column("psd")), FREQUENCY);
     let across = across.or_given(ranges.x);
     let seen = frequencies.iter().zip(values).filter(|line| across.contains(*line.0));
     let seen = seen.map(|pair| *pair.1).filter(|value| *value > 0.0);
@@ -71,8 +72,8 @@ pub fn spectrum_chart(spectrum: &Spectrum, quantity: SpectrumQuantity, ranges: R
 fn label(signal: Signal, quantity: SpectrumQuantity) -> String {
     let (name, unit, squared) = match signal {
         Signal::Displacement => ("displacement", "m", "m\u{b2}"),
-        Signal::Velocity => ("velocity", "m/s", "m\u{b2}/s\u{b2}"),
-        Signal::BaseAcceleration => ("base acceleration", "m/s\u{b2}", "m\u{b2}/s\u{2074}"),
+        Signal::Velocity => (VELOCITY, "m/s", "m\u{b2}/s\u{b2}"),
+        Signal::BaseAcceleration => (BASE_ACCELERATION, "m/s\u{b2}", "m\u{b2}/s\u{2074}"),
     };
     match quantity {
         SpectrumQuantity::Amplitude => format!("amplitude of {name} ({unit})"),

@@ -47,6 +47,12 @@ pub enum NoPicture {
          two --over"
     )]
     NoMap,
+    /// A cut along a column that the map does not have.
+    #[error("--cut {0}: the map is over {1}; cut it at a value of one of them")]
+    NoSuchCut(String, String),
+    /// Rows of another sweep.
+    #[error("the rows have no column {0}, which is swept: draw them with the grid of their own sweep")]
+    NoSuchColumn(String),
     /// Words instead of heights.
     #[error("--surface shows heights, and --quantity {0} has words: name a column of numbers")]
     FlatWords(String),
@@ -89,8 +95,16 @@ pub fn can_show<'a>(
                 return Err(NoPicture::FlatWords(quantity.to_owned()));
             }
             (View::Surface, n) if n > MAX_SURFACE_CELLS => return Err(NoPicture::SurfaceCells(n)),
+            (View::Cuts(cuts), _) => {
+                if let Some(cut) = cuts.iter().find(|cut| !grid.columns().contains(&cut.column)) {
+                    return Err(NoPicture::NoSuchCut(cut.column.clone(), grid.columns().join(" and ")));
+                }
+            }
             _ => {}
         }
+    }
+    if let Some(name) = grid.columns().iter().find(|name| table.numbers(name).is_none()) {
+        return Err(NoPicture::NoSuchColumn(name.clone()));
     }
     match grid.axes().len() {
         1 | 2 if grid.cells() > MAX_PICTURE_CELLS => Err(NoPicture::Cells(grid.cells())),

@@ -34,6 +34,17 @@ words! {
     }
 }
 
+impl Scheme {
+    /// Its word on a command line.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::SemiImplicitEuler => "euler",
+            Self::VelocityVerlet => "verlet",
+            Self::RungeKutta4 => "rk4",
+        }
+    }
+}
+
 /// Statistics of a run by one of these methods or by the program. SI.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Statistics {

@@ -1,0 +1,23 @@
+//! Names of the axes, one for each quantity, on paper and on the screen.
+
+use crate::study::with_unit;
+
+/// Time.
+pub const TIME: &str = "time (s)";
+/// Displacement of the mass, or the position of a measured force.
+pub const DISPLACEMENT: &str = "displacement (mm)";
+/// Time that the processor took.
+pub const PROCESSOR_TIME: &str = "processor time (s)";
+/// Frequency.
+pub const FREQUENCY: &str = "frequency (Hz)";
+/// Acceleration of the base, without its unit.
+pub const BASE_ACCELERATION: &str = "base acceleration";
+/// Velocity of the mass, without its unit.
+pub const VELOCITY: &str = "velocity";
+/// The force dV/dx that would hold the mass at a displacement, without its unit.
+pub const HOLDING_FORCE: &str = "holding force";
+
+/// The name of an axis with its unit.
+pub fn axis_name(words: &str, unit: &str) -> String {
+    with_unit(words.to_owned(), unit)
+}
