@@ -74,7 +74,7 @@ pub fn steps_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         let plot = rest.with_max_y((rest.bottom() - below).max(rest.top()));
         let mut top = rest.top();
         if plot.height() >= PLOT {
-            let chart = Chart::stack(vec![steps_panel(&known, stops.into())], "", Table::new());
+            let chart = Chart::stack(vec![steps_panel(&known, 0, stops.into())], "", Table::new());
             pane_ui(ui, context.memory, View::Accuracy, &style, plot, chart);
             top = plot.bottom() + 4.0;
         }

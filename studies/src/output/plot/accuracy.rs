@@ -85,7 +85,7 @@ pub fn scene_accuracy_chart(
     stops: (f64, f64),
 ) -> Chart {
     let mut columns = vec![Column { width: 1.0, panels: vec![cost_panel(known, tolerance, stepped)] }];
-    let panels: Vec<Panel> = stepped.iter().map(|run| steps_panel(run, stops)).collect();
+    let panels: Vec<Panel> = stepped.iter().enumerate().map(|(i, run)| steps_panel(run, i, stops)).collect();
     if !panels.is_empty() {
         columns.push(Column { width: 1.3, panels });
     }
@@ -113,29 +113,34 @@ pub fn cost_panel(known: &Tolerances, tolerance: f64, stepped: &[StepSize]) -> P
     let point = |time: f64, error: f64| (time.max(1e-9), 1e3 * error.max(least));
     let logs = |(x, y): Point| (elementary::log10(x), elementary::log10(y));
     let runs: Vec<Point> = known.runs.iter().map(|run| point(run.statistics.cpu_s, run.error)).collect();
-    let whole = || stepped.iter().filter(|run| run.stepped.ended_at.is_none());
-    let ghosts: Vec<Point> = whole().map(|run| point(run.stepped.cpu_s, run.error)).collect();
-    let all = || runs.iter().chain(&ghosts);
+    let whole = stepped.iter().enumerate().filter(|(_, run)| run.stepped.ended_at.is_none());
+    let ghosts: Vec<(usize, Point)> =
+        whole.map(|(i, run)| (i, point(run.stepped.cpu_s, run.error))).collect();
+    let all = || runs.iter().chain(ghosts.iter().map(|ghost| &ghost.1));
     let across = PlotAxis::decades(all().map(|point| point.0), PROCESSOR_TIME);
     let mut panel = Panel::new(across, PlotAxis::decades(all().map(|point| point.1), "error (mm)"));
     let places: Vec<Point> = runs.into_iter().map(logs).collect();
     let names = known.runs.iter().map(|run| format!("{:e}", run.tolerance));
-    let mut words: Vec<(Point, String)> = places.iter().copied().zip(names).collect();
+    let words = places.iter().copied().zip(names).collect();
     panel.draw(Role::Motion, Marks::Path(places.clone()));
     panel.draw(Role::Interval, Marks::Points(places.clone()));
     let of_scene = known.runs.iter().zip(places).filter(|run| run.0.tolerance == tolerance);
     let of_scene = of_scene.map(|run| run.1).collect();
     panel.layer_if_any(Role::Unstable, "the tolerance of the scene", Marks::Points(of_scene));
-    let ghosts: Vec<Point> = ghosts.into_iter().map(logs).collect();
-    let named = whole().map(|run| format!("{} in steps of {}", run.scheme.name(), step_name(run.step)));
-    words.extend(ghosts.iter().copied().zip(named));
-    panel.layer_if_any(Role::Method(1), "fixed steps", Marks::Points(ghosts));
+    for (i, at) in ghosts {
+        panel.layer(Role::Method(i + 1), in_steps(&stepped[i]), Marks::Points(vec![logs(at)]));
+    }
     panel.draw(Role::Motion, Marks::Words(words));
     panel
 }
 
-/// A run in fixed steps over the true one, with stops in m.
-pub fn steps_panel(run: &StepSize, stops: (f64, f64)) -> Panel {
+/// A run in fixed steps in words.
+fn in_steps(run: &StepSize) -> String {
+    format!("{} in steps of {}", run.scheme.name(), step_name(run.step))
+}
+
+/// A run in fixed steps over the true one, with stops in m; `place` is that among several.
+pub fn steps_panel(run: &StepSize, place: usize, stops: (f64, f64)) -> Panel {
     let path = |points: &[Point]| points.iter().map(|(t, x)| (*t, x * 1e3)).collect::<Vec<_>>();
     let (truth, stepped) = (path(&run.truth), path(&run.ghost));
     // a run that diverges leaves the picture
@@ -143,9 +148,9 @@ pub fn steps_panel(run: &StepSize, stops: (f64, f64)) -> Panel {
     let mut panel = Panel::new(PlotAxis::between(0.0, run.drawn, TIME), up);
     panel.level_stops((stops.0 * 1e3, stops.1 * 1e3));
     panel.layer(Role::Motion, "true", Marks::Trace(truth));
-    panel.layer(Role::Method(1), run.scheme.name(), Marks::Trace(stepped.clone()));
+    panel.layer(Role::Method(place + 1), in_steps(run), Marks::Trace(stepped.clone()));
     if stepped.len() <= MAX_DOTS {
-        panel.draw(Role::Method(1), Marks::Points(stepped));
+        panel.draw(Role::Method(place + 1), Marks::Points(stepped));
     }
     panel
 }

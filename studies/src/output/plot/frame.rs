@@ -232,7 +232,9 @@ impl Frame {
                 for (point, words) in places {
                     let size = style::FOOTER.min(0.95 * self.height_of_one());
                     let at = labels::beside(figure, self.area, self.place(*point), words, size);
-                    figure.text(Text::new(words, at, size, theme.ink));
+                    if let Some(at) = at {
+                        figure.text(Text::new(words, at, size, theme.ink));
+                    }
                 }
             }
             Marks::Cells(cells) => self.cells(figure, cells, theme),

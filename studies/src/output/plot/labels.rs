@@ -36,8 +36,8 @@ fn covers(shape: &Shape, area: Area) -> bool {
 }
 
 /// Where words of this size begin beside a point, within a frame: to its right, or where that is covered on
-/// another side; the first place where none is free.
-pub fn beside(figure: &Figure, within: Area, (x, y): Point, words: &str, size: f64) -> Point {
+/// another side. Where no place is free it is the first one, `None` if another text stands there.
+pub fn beside(figure: &Figure, within: Area, (x, y): Point, words: &str, size: f64) -> Option<Point> {
     let (wide, high) = (font::width(words, size, false), size * font::CAPITAL);
     let middle = y + 0.5 * high;
     let usual = ((x + BESIDE[0]).min(within.right - wide - EDGE).max(within.left + EDGE), middle);
@@ -55,15 +55,20 @@ pub fn beside(figure: &Figure, within: Area, (x, y): Point, words: &str, size: f
             (x - 0.5 * wide, below),
         ]
     });
-    let is_free = |(left, bottom): &Point| {
-        let area = Area::new(left - CLEAR, bottom - high - CLEAR, left + wide + CLEAR, bottom + CLEAR);
+    let area = |(left, bottom): Point| {
+        Area::new(left - CLEAR, bottom - high - CLEAR, left + wide + CLEAR, bottom + CLEAR)
+    };
+    let is_free = |place: &Point| {
+        let area = area(*place);
         let is_inside = area.left >= within.left + CLEAR
             && area.right <= within.right - CLEAR
             && area.top >= within.top
             && area.bottom <= within.bottom;
         is_inside && !figure.shapes.iter().any(|shape| covers(shape, area))
     };
-    std::iter::once(usual).chain(around).find(is_free).unwrap_or(usual)
+    let mut texts = figure.shapes.iter().filter(|shape| matches!(shape, Shape::Text(_)));
+    let free = std::iter::once(usual).chain(around).find(is_free);
+    free.or_else(|| (!texts.any(|text| covers(text, area(usual)))).then_some(usual))
 }
 
 #[cfg(test)]
