@@ -6,7 +6,7 @@ use clap::Args;
 use interwell::output::{Caption, identified, identified_chart};
 use interwell::questions::{Identify, IdentifyAnswer, Progress, WhatToIdentify};
 use interwell::scene::Timing;
-use interwell::study::Identity;
+use interwell_studies::study::Identity;
 
 use super::measured::{ColumnOptions, PositionOptions};
 use super::support::Watch;

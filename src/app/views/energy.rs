@@ -9,7 +9,7 @@ use crate::app::ui::style::Style;
 use crate::app::words::numbers::{UNKNOWN, with_minus};
 use crate::dynamics::LiveLedger;
 use crate::numeric::{self, elementary};
-use crate::study::Watch;
+use interwell_studies::study::Watch;
 
 use super::ViewContext;
 use super::ghosts::dashed;

@@ -13,7 +13,7 @@ use crate::app::task::Identity;
 use crate::app::words::numbers::three;
 use crate::dynamics::{Model, STANDARD_GRAVITY};
 use crate::output::{Chart, Layer, Marks, PlotAxis, Role, force_panel};
-use crate::study::Table;
+use interwell_studies::study::Table;
 
 use super::ghosts::ghosts;
 use super::hand::axes_input;

@@ -1,5 +1,7 @@
 //! Questions about designs: comparison of scenes, and the best design for an environment.
 
+use std::sync::Arc;
+
 use super::grid::{check_until, drive_alone};
 use super::{Error, Progress, Simulation, sweep};
 use crate::scene::{
@@ -15,7 +17,7 @@ use crate::system::threads::Pool;
 
 /// Comparison of scenes under the sine and with the run settings of the first one, each from rest.
 ///
-/// [`Compare::table`] has one row per scene: `scene`, `release_g`, `crossing_g`, `crossing_low_g`,
+/// [`CompareAnswer::table`] has one row per scene: `scene`, `release_g`, `crossing_g`, `crossing_low_g`,
 /// `crossing_high_g`, `crossing_undecided`, `rms_velocity_m_per_s`, `mean_load_power_w`, `max_abs_x_m`,
 /// `impact_speed_max_m_per_s`, `crosses_from_hz`, `crosses_to_hz`, `threshold_sensitivity` (a share) and
 /// `most_sensitive_to`. A value is missing where a scene has no such number.
@@ -26,8 +28,8 @@ use crate::system::threads::Pool;
 /// length, thickness or gap of the mechanism at a time by 1 % up and down. Each of these changes is a search
 /// of its own, for which flexures are solved anew.
 ///
-/// Errors: [`Error::Unfit`] if the excitation of the first scene is no sine; [`Error::Scene`] if another
-/// scene has faults under it; [`Error::Argument`] for `until_settled`; [`Error::Cancelled`].
+/// Errors: [`Error::Unfit`] if the common excitation is no sine; [`Error::Scene`] if a scene has faults under
+/// it; [`Error::Argument`] for `until_settled`; [`Error::Cancelled`].
 ///
 /// ```
 /// use interwell_studies::questions::{Compare, Progress, Simulation};
@@ -35,10 +37,10 @@ use crate::system::threads::Pool;
 /// // Stops at 2 mm release the mass at a lower amplitude than stops at 4 mm.
 /// let far = Simulation::preset("nominal-cubic")?.with("run.tolerance", 1e-6)?;
 /// let near = far.with("stops.travel_limit_mm", 2.0)?;
-/// let question = Compare { with: vec![("near".into(), near)], name: "far".into(), until_settled: None };
-/// let rated = question.run(&far, &Progress::none())?;
-/// assert!(rated[1].release_g < rated[0].release_g);
-/// assert_eq!(Compare::table(&rated).rows(), 2);
+/// let question = Compare { with: vec![("near".into(), near)], name: "far".into(), ..Compare::default() };
+/// let answer = question.run(&far, &Progress::none())?;
+/// assert!(answer.rated[1].release_g < answer.rated[0].release_g);
+/// assert_eq!(answer.table().rows(), 2);
 /// # Ok::<(), interwell_studies::questions::Error>(())
 /// ```
 #[derive(Debug, Clone, Default)]
@@ -47,37 +49,72 @@ pub struct Compare {
     pub with: Vec<(String, Simulation)>,
     /// The name of the first scene, which is passed to `run`.
     pub name: String,
+    /// The scene whose sine and run settings all scenes have, in place of the first one's.
+    pub environment: Option<Simulation>,
     /// Each run continues until its motion repeats, at most up to this time in s.
     pub until_settled: Option<f64>,
 }
 
 impl Compare {
     /// Rates all scenes, the first one first.
-    pub fn run(&self, simulation: &Simulation, progress: &Progress) -> Result<Vec<Rated>, Error> {
-        needs_a_sine(simulation.document())?;
-        let first = (self.name.clone(), simulation);
-        let others = self.with.iter().map(|(name, other)| (name.clone(), other));
-        let mut all = Vec::new();
-        for (name, other) in std::iter::once(first).chain(others) {
-            let changed = in_environment(other.document(), simulation.document());
-            let other = other.with_document(changed, progress)?;
-            check_until(self.until_settled, other.document(), other.model())?;
-            let (document, mechanism) = (other.document().clone(), other.mechanism().clone());
-            all.push(Alternative { name, scene: document.scene, files: document.files, mechanism });
-        }
+    pub fn run(&self, simulation: &Simulation, progress: &Progress) -> Result<CompareAnswer, Error> {
+        let alternative = |(name, simulation): (String, Simulation)| {
+            let (document, mechanism) = (simulation.document(), Arc::clone(simulation.mechanism()));
+            let (scene, files) = (document.scene.clone(), document.files.clone());
+            Alternative { name, scene, files, mechanism }
+        };
+        let all: Vec<_> = self.scenes(simulation, progress)?.into_iter().map(alternative).collect();
         let rate = |pool: &Pool, task: &Task| alternatives(&all, self.until_settled, pool, task);
-        let rated = progress.shared(comparison_parts(&all), rate)?;
-        rated.ok_or(Error::Cancelled)
+        let rated = progress.shared(comparison_parts(&all), rate)?.ok_or(Error::Cancelled)?;
+        let (frequency_hz, amplitude_g) = needs_a_sine(self.environment(simulation))?;
+        Ok(CompareAnswer { rated, frequency_hz, amplitude_g })
     }
 
-    /// The rated scenes as a table, one row per scene, with the columns named at [`Compare`].
-    pub fn table(rated: &[Rated]) -> Table {
-        comparison_table(rated)
+    /// The scenes as they are rated, with their names: at rest, under the common sine and with the common run
+    /// settings.
+    #[doc(hidden)]
+    pub fn scenes(
+        &self,
+        simulation: &Simulation,
+        progress: &Progress,
+    ) -> Result<Vec<(String, Simulation)>, Error> {
+        let environment = self.environment(simulation);
+        needs_a_sine(environment)?;
+        let first = std::iter::once((&self.name, simulation));
+        let all = first.chain(self.with.iter().map(|(name, other)| (name, other)));
+        let rated = |(name, other): (&String, &Simulation)| {
+            let other = other.with_document(in_environment(other.document(), environment), progress)?;
+            check_until(self.until_settled, other.document(), other.model())?;
+            Ok((name.clone(), other))
+        };
+        all.map(rated).collect()
+    }
+
+    fn environment<'a>(&'a self, simulation: &'a Simulation) -> &'a Document {
+        self.environment.as_ref().unwrap_or(simulation).document()
+    }
+}
+
+/// The answer of [`Compare::run`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct CompareAnswer {
+    /// The results of each scene, the first one first.
+    pub rated: Vec<Rated>,
+    /// Frequency of the common sine in Hz.
+    pub frequency_hz: f64,
+    /// Its amplitude in g.
+    pub amplitude_g: f64,
+}
+
+impl CompareAnswer {
+    /// One row per scene, with the columns named at [`Compare`].
+    pub fn table(&self) -> Table {
+        comparison_table(&self.rated)
     }
 }
 
 /// Returns frequency in Hz and amplitude in g of a sine or cosine; other excitations are refused.
-pub fn needs_a_sine(environment: &Document) -> Result<(f64, f64), Error> {
+fn needs_a_sine(environment: &Document) -> Result<(f64, f64), Error> {
     let problem = match (&environment.scene.excitation, environment.scene.harmonic()) {
         (Excitation::Force { .. }, _) => {
             "its excitation is a Force, which shakes scenes of different masses differently: name a scene \
@@ -93,7 +130,7 @@ pub fn needs_a_sine(environment: &Document) -> Result<(f64, f64), Error> {
 }
 
 /// A scene at rest, with the excitation and the run settings of another one.
-pub fn in_environment(document: &Document, environment: &Document) -> Document {
+fn in_environment(document: &Document, environment: &Document) -> Document {
     let mut changed = document.clone();
     // thresholds and bands of a cosine are searched in g and Hz
     let drive = environment.scene.harmonic().map(|drive| drive.sine());
@@ -195,15 +232,35 @@ impl Best {
 
     /// Searches for the best design.
     pub fn run(&self, simulation: &Simulation, progress: &Progress) -> Result<BestAnswer, Error> {
-        let question = self.question(simulation.document())?;
-        let search = |pool: &Pool, task: &Task| best(&question, pool, task, &mut |_| ());
-        match progress.shared(scan_runs(&question), search)? {
+        let document = simulation.document();
+        self.search(self.question(document)?, document, progress, &mut |_| ())
+    }
+
+    /// Searches for the best design of a scene whose fields of the design need not be valid; `preview` gets
+    /// the best design so far in words.
+    #[doc(hidden)]
+    pub fn search(
+        &self,
+        question: BestQuestion,
+        document: &Document,
+        progress: &Progress,
+        preview: &mut (dyn FnMut(String) + Send),
+    ) -> Result<BestAnswer, Error> {
+        let (fields, maximised) = (names(&question), question.maximise.name);
+        let found = progress.shared(scan_runs(&question), |pool, task| {
+            best(&question, pool, task, &mut |design| {
+                let (at, value) = (place(&fields, &design.at), quantity(design.value, maximised));
+                preview(format!("{at}: {maximised} {value}"));
+            })
+        })?;
+        match found {
             Ok(design) => Ok(BestAnswer { question, design }),
-            Err(why) => Err(self.no_best(why, &question, simulation.document())),
+            Err(why) => Err(self.no_best(why, &question, document)),
         }
     }
 
     /// Parses and checks the texts of the question.
+    #[doc(hidden)]
     pub fn question(&self, document: &Document) -> Result<BestQuestion, Error> {
         let question = BestQuestion {
             over: ranges(&self.over, document)?,
@@ -223,7 +280,7 @@ impl Best {
     }
 
     /// The error for a search without a result.
-    pub fn no_best(&self, why: NoBest, question: &BestQuestion, document: &Document) -> Error {
+    fn no_best(&self, why: NoBest, question: &BestQuestion, document: &Document) -> Error {
         match why {
             NoBest::Cancelled => Error::Cancelled,
             NoBest::Invalid(faults) => Error::faults_of(document, faults),
@@ -335,8 +392,17 @@ fn ranges(over: &[String], document: &Document) -> Result<Vec<DesignRange>, Erro
         let problem = format!("{} fields; at most {MOST_FIELDS} are searched together", ranges.len());
         return Err(Error::argument("over", over.join(", "), problem));
     }
+    let places: f64 = ranges.iter().map(|range| range.intervals as f64 + 1.0).product();
+    if places > MAX_PLACES {
+        let problem =
+            format!("makes {places} places of the scan; at most {MAX_PLACES} fit: give longer steps");
+        return Err(Error::argument("over", over.join(", "), problem));
+    }
     Ok(ranges)
 }
+
+/// Largest number of places of a scan: each is kept, and so many take 1 GB of memory.
+const MAX_PLACES: f64 = 1e7;
 
 const TRANSDUCER_COLUMNS: [&str; 3] = ["mean_load_power_w", "mean_coil_power_w", "voltage_rms_v"];
 
@@ -443,8 +509,9 @@ fn environments(given: &[String], document: &Document) -> Result<Vec<Environment
         }
     }
     if all.len() > MAX_ENVIRONMENTS {
-        let problem = format!("{} of them; at most {MAX_ENVIRONMENTS} are run", all.len());
-        return Err(Error::argument("environment", "", problem));
+        let given = format!("{} of them", all.len());
+        let problem = format!("at most {MAX_ENVIRONMENTS} are run; give fewer");
+        return Err(Error::argument("environment", given, problem));
     }
     Ok(all)
 }

@@ -15,17 +15,17 @@
 //! | [`ProbableThreshold`] | the value of a field at which a share of runs under noise crosses | [`Table`] |
 //! | [`Escape`] | how often a motion under noise leaves its well, beside Kramers' rate | [`Table`] |
 //! | [`Exponents`] | Lyapunov exponents: whether the motion is chaotic | [`Table`] |
-//! | [`Orbit`] | the periodic orbit near the motion, with its multipliers | `study::Orbit` |
-//! | [`Branch`] | how an orbit goes on over a field, with folds, flips and grazings | `study::Branch` |
-//! | [`Locus`] | where a fold, flip or grazing goes over two fields | `study::Locus` of each |
-//! | [`Spectrum`] | which frequencies the motion holds | `study::Spectrum` |
+//! | [`Orbit`] | the periodic orbit near the motion, with its multipliers | [`OrbitAnswer`] |
+//! | [`Branch`] | how an orbit goes on over a field, with folds, flips and grazings | [`BranchAnswer`] |
+//! | [`Locus`] | where a fold, flip or grazing goes over two fields | [`LocusAnswer`] |
+//! | [`Spectrum`] | which frequencies the motion holds | [`SpectrumAnswer`] |
 //! | [`Basins`] | which attractor each start goes to, and the share of each | [`BasinsAnswer`] |
-//! | [`Compare`] | how designs rate under one sine | a [`Rated`] per scene |
+//! | [`Compare`] | how designs rate under one sine | [`CompareAnswer`] |
 //! | [`Best`] | which design is the best for an environment, and with which margins | [`BestAnswer`] |
 //! | [`Identify`] | damping, restitution or force of a measured record | [`IdentifyAnswer`] |
 //!
-//! Those with a type of their own have a method `table`, except for `study::Spectrum`, where it is a field.
-//! `docs/output.md` of the repository has the meaning of every column, `docs/studies.md` pictures and costs.
+//! Each answer that is no [`Table`] has a method `table`. `docs/output.md` of the repository has the meaning
+//! of every column, `docs/studies.md` pictures and costs.
 //!
 //! # Units
 //!
@@ -63,6 +63,7 @@ mod design;
 mod error;
 mod escape;
 mod grid;
+mod lesson;
 mod motion;
 mod orbits;
 mod progress;
@@ -70,20 +71,29 @@ mod record;
 mod simulation;
 mod sweep;
 
-pub use design::{Best, BestAnswer, Compare, in_environment, needs_a_sine};
-pub use error::{Error, FaultAt, check_until_settled};
-pub use escape::{Escape, ProbableThreshold, no_table, refuse_searched};
-pub use grid::{Exponents, NO_MELNIKOV, Section, Threshold, drive_alone};
-pub use motion::{Basins, BasinsAnswer, Curve, Spectrum, may_have_circuit};
-pub use orbits::{Branch, Locus, Orbit, branches_remarks, check_fields};
+pub use design::{Best, BestAnswer, Compare, CompareAnswer};
+pub use error::{Error, FaultAt};
+pub use escape::{Escape, ProbableThreshold};
+pub use grid::{Exponents, Section, Threshold};
+#[doc(hidden)]
+pub use lesson::check_lessons;
+pub use motion::{Basins, BasinsAnswer, Curve, FlexuresAnswer, Spectrum};
+pub use orbits::{Branch, BranchesAnswer, Locus, LocusAnswer, Orbit};
 pub use progress::Progress;
-pub use record::{Identify, IdentifyAnswer, WhatToIdentify, columns_read};
+#[doc(hidden)]
+pub use record::columns_read;
+pub use record::{Identify, IdentifyAnswer, WhatToIdentify};
 pub use simulation::Simulation;
-pub use sweep::{Sweep, assign as assign_uncertain, column_names, draws as uncertain_draws};
+pub use sweep::Sweep;
+#[doc(hidden)]
+pub use sweep::{SweepCells, assign as assign_uncertain};
 
+pub use crate::mechanics::flexure::State as FlexureState;
 pub use crate::scene::Uncertain;
 
 pub use crate::study::{
-    Answer, BestDesign, BestQuestion, Carry, Column, EvenRange, ExponentOptions, Grid, Identified, Onset,
-    Rated, Recorded, Sampling, SectionAt, SectionOptions, Signal, Table, Until, Values,
+    Answer, BestDesign, BestQuestion, Branch as BranchAnswer, BranchEvent, Carry, Column, EvenRange,
+    ExponentOptions, Exponents as ExponentsAnswer, FieldRange, Grid, Identified, Locus as OneLocus, Onset,
+    Orbit as OrbitAnswer, Rated, Recorded, Sampling, SectionAt, SectionOptions, Signal,
+    Spectrum as SpectrumAnswer, Table, Until, Values,
 };

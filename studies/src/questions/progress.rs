@@ -26,9 +26,9 @@ type Report<'a> = &'a (dyn Fn(u64, Option<u64>) + Sync);
 /// let simulation = Simulation::preset("nominal-cubic")?;
 /// let sweep = Sweep::over("excitation.amplitude_g", 0.5..=1.5, 5);
 /// let (stop, cells) = (AtomicBool::new(false), AtomicU64::new(0));
-/// let count = |_: u64, all: Option<u64>| {
+/// let count = |done: u64, all: Option<u64>| {
 ///     assert_eq!(all, Some(5));
-///     cells.fetch_add(1, Ordering::Relaxed);
+///     cells.fetch_max(done, Ordering::Relaxed);
 /// };
 /// let progress = Progress::none().reporting_to(&count).stopped_by(&stop).threads(2);
 /// sweep.run(&simulation, &progress)?;
@@ -60,8 +60,8 @@ impl Progress<'static> {
 }
 
 impl<'a> Progress<'a> {
-    /// Calls `report` after each finished part. A question with several phases, such as
-    /// [`Basins`](super::Basins), counts each phase from 1.
+    /// Calls `report` with 0 at the beginning, and after each finished part with their number. A question
+    /// with several phases, such as [`Basins`](super::Basins), counts each of them from 0.
     #[must_use]
     pub fn reporting_to<'b>(self, report: Report<'b>) -> Progress<'b>
     where
@@ -90,9 +90,22 @@ impl<'a> Progress<'a> {
         self.stop
     }
 
+    /// Whether that flag is set.
+    pub(super) fn is_stopped(&self) -> bool {
+        self.stop.load(Ordering::Relaxed)
+    }
+
+    /// A task that counts nothing.
+    pub(super) fn silent(&self) -> Task<'a> {
+        Task { tick: &|| (), cancel: self.stop }
+    }
+
     /// Runs `work` with a task that counts its parts; `all` is their number, if it is known.
     pub(super) fn task<R>(&self, all: Option<u64>, work: impl FnOnce(&Task) -> R) -> R {
         let done = AtomicU64::new(0);
+        if let Some(report) = self.report {
+            report(0, all);
+        }
         let tick = || {
             if let Some(report) = self.report {
                 report(done.fetch_add(1, Ordering::Relaxed) + 1, all);

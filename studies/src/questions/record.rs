@@ -2,7 +2,6 @@
 
 use std::fmt::Display;
 use std::path::Path;
-use std::sync::atomic::Ordering;
 
 use super::{Error, Progress};
 use crate::numeric::number_text;
@@ -272,7 +271,7 @@ fn read<const N: usize>(
     progress: &Progress,
 ) -> Result<(Measured<N>, String), Error> {
     let record = read_measured(path, requests).map_err(|problem| about(path, problem))?;
-    if progress.stop().load(Ordering::Relaxed) {
+    if progress.is_stopped() {
         return Err(Error::Cancelled);
     }
     let columns = columns_read(&record);

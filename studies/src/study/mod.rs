@@ -80,8 +80,7 @@ pub use best::{
 pub use contact::{Strikes, contact, strikes, yield_speed, yield_warning};
 pub use curve::{
     CURVE_PICTURE_POINTS, CURVE_POINTS, OutsideCurve, StatesError, curve, default_positions, even_positions,
-    flexures_at, full_curve, metres, shapes, small_amplitude_frequency, states, stop_positions,
-    stress_warning,
+    full_curve, metres, shapes, small_amplitude_frequency, states, stop_positions, stress_warning,
 };
 pub use escape::{
     Chance, EscapeOptions, NoKramers, Until, depopulation, escape_table, kramers_rate,
@@ -89,7 +88,7 @@ pub use escape::{
 };
 pub use exponents::{
     Estimate, ExponentCells, ExponentOptions, Exponents, NoExponents, average_exponents, drive_fault,
-    exponents, exponents_row,
+    exponents,
 };
 pub use fields::{InJson, RMS_VELOCITY, Read, SUMMARY_FIELDS, SummaryField};
 pub use grid::{Grid, GridError, Levels, MAX_CELLS, STRIDES};

@@ -19,7 +19,7 @@ pub enum Sampling {
 }
 
 /// What to keep of a run besides its summary.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Keep {
     /// Sample times in s, in the order of the rows.
     pub times: Vec<f64>,

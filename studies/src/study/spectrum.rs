@@ -52,7 +52,7 @@ pub struct SpectrumOptions {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Spectrum {
     /// `frequency_hz,amplitude,psd`, one-sided, from 0 to half the rate, with one row per line.
-    pub table: Table,
+    pub(crate) table: Table,
     /// The signal.
     pub signal: Signal,
     /// How the samples were weighted.
@@ -72,6 +72,11 @@ pub struct Spectrum {
 }
 
 impl Spectrum {
+    /// `frequency_hz,amplitude,psd`, one-sided, from 0 to half the rate, with one row per line.
+    pub fn table(&self) -> &Table {
+        &self.table
+    }
+
     /// Its settings and samples, in one line.
     pub fn describe(&self) -> String {
         let periods = match self.periods {

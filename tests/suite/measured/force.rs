@@ -2,7 +2,7 @@
 
 use interwell::mechanics::Mechanism;
 use interwell::output::{header, rows};
-use interwell::study::{FORCE_POINTS, Unidentified, force};
+use interwell_studies::study::{FORCE_POINTS, Unidentified, force};
 
 use super::{Noise, SEEDS, covered, hold_95_of_100, holds, number};
 use crate::properties::harness::multiplied;

@@ -6,8 +6,8 @@ use crate::app::ui::style::Style;
 use crate::app::ui::widgets::tell;
 use crate::numeric::elementary;
 use crate::output::{Chart, Marks, Panel, PlotAxis, Role};
-use crate::study::Table;
-use crate::study::accuracy::scene::{
+use interwell_studies::study::Table;
+use interwell_studies::study::accuracy::scene::{
     AtTolerance, StepSize, Tolerances, duration, length_mm, moment, small_length, step_name,
 };
 

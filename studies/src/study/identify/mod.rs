@@ -155,7 +155,13 @@ pub enum Unidentified {
     #[error("the position does not change")]
     Still,
     /// Too few samples for the points of a curve.
-    #[error("{0} samples are too few for {1} points of a curve: take fewer by --points")]
+    #[error(
+        "{0} samples are too few for {1} points of a curve: {remedy}",
+        remedy = match *.1 > force::LEAST_POINTS {
+            true => "take fewer by --points",
+            false => "it has at least that many, each with samples of every direction beside it: record more",
+        }
+    )]
     FewSamples(usize, usize),
 }
 
