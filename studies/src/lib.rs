@@ -2,8 +2,8 @@
 //! the command line and the window of interwell.
 //!
 //! It is a separate crate so that a change in the window does not recompile the studies. Programs use the
-//! crate `interwell`, which re-exports [`questions`] and [`output`]. The studies themselves, which the questions
-//! ask, are for the command line, the window and the tests of this workspace.
+//! crate `interwell`, which re-exports [`questions`] and [`output`]. The studies themselves, which the
+//! questions ask, are for the command line, the window and the tests of this workspace.
 
 // Tests compare with the functions of std.
 #![cfg_attr(test, allow(clippy::disallowed_methods))]

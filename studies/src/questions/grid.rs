@@ -289,8 +289,8 @@ impl Default for Threshold {
 }
 
 /// Why there is no Melnikov's threshold of a field.
-const NO_MELNIKOV: &str = "Melnikov's threshold (--melnikov) is an amplitude of one sine: take a Sine, Cosine \
-                           or Force, and search its amplitude, such as excitation.amplitude_g";
+const NO_MELNIKOV: &str = "Melnikov's threshold (--melnikov) is an amplitude of one sine: take a Sine, \
+                           Cosine or Force, and search its amplitude, such as excitation.amplitude_g";
 
 /// The field and range of the default question.
 const DEFAULT_FIELD: &str = "excitation.amplitude_g=0:2";

@@ -59,6 +59,7 @@
 //!
 //! A run of a grid that ends early is none of these: the column `outcome` says why, and the others go on.
 
+mod compare;
 mod design;
 mod error;
 mod escape;
@@ -71,7 +72,8 @@ mod record;
 mod simulation;
 mod sweep;
 
-pub use design::{Best, BestAnswer, Compare, CompareAnswer};
+pub use compare::{Compare, CompareAnswer};
+pub use design::{Best, BestAnswer};
 pub use error::{Error, FaultAt};
 pub use escape::{Escape, ProbableThreshold};
 pub use grid::{Exponents, Section, Threshold};
@@ -91,9 +93,12 @@ pub use sweep::{SweepCells, assign as assign_uncertain};
 pub use crate::mechanics::flexure::State as FlexureState;
 pub use crate::scene::Uncertain;
 
+#[doc(hidden)]
+pub use crate::study::BestQuestion;
 pub use crate::study::{
-    Answer, BestDesign, BestQuestion, Branch as BranchAnswer, BranchEvent, Carry, Column, EvenRange,
-    ExponentOptions, Exponents as ExponentsAnswer, FieldRange, Grid, Identified, Locus as OneLocus, Onset,
-    Orbit as OrbitAnswer, Rated, Recorded, Sampling, SectionAt, SectionOptions, Signal,
-    Spectrum as SpectrumAnswer, Table, Until, Values,
+    Answer, Attractor, BestDesign, Branch as BranchAnswer, BranchEnd, BranchEvent, Carry, Column, Estimate,
+    EvenRange, ExponentOptions, Exponents as ExponentsAnswer, FieldRange, Found, Grid, Identified, Identity,
+    Locus as OneLocus, LocusEnd, LocusEvent, Onset, Optimum, Orbit as OrbitAnswer, Rated, Recorded, Sampling,
+    SectionAt, SectionOptions, Shares, Signal, Spectrum as SpectrumAnswer, Spread, Table, Tried, Until,
+    Values,
 };

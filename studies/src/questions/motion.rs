@@ -236,6 +236,7 @@ pub struct Basins {
 #[derive(Debug)]
 pub struct BasinsAnswer {
     /// The starts, and what is known of each.
+    #[doc(hidden)]
     pub basins: study::Basins,
     /// The attractors, and the attractor of each start.
     pub answer: Answer,

@@ -271,9 +271,9 @@ impl BranchAnswer {
 /// Loci in two fields: where the orbits of a branch fold, double their period, break their symmetry or graze
 /// a stop.
 ///
-/// The table of the answer has one row per orbit, in order along each locus: `locus` (its number from 1), both fields in their units, the columns of [`Orbit`], and
-/// `event`: empty, `cusp`, `fold-flip`, `grazing-fold`, `grazing-flip`, `grazing-symmetry` or
-/// `grazing-grazing`.
+/// The table of the answer has one row per orbit, in order along each locus: `locus` (its number from 1),
+/// both fields in their units, the columns of [`Orbit`], and `event`: empty, `cusp`, `fold-flip`,
+/// `grazing-fold`, `grazing-flip`, `grazing-symmetry` or `grazing-grazing`.
 ///
 /// Method: the branch is followed at the first value of the second field. From each of its events of this
 /// kind a locus goes on towards the other value, by pseudo-arclength in the state and both fields, with the

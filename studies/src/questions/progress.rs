@@ -1,11 +1,13 @@
 //! Progress reports, cancellation and the number of threads of a question.
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::sync::{Mutex, PoisonError};
+use std::time::Duration;
 
 use super::Error;
 use crate::study::Task;
-use crate::system::threads::{Pool, processors};
+use crate::system::threads::{Pool, processors, spawn};
 
 /// A callback for progress: it gets the number of finished parts and, if it is known, that of all parts. Any
 /// thread may call it.
@@ -47,6 +49,9 @@ pub struct Progress<'a> {
 
 /// The flag of questions that cannot be cancelled; it is never set.
 static NEVER: AtomicBool = AtomicBool::new(false);
+
+/// How often the flag is looked at beside work that does not look at it.
+const INTERVAL: Duration = Duration::from_millis(20);
 
 /// The thread pool of the last question, kept because starting threads takes longer than answering a short
 /// question.
@@ -98,6 +103,25 @@ impl<'a> Progress<'a> {
     /// A task that counts nothing.
     pub(super) fn silent(&self) -> Task<'a> {
         Task { tick: &|| (), cancel: self.stop }
+    }
+
+    /// The answer of `work`, which does not look at the flag, from a thread of its own.
+    pub(super) fn unless_stopped<T: Send + 'static>(
+        &self,
+        work: impl FnOnce() -> Result<T, Error> + Send + 'static,
+    ) -> Result<T, Error> {
+        let (sender, receiver) = channel();
+        if !spawn(move || drop(sender.send(work()))) {
+            return Err(Error::argument("threads", 1, "the system gives no thread: close something"));
+        }
+        while !self.is_stopped() {
+            match receiver.recv_timeout(INTERVAL) {
+                Ok(answer) => return answer,
+                Err(RecvTimeoutError::Timeout) => {}
+                Err(RecvTimeoutError::Disconnected) => break,
+            }
+        }
+        Err(Error::Cancelled)
     }
 
     /// Runs `work` with a task that counts its parts; `all` is their number, if it is known.

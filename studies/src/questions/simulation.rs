@@ -221,8 +221,8 @@ impl Simulation {
     /// `peak_force_n`, `peak_pressure_pa`. Gives [`Error::Unfit`] if the stops are not compliant.
     pub fn impact(&self, rigid_restitution: f64) -> Result<Table, Error> {
         contact(&self.model, rigid_restitution).ok_or_else(|| {
-            let problem = "its stops are not compliant; give it some, such as \
-                           stops=Hertz(travel_limit_mm: 1.5, radius_mm: 5, young_gpa: 69, loss_s_per_m: 10.4)";
+            let problem = "its stops are not compliant; give it some, such as stops=Hertz(travel_limit_mm: \
+                           1.5, radius_mm: 5, young_gpa: 69, loss_s_per_m: 10.4)";
             Error::unfit(&self.document, problem)
         })
     }

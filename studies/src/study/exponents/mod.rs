@@ -139,6 +139,9 @@ fn with_columns(mut table: Table, found: &[Found], has_circuit: bool) -> Table {
 }
 
 /// How exponents are computed.
+///
+/// More periods reduce the standard errors of a motion without a period as one over the square root of their
+/// number, and cost in proportion; a motion that repeats needs none.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ExponentOptions {
     /// Number of forcing periods over which exponents of a motion without a period are averaged, at least 1.
@@ -179,6 +182,10 @@ impl Estimate {
 }
 
 /// The exponents of a motion.
+///
+/// [`table`](Self::table) has them as one row, [`describe`](Self::describe) says how they were computed. A
+/// positive first exponent that [is clearly above 0](Self::is_irregular) is what makes a motion chaotic: two
+/// motions that begin side by side then part by exp(first t).
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Exponents {

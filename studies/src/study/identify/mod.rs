@@ -18,6 +18,8 @@ use peaks::MIN_SAMPLES;
 use restitution::ENOUGH;
 
 /// A number with its interval.
+///
+/// The interval holds if the errors of the samples are independent of each other.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Identity {
     /// Its name, with the unit in it.
@@ -52,6 +54,9 @@ fn with_interval<R>(table: Table, names: [&str; 3], rows: &[R], of: impl Fn(&R) 
 }
 
 /// What was identified from a record.
+///
+/// [`summary`](Self::summary) has the numbers that a scene takes, such as `damping_ratio`, each with its
+/// interval, and [`remarks`](Self::remarks) what speaks against them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Identified {
     /// The rows: over amplitude, impact or position.
