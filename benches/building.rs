@@ -11,7 +11,7 @@ use cpu_time::ProcessTime;
 use interwell::dynamics::Model;
 use interwell::mechanics::Mechanism;
 use interwell::scene::{Document, Files};
-use interwell::study::{Grid, Sweep, Table, Task};
+use interwell_studies::study::{Grid, Sweep, Table, Task};
 
 /// Repetitions of each piece of work, as it comes in units of a microsecond or of a tenth of a second.
 const QUICK: usize = 1001;

@@ -12,11 +12,11 @@ use interwell::output::{
     sweep_chart,
 };
 use interwell::scene::Document;
-use interwell::study::{
+use interwell::system::threads::Pool;
+use interwell_studies::study::{
     CURVE_PICTURE_POINTS, Grid, Keep, Sampling, Sweep, SweepOptions, Table, Task, curve, default_positions,
     sample_times, simulate_with_trace,
 };
-use interwell::system::threads::Pool;
 
 /// Times that each picture is made.
 const ROUNDS: usize = 15;

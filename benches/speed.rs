@@ -9,7 +9,7 @@ use std::hint::black_box;
 
 use interwell::dynamics::{Model, Request};
 use interwell::scene::Document;
-use interwell::study::Grid;
+use interwell_studies::study::Grid;
 use pulp::{Arch, Simd, WithSimd};
 
 /// Runs that a sweep hands to one thread at a time.

@@ -9,13 +9,13 @@ use std::f64::consts::TAU;
 use std::sync::atomic::AtomicBool;
 
 use interwell::dynamics::STANDARD_GRAVITY;
-use interwell::study::{
+use interwell::system::threads::Pool;
+use interwell_studies::study::{
     Answer, Basins, Branch, BranchEvent, BranchOptions, Carry, EvenRange, ExponentOptions, Family, Grid,
     Onset, Orbit, Scan, SectionAt, SectionOptions, Sections, Signal, SpectrumOptions, Starts, Sweep,
     SweepOptions, Table, Task, branch, check_lesson, exponents, result_fields, spectrum, threshold,
     threshold_table,
 };
-use interwell::system::threads::Pool;
 
 /// Times that each study is done.
 const ROUNDS: usize = 21;
@@ -53,7 +53,8 @@ fn spectra() {
     let (k, m, c, w) = (40.0, linear.mass(), linear.damping(), TAU * 3.0);
     let exact = m * STANDARD_GRAVITY / (k - m * w * w).hypot(c * w);
     row("spectrum", "linear spring, 30 periods", "its response", || {
-        let table = spectrum(&linear, &plain, &task).unwrap().table;
+        let found = spectrum(&linear, &plain, &task).unwrap();
+        let table = found.table();
         let amplitude = table.numbers("amplitude").unwrap();
         amplitude.iter().enumerate().fold(0.0, |worst: f64, (line, height)| {
             let exact_here = if line == 30 { exact } else { 0.0 };
@@ -68,7 +69,8 @@ fn spectra() {
             taper: Some(interwell::numeric::Taper::None),
             ..plain
         };
-        let table = spectrum(&chaos, &options, &task).unwrap().table;
+        let found = spectrum(&chaos, &options, &task).unwrap();
+        let table = found.table();
         let (frequency, density) = (table.numbers("frequency_hz").unwrap(), table.numbers("psd").unwrap());
         ((density.iter().sum::<f64>() * frequency[1]).sqrt() / rms - 1.0).abs()
     });

@@ -18,7 +18,7 @@ mod shared;
 
 use interwell::dynamics::{Event, EventKind, Model, Regime, Request, Run, Summary};
 use interwell::scene::Document;
-use interwell::study::Grid;
+use interwell_studies::study::Grid;
 
 const TOLERANCES: [f64; 4] = [1e-3, 1e-6, 1e-9, 1e-12];
 

@@ -71,7 +71,6 @@
 //! | [`scene`] | scene files: fields, units, ranges, tables, presets |
 //! | [`mechanics`] | the restoring force and its landscape of wells and barrier |
 //! | [`dynamics`] | motion: Taylor steps, contacts, rest, release, statistics, ledger |
-//! | `study` | studies that return a table: one run, a sweep, thresholds, accuracy |
 //! | [`questions`] | the studies as a program asks them |
 //! | [`output`] | conversion of tables to files |
 //!
@@ -90,8 +89,6 @@ pub mod app;
 
 #[doc(inline)]
 pub use interwell_kernel::{dynamics, mechanics, numeric, scene, system};
-#[doc(hidden)]
-pub use interwell_studies::study;
 #[doc(inline)]
 pub use interwell_studies::{output, questions};
 #[doc(no_inline)]

@@ -910,7 +910,9 @@ class Scene(Mapping[str, Any]):
             raise _wrong("range", _shown(range), "give the lower end first, and a higher one")
         searched = f"{field}={_value(low)}:{_value(high)}"
         if step is not None:
-            searched += f":{_value(_number('step', step))}"
+            if not _number("step", step) > 0:
+                raise _wrong("step", _shown(step), "give a number above 0, in the unit of the field")
+            searched += f":{_value(step)}"
         if probability is None:
             _without("leave it out, or give `probability` too", runs=(runs, None), within=(within, None))
             with _Told(progress, "values") as told:

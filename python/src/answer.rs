@@ -5,8 +5,8 @@ use std::sync::atomic::AtomicBool;
 use interwell_studies::output::{
     Caption, Chart, Format, Ranges, Sheet, SheetError, SheetText, Theme, header, rows,
 };
-use interwell_studies::questions::Error;
-use interwell_studies::study::{Table, Values, label_and_unit};
+use interwell_studies::questions::{Error, Table, Values};
+use interwell_studies::study::label_and_unit;
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;

@@ -1,7 +1,7 @@
 //! Scenes and the questions about them.
 
-use std::cell::RefCell;
 use std::path::PathBuf;
+use std::sync::{Mutex, PoisonError};
 
 use interwell_kernel::dynamics::Summary;
 use interwell_kernel::mechanics::{FitReport, ForceCurve};
@@ -13,22 +13,19 @@ use interwell_studies::output::{
     loci_chart, run_chart, section_chart, spectrum_chart, summary, sweep_chart, threshold_chart,
 };
 use interwell_studies::questions::{
-    self, Basins, Best, Branch, Compare, Curve, Error, Escape, Exponents, Identify, Locus, Orbit,
-    ProbableThreshold, Progress, Section, Spectrum, Sweep, Threshold, Uncertain, WhatToIdentify,
-    branches_remarks, needs_a_sine,
+    self, Basins, Best, Branch, BranchEvent, Carry, Compare, Curve, Error, Escape, ExponentOptions,
+    Exponents, FieldRange, Grid, Identify, Locus, Onset, Orbit, ProbableThreshold, Progress, Sampling,
+    Section, SectionAt, SectionOptions, Signal, Spectrum, Sweep, Table, Threshold, Uncertain, Until,
+    WhatToIdentify,
 };
-use interwell_studies::study::{
-    BranchEvent, Carry, ExponentOptions, FieldRange, Identity, Keep, Onset, Sampling, SectionAt,
-    SectionOptions, Signal, Table, Until, branches_table, loci_table, sample_times, simulate_with_trace,
-    stop_positions,
-};
+use interwell_studies::study::{Identity, Keep, stop_positions};
 use numpy::PyArray1;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use crate::answer::{Answer, Asked};
 use crate::errors::raised;
-use crate::work::{Way, work, work_here};
+use crate::work::{Way, work, work_calling, work_here};
 
 /// Fields and the values that each takes.
 type Over = Vec<(String, Vec<f64>)>;
@@ -147,14 +144,13 @@ impl Simulation {
         tolerance: f64,
         breaks: Vec<f64>,
     ) -> PyResult<(Self, f64)> {
-        let failed = RefCell::new(None);
-        let curve = ForceCurve::from_fn(values_of(force, "force", &failed), range, tolerance, &breaks);
-        if let Some(error) = failed.into_inner() {
-            return Err(error);
-        }
-        let curve = checked(py, curve.map_err(Error::from))?;
-        let error = curve.fit().map_or(0.0, |FitReport { worst_n, .. }| *worst_n);
-        let inner = work(py, &Way::default(), |_| self.inner.with_force(&curve))?;
+        let function = Function::new(force, "force");
+        let made = work_calling(py, &Way::default(), &|x| function.value(x), |progress, force| {
+            let curve = ForceCurve::from_fn_cancellable(force, range, tolerance, &breaks, progress.stop())?;
+            let error = curve.fit().map_or(0.0, |FitReport { worst_n, .. }| *worst_n);
+            Ok((self.inner.with_force(&curve)?, error))
+        });
+        let (inner, error) = function.unless_failed(made)?;
         Ok((Self::new(inner), error))
     }
 
@@ -166,8 +162,10 @@ impl Simulation {
         force_n: Vec<f64>,
         tolerance: f64,
     ) -> PyResult<Self> {
-        let with_samples =
-            |_: &Progress| self.inner.with_force(&ForceCurve::from_samples(&x_m, &force_n, tolerance)?);
+        let with_samples = |progress: &Progress| {
+            let curve = ForceCurve::from_samples_cancellable(&x_m, &force_n, tolerance, progress.stop())?;
+            self.inner.with_force(&curve)
+        };
         work(py, &Way::default(), with_samples).map(Self::new)
     }
 
@@ -186,14 +184,12 @@ impl Simulation {
             };
             return work(py, &Way::default(), with_samples).map(Self::new);
         }
-        let failed = RefCell::new(None);
-        let values = values_of(acceleration, "acceleration", &failed);
-        let drive = Excitation::from_fn(values, frequency_hz, tolerance);
-        if let Some(error) = failed.into_inner() {
-            return Err(error);
-        }
-        let drive = checked(py, drive.map_err(Error::from))?;
-        work(py, &Way::default(), |_| self.inner.with_drive(&drive.excitation)).map(Self::new)
+        let function = Function::new(acceleration, "acceleration");
+        let made = work_calling(py, &Way::default(), &|t| function.value(t), |_, acceleration| {
+            let drive = Excitation::from_fn(acceleration, frequency_hz, tolerance)?;
+            self.inner.with_drive(&drive.excitation)
+        });
+        function.unless_failed(made).map(Self::new)
     }
 
     #[getter]
@@ -284,13 +280,14 @@ impl Simulation {
                     names.split(',').map(panel).collect::<Result<Vec<_>, String>>()?
                 }
             };
-            let model = shown.model();
-            let times = sample_times(shown.scene(), model, &Sampling::At(Vec::new()), until_settled);
-            let keep = Keep { times: times.unwrap_or_default(), events: false, until_settled };
-            let (run, trace) = simulate_with_trace(model, &keep, asked.ranges.x, Some(asked.cancel));
-            let trace = RunPanel::complete(&panels, trace, model, asked.cancel);
-            let ranges = Ranges { x: None, y: asked.ranges.y };
-            Ok(run_chart(&trace, &run.summary, (model.mechanism(), model.mass()), &panels, ranges))
+            let keep = Keep { times: Vec::new(), events: false, until_settled };
+            let progress = Progress::none().stopped_by(asked.cancel);
+            let found = shown.traced(&keep, asked.ranges.x, &progress);
+            let (run, trace) = found.map_err(|error| error.to_string())?;
+            let trace = RunPanel::complete(&panels, trace, shown.model(), asked.cancel);
+            let (of, ranges) =
+                ((&**shown.mechanism(), shown.model().mass()), Ranges { x: None, y: asked.ranges.y });
+            Ok(run_chart(&trace, &run.summary, of, &panels, ranges))
         };
         Ok(Run {
             samples: Py::new(py, Answer::new(py, found.samples, caption.clone()).drawn(drawn))?,
@@ -332,7 +329,8 @@ impl Simulation {
         let (shown, grid, about, table) = work(py, &Way { threads, progress }, |progress| {
             let shown = question.nominal(&self.inner, progress)?;
             let grid = shown.grid(&question.over)?;
-            let about = question.draws(&shown, &grid)?.about();
+            let cells = question.cells(shown.document(), grid.clone(), None, progress)?;
+            let about = cells.sweep.options().draws.about();
             let table = question.run(&shown, progress)?;
             Ok((shown, grid, about, table))
         })?;
@@ -474,7 +472,7 @@ impl Simulation {
         let of = named(py, "of", of, &Onset::ALL, Onset::name)?;
         let question = Threshold { over, field, of, resolution, until_settled, melnikov };
         let table = work(py, &Way { threads, progress }, |progress| question.run(&self.inner, progress))?;
-        let scan = checked(py, question.scan(self.inner.document()))?;
+        let scan = checked(py, question.scan(self.inner.document(), &Grid::of_one()))?;
         self.thresholds(py, table, &question.over, scan.field, of)
     }
 
@@ -496,7 +494,7 @@ impl Simulation {
         let runs = runs.unwrap_or(Escape::RUNS);
         let question = ProbableThreshold { over, field, probability, runs, within, resolution };
         let table = work(py, &Way { threads, progress }, |progress| question.run(&self.inner, progress))?;
-        let scan = checked(py, question.scan(self.inner.document()))?;
+        let scan = checked(py, question.scan(self.inner.document(), &Grid::of_one()))?;
         self.thresholds(py, table, &question.over, scan.field, Onset::Crossing)
     }
 
@@ -527,10 +525,9 @@ impl Simulation {
             let found = question.with_switches(switch, &self.inner, progress);
             found.map_err(|error| renamed(error, [["range", "end"]]))
         })?;
-        let table = if switch > 0 { branches_table(&found) } else { found[0].table() };
-        let remarks = branches_remarks(&found, range);
-        let answer = Answer::new(py, table, self.caption()).told(remarks);
-        Ok(answer.drawn(move |_, asked| Ok(branch_chart(&found, phase_deg, asked.ranges))))
+        let table = if switch > 0 { found.table() } else { found.branches[0].table() };
+        let answer = Answer::new(py, table, self.caption()).told(found.remarks());
+        Ok(answer.drawn(move |_, asked| Ok(branch_chart(&found.branches, phase_deg, asked.ranges))))
     }
 
     #[pyo3(signature = (
@@ -556,9 +553,8 @@ impl Simulation {
         let question = Locus { branch, of, second: FieldRange { field: second, range: second_range } };
         let way = Way { threads: None, progress };
         let found = work(py, &way, |progress| question.run(&self.inner, progress))?;
-        let remarks = (1..).zip(&found).filter_map(|(number, locus)| locus.remark(number)).collect();
-        let answer = Answer::new(py, loci_table(&found), self.caption()).told(remarks);
-        Ok(answer.drawn(move |_, asked| Ok(loci_chart(&found, phase_deg, asked.ranges))))
+        let answer = Answer::new(py, found.table(), self.caption()).told(found.remarks());
+        Ok(answer.drawn(move |_, asked| Ok(loci_chart(&found.loci, phase_deg, asked.ranges))))
     }
 
     #[pyo3(signature = (of, taper, rate_hz=None, until_settled=None))]
@@ -579,7 +575,7 @@ impl Simulation {
         };
         let question = Spectrum { of, taper, rate_hz, until_settled };
         let found = work(py, &Way::default(), |progress| question.run(&self.inner, progress))?;
-        let answer = Answer::new(py, found.table.clone(), self.caption()).told(vec![found.describe()]);
+        let answer = Answer::new(py, found.table().clone(), self.caption()).told(vec![found.describe()]);
         Ok(answer.drawn(move |_, asked| {
             let quantity = match asked.quantity.as_deref() {
                 None | Some("amplitude") => SpectrumQuantity::Amplitude,
@@ -623,13 +619,12 @@ impl Simulation {
         threads: Option<usize>,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Answer> {
-        let (frequency_hz, _) = checked(py, needs_a_sine(self.inner.document()))?;
         let with = others.into_iter().map(|(name, other)| (name, other.get().inner.clone())).collect();
-        let question = Compare { with, name, until_settled };
+        let question = Compare { with, name, environment: None, until_settled };
         let way = Way { threads, progress };
-        let rated = work(py, &way, |progress| question.run(&self.inner, progress))?;
-        Ok(Answer::new(py, Compare::table(&rated), self.caption())
-            .drawn(move |_, _| Ok(comparison_chart(&rated, frequency_hz))))
+        let found = work(py, &way, |progress| question.run(&self.inner, progress))?;
+        Ok(Answer::new(py, found.table(), self.caption())
+            .drawn(move |_, _| Ok(comparison_chart(&found.rated, found.frequency_hz))))
     }
 
     #[pyo3(signature = (over, maximise, subject_to, environment, vary, seed, until_settled=None, threads=None,
@@ -765,27 +760,44 @@ pub fn presets() -> Vec<(&'static str, String)> {
     PRESETS.iter().map(|preset| (preset.name, title(preset.name))).collect()
 }
 
-/// A Python function of a number. After its first exception, which is kept in `failed`, its values are NaN.
-fn values_of(
-    function: &Bound<'_, PyAny>,
+/// A Python function of a number.
+struct Function {
+    function: Py<PyAny>,
     argument: &'static str,
-    failed: &RefCell<Option<PyErr>>,
-) -> impl Fn(f64) -> f64 {
-    move |at: f64| {
-        if failed.borrow().is_some() {
+    /// Its first exception, after which its values are NaN.
+    failed: Mutex<Option<PyErr>>,
+}
+
+impl Function {
+    fn new(function: &Bound<'_, PyAny>, argument: &'static str) -> Self {
+        Self { function: function.clone().unbind(), argument, failed: Mutex::default() }
+    }
+
+    /// Its value.
+    fn value(&self, at: f64) -> f64 {
+        let mut failed = self.failed.lock().unwrap_or_else(PoisonError::into_inner);
+        if failed.is_some() {
             return f64::NAN;
         }
-        let value = function.call1((at,)).and_then(|value| {
-            let number = value.extract::<f64>();
-            number.map_err(|_| {
-                let shown = value.repr().map_or_else(|_| String::new(), |text| text.to_string());
-                let problem = format!("the function returned {shown} at {at}; it must return a number");
-                raised(function.py(), &Error::argument(argument, shown, problem))
-            })
-        });
-        value.unwrap_or_else(|error| {
-            *failed.borrow_mut() = Some(error);
+        Python::attach(|py| self.called(py, at)).unwrap_or_else(|error| {
+            *failed = Some(error);
             f64::NAN
         })
+    }
+
+    fn called(&self, py: Python<'_>, at: f64) -> PyResult<f64> {
+        // a function in C does not look for signals itself
+        py.check_signals()?;
+        let value = self.function.bind(py).call1((at,))?;
+        value.extract::<f64>().map_err(|_| {
+            let shown = value.repr().map_or_else(|_| String::new(), |text| text.to_string());
+            let problem = format!("the function returned {shown} at {at}; it must return a number");
+            raised(py, &Error::argument(self.argument, shown, problem))
+        })
+    }
+
+    /// What was made of it, or its exception.
+    fn unless_failed<T>(self, made: PyResult<T>) -> PyResult<T> {
+        self.failed.into_inner().unwrap_or_else(PoisonError::into_inner).map_or(made, Err)
     }
 }

@@ -2,7 +2,7 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::sync::mpsc::{RecvTimeoutError, sync_channel};
+use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::thread;
 use std::time::Duration;
 
@@ -36,6 +36,24 @@ pub fn work<T: Send>(
     way: &Way,
     question: impl FnOnce(&Progress) -> Result<T, Error> + Send,
 ) -> PyResult<T> {
+    work_calling(py, way, &|_| f64::NAN, |progress, _| question(progress))
+}
+
+/// What the thread that answers a question sends.
+enum Message<T> {
+    /// It wants the value of the function here.
+    Call(f64),
+    Answer(thread::Result<Result<T, Error>>),
+}
+
+/// Answers a question that calls a function of Python. The function is called on this thread, on which Ctrl-C
+/// ends it.
+pub fn work_calling<T: Send>(
+    py: Python<'_>,
+    way: &Way,
+    function: &(dyn Fn(f64) -> f64 + Sync),
+    question: impl FnOnce(&Progress, &dyn Fn(f64) -> f64) -> Result<T, Error> + Send,
+) -> PyResult<T> {
     let stop = AtomicBool::new(false);
     let (done, all) = (AtomicU64::new(0), AtomicU64::new(UNKNOWN));
     let watch = |now: u64, of: Option<u64>| {
@@ -58,12 +76,17 @@ pub fn work<T: Send>(
     let (watch, stopped, threads) = (&watch, &stop, way.threads);
     let (answer, interrupted) = py.detach(|| {
         thread::scope(|scope| {
-            let (sender, receiver) = sync_channel(1);
+            let (sender, receiver) = channel();
+            let (replies, replied) = channel();
             let job = move || {
                 let progress = Progress::none().reporting_to(watch).stopped_by(stopped);
                 let progress = threads.map_or(progress, |count| progress.threads(count));
-                let answer = catch_unwind(AssertUnwindSafe(|| question(&progress)));
-                drop(sender.send(answer));
+                let call = |at: f64| {
+                    drop(sender.send(Message::Call(at)));
+                    replied.recv().unwrap_or(f64::NAN)
+                };
+                let answer = catch_unwind(AssertUnwindSafe(|| question(&progress, &call)));
+                drop(sender.send(Message::Answer(answer)));
             };
             let started = thread::Builder::new().stack_size(STACK).spawn_scoped(scope, job);
             if let Err(error) = started {
@@ -72,7 +95,8 @@ pub fn work<T: Send>(
             let mut interrupted = None;
             loop {
                 match receiver.recv_timeout(INTERVAL) {
-                    Ok(answer) => return (answer, interrupted),
+                    Ok(Message::Call(at)) => drop(replies.send(function(at))),
+                    Ok(Message::Answer(answer)) => return (answer, interrupted),
                     Err(RecvTimeoutError::Disconnected) => return (Err(Box::new(()) as _), interrupted),
                     Err(RecvTimeoutError::Timeout) if interrupted.is_some() => {}
                     Err(RecvTimeoutError::Timeout) => {

@@ -285,6 +285,7 @@ BAD = [
     (lambda: coil().escape(), "no noise", ""),
     (lambda: iw.Scene.preset("paper").threshold("mass_g", (2, 1)), "lower end first", "range"),
     (lambda: iw.Scene.preset("paper").threshold(step="a"), "number", "step"),
+    (lambda: iw.Scene.preset("paper").threshold(step=0), "above 0", "step"),
     (lambda: iw.Scene.preset("paper").threshold(of="bliss"), "of", "of"),
     (lambda: iw.Scene.preset("paper").threshold(runs=5), "`probability`", "runs"),
     (lambda: iw.Scene.preset("paper").threshold(probability=0.5, melnikov=True), "`probability`", "melnikov"),

@@ -22,9 +22,14 @@ use crate::system::threads::{Pool, processors, sleep, spawn};
 #[cfg(target_arch = "wasm32")]
 pub use workers::{Workers, set_workers, take_part};
 
-/// A pool of threads for all cores but one; `None` if the system cannot start threads.
+/// Number of threads for work beside the window: that of all cores but one.
+pub fn threads() -> usize {
+    processors().saturating_sub(1).max(1)
+}
+
+/// A pool of so many threads; `None` if the system cannot start them.
 pub fn pool() -> Option<Pool> {
-    Pool::new(processors().saturating_sub(1).max(1)).ok()
+    Pool::new(threads()).ok()
 }
 
 /// Callback that wakes the window when an answer is ready.

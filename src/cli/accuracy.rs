@@ -6,13 +6,17 @@ use std::path::Path;
 use clap::Args;
 use interwell::output::{accuracy_chart, aligned, scene_accuracy_chart};
 use interwell::scene::Document;
-use interwell::study::accuracy::methods::Scheme;
-use interwell::study::accuracy::scene::{Unfit, scene_table, step_name, step_size, tolerances, trust};
-use interwell::study::accuracy::{PROBLEMS, Report, Selection, Stopped, accuracy, description, names};
-use interwell::study::{Task, stop_positions};
+use interwell_studies::study::accuracy::methods::Scheme;
+use interwell_studies::study::accuracy::scene::{
+    Unfit, scene_table, step_name, step_size, tolerances, trust,
+};
+use interwell_studies::study::accuracy::{
+    PROBLEMS, Report, Selection, Stopped, accuracy, description, names,
+};
+use interwell_studies::study::{Task, stop_positions};
 
 use super::progress::bar_on_terminal;
-use super::support::{Watch, inputs, load_model};
+use super::support::{Watch, inputs, load_simulation};
 use super::{Common, Failure, Output, Outputs, Picture, PlotOptions, interrupt, refuse, write_alone};
 
 #[derive(Debug, Args)]
@@ -138,22 +142,23 @@ fn of_scene(
     common: &Common,
 ) -> Result<(), Failure> {
     let steps = options.step_s.as_deref().map_or_else(|| Ok(Vec::new()), steps)?;
-    let (document, model) = load_model(spec, common)?;
-    let outputs = Outputs::new(&inputs(spec, &document)).with_rows(common.out.as_deref())?;
+    let simulation = load_simulation(spec, common)?;
+    let (document, model) = (simulation.document(), simulation.model());
+    let outputs = Outputs::new(&inputs(spec, document)).with_rows(common.out.as_deref())?;
     let mut outputs = outputs.with_picture(picture)?;
     let cancel = interrupt::listen();
 
-    let trusted = trust(&model, cancel).ok_or_else(Failure::interrupted)?;
+    let trusted = trust(model, cancel).ok_or_else(Failure::interrupted)?;
     let mut text = match trusted.short(0.0) {
         Some(short) => format!("{short}. {}\n", trusted.long(0.0)),
         None => format!("The run ends early ({}), after {} s.\n", trusted.outcome.name(), trusted.span),
     };
-    let cost = tolerances(&model, cancel).ok_or_else(Failure::interrupted)?;
+    let cost = tolerances(model, cancel).ok_or_else(Failure::interrupted)?;
     let mut stepped = Vec::new();
     let is_chosen = |word: &str| options.method.is_empty() || options.method.iter().any(|name| name == word);
     for scheme in Scheme::ALL.into_iter().filter(|scheme| is_chosen(scheme.word())) {
         for step in &steps {
-            let run = step_size(&model, scheme, *step, cancel).map_err(|unfit| match unfit {
+            let run = step_size(model, scheme, *step, cancel).map_err(|unfit| match unfit {
                 Unfit::Cancelled => Failure::interrupted(),
                 Unfit::Compliant | Unfit::ElectricalState => Failure::argument(format!("--step-s: {unfit}")),
             })?;
@@ -164,11 +169,11 @@ fn of_scene(
     }
     let table = scene_table(&cost, &stepped);
     outputs.table(Output::DATA, &table)?;
-    outputs.draw(picture, &document, |_| {
+    outputs.draw(picture, document, |_| {
         let (tolerance, stops) = (model.tolerance(), stop_positions(&document.scene));
         Ok(scene_accuracy_chart(&cost, tolerance, &stepped, stops))
     })?;
-    finish(outputs, Some(&document), &format!("{text}\n{}", aligned(&table)), common)
+    finish(outputs, Some(document), &format!("{text}\n{}", aligned(&table)), common)
 }
 
 /// The shortest and the longest step in s that a run is made with.
@@ -196,7 +201,7 @@ fn steps(text: &str) -> Result<Vec<f64>, Failure> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use interwell::study::accuracy::{Check, Variant};
+    use interwell_studies::study::accuracy::{Check, Variant};
 
     #[test]
     fn a_case_that_falls_short_is_a_failure_that_names_it() {

@@ -6,11 +6,10 @@ use clap::Args;
 use interwell::output::best_chart;
 use interwell::questions::Best;
 use interwell::scene::Document;
-use interwell::study::{NoBest, Task, best, names, place, quantity, scan_runs};
 use interwell::system::files::is_file;
 
-use super::support::{inputs, load, pool, settle_limit, warn};
-use super::{ChartOptions, Common, Failure, Output, Outputs, Picture, bar, interrupt, say};
+use super::support::{inputs, load, settle_limit, warn};
+use super::{ChartOptions, Common, Failure, Output, Outputs, Picture, ask, say};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -85,29 +84,22 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     };
     let question = request.question(&document)?;
     warn(&document, common, &warnings, None);
-    let pool = pool(common)?;
     let environments = environment_files(&options.environment);
     let read = [inputs(&options.scene, &document), environments.clone()].concat();
     let mut outputs =
         Outputs::new(&read).with_rows(Some(common.out()))?.reading(&environments)?.with_picture(picture)?;
-    let bar = bar(scan_runs(&question), 0, "runs", common);
-    // the number of runs after the scan is not known in advance
-    let tick = || bar.inc_beyond();
-    let task = Task { tick: &tick, cancel: interrupt::listen() };
     let mut so_far = None;
-    let found = best(&question, &pool, &task, &mut |design| so_far = Some(design.clone()));
-    drop(bar);
-    if let (Err(NoBest::Cancelled), Some(design)) = (&found, &so_far) {
-        let maximised = question.maximise.name;
-        let at = place(&names(&question), &design.at);
-        let value = quantity(design.value, maximised);
-        say(&format!("{}: best so far at {at}: {maximised} {value}", document.name));
+    let found = ask("runs", common, |progress| {
+        request.search(question, &document, progress, &mut |words| so_far = Some(words))
+    });
+    if let (Err(_), Some(words)) = (&found, &so_far) {
+        say(&format!("{}: best so far at {words}", document.name));
     }
-    let design = found.map_err(|why| request.no_best(why, &question, &document))?;
-    outputs.table(Output::DATA, &design.table(&question))?;
-    outputs.draw(picture, &document, |ranges| Ok(best_chart(&question, &design, ranges)))?;
-    design.words(&question).iter().for_each(|line| common.say(&format!("{}: {line}", document.name)));
-    outputs.finish_rows(&document, pool.count())
+    let found = found?;
+    outputs.table(Output::DATA, &found.table())?;
+    outputs.draw(picture, &document, |ranges| Ok(best_chart(&found.question, &found.design, ranges)))?;
+    found.words().iter().for_each(|line| common.say(&format!("{}: {line}", document.name)));
+    outputs.finish_rows(&document, common.jobs())
 }
 
 /// The files that environments are read from: records, and scenes with the files that these name.

@@ -4,11 +4,12 @@ use std::path::PathBuf;
 
 use clap::Args;
 use interwell::numeric::short;
-use interwell::study::{can_cross, inspect};
 use interwell::system::page_address;
 
 use super::shard::line;
-use super::support::{load, mechanism};
+use interwell::questions::Simulation;
+
+use super::support::{load, read};
 use super::{Common, Failure, Output, Outputs, say};
 
 #[derive(Debug, Args)]
@@ -57,13 +58,12 @@ fn link(spec: &str, common: &Common) -> Result<String, Failure> {
 }
 
 fn report(spec: &str, common: &Common) -> Result<String, Failure> {
-    let (document, warnings) = load(spec, common)?;
-    let mechanism = mechanism(&document)?;
-    let lines = inspect(&document.scene, &mechanism).map_err(|faults| document.error_from(faults))?;
+    let simulation = Simulation::new(&read(spec, common)?)?;
+    let document = simulation.document();
     let mut text = format!("{}: {}\n", document.name, document.scene.title);
-    lines.iter().for_each(|line| text += &format!("  {line}\n"));
+    simulation.describe().iter().for_each(|line| text += &format!("  {line}\n"));
     if let Some(drive) = document.scene.harmonic()
-        && can_cross(&document.scene, &mechanism)
+        && simulation.can_cross()
     {
         // the default is the amplitude of a Sine
         let field = drive.rate.map(|_| {
@@ -78,7 +78,6 @@ fn report(spec: &str, common: &Common) -> Result<String, Failure> {
             search.chain(field.iter().flat_map(|field| ["--field", field])).chain(set).chain(tolerance);
         text += &format!("  least amplitude that crosses: {}\n", line(words));
     }
-    let warnings = warnings.iter().map(String::as_str).chain(mechanism.warnings());
-    warnings.for_each(|warning| text += &format!("  warning: {warning}\n"));
+    simulation.warnings().for_each(|warning| text += &format!("  warning: {warning}\n"));
     Ok(text)
 }

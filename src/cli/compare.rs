@@ -4,12 +4,11 @@ use clap::Args;
 use interwell::dynamics::Regime;
 use interwell::numeric::short;
 use interwell::output::comparison_chart;
-use interwell::questions::{in_environment, needs_a_sine};
+use interwell::questions::{Compare, Rated, Simulation};
 use interwell::scene::{Document, RunSettings, Stops, Transducer};
-use interwell::study::{Alternative, Rated, alternatives, comparison_parts, comparison_table};
 
-use super::support::{self, change, check, inputs, mechanism, model, pool, until_settled, warn};
-use super::{Common, Failure, Output, Outputs, Picture, PlotOptions, caption, with_bar};
+use super::support::{self, change, inputs, load_simulation, settle_limit, simulation};
+use super::{Common, Failure, Output, Outputs, Picture, PlotOptions, ask, caption, interrupt, refuse};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -42,56 +41,58 @@ pub struct Arguments {
 
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let picture = Picture::new(&options.plot, common)?;
-    let environment = options.environment.as_deref().or(options.scenes.first().map(String::as_str));
-    let environment = support::read(environment.unwrap_or("paper"), common)?;
-    let (frequency_hz, amplitude_g) = needs_a_sine(&environment)?;
-    let (mut all, mut documents, mut read) = (Vec::new(), Vec::new(), Vec::new());
-    let (mut replaced, mut until) = (Vec::new(), None);
-    for (name, spec, mut document) in named(&options.scenes, common)? {
-        let warnings = check(&mut document, None)?;
-        let (scene, lent) = (&document.scene, &environment.scene);
-        let how = match (scene.excitation != lent.excitation, window(&scene.run) != window(&lent.run)) {
-            (true, true) => Some("under the excitation and with the run of"),
-            (true, false) => Some("under the excitation of"),
-            (false, true) => Some("with the run of"),
-            (false, false) => None,
-        };
-        replaced.extend(how.map(|how| (name.clone(), format!("{how} {}", environment.name))));
-        let document = in_environment(&document, &environment);
-        document.check()?;
-        let mechanism = mechanism(&document)?;
-        let model = model(&document, &mechanism)?;
-        until = until_settled(options.until_settled.as_deref(), &document, &model)?;
-        warn(&document, common, &warnings, Some(&mechanism));
+    let environment = options.environment.as_deref();
+    let environment = environment.map(|spec| load_simulation(spec, common)).transpose()?;
+    let (mut all, mut read) = (Vec::new(), Vec::new());
+    for (name, spec, document) in named(&options.scenes, common)? {
         read.extend(inputs(spec, &document));
-        let (scene, files) = (document.scene.clone(), document.files.clone());
-        all.push(Alternative { name: name.clone(), scene, files, mechanism });
-        documents.push((name, document));
+        all.push((name, simulation(&document, common)?));
     }
-    if let [only] = &all[..] {
-        common.say(&format!("{}: the only scene; name others to set beside it", only.name));
+    let mut others = all.iter().cloned();
+    let Some((name, first)) = others.next() else { refuse!("compare: name a scene, such as paper") };
+    let until_settled = settle_limit(options.until_settled.as_deref())?;
+    let question = Compare { with: others.collect(), name, environment, until_settled };
+    let scenes = question.scenes(&first, &interrupt::progress())?;
+    if let [(only, _)] = &all[..] {
+        common.say(&format!("{only}: the only scene; name others to set beside it"));
     }
+    let environment = question.environment.as_ref().unwrap_or(&first).document();
+    let replaced = all.iter().filter_map(|(name, scene)| Some((name.clone(), replaced(scene, environment)?)));
     grouped(replaced).iter().for_each(|(names, how)| common.say(&format!("{names}: {how}")));
-    let pool = pool(common)?;
     let mut outputs = Outputs::new(&read).with_rows(Some(common.out()))?.with_picture(picture)?;
-    let rated = with_bar(comparison_parts(&all), "parts", common, |task| {
-        alternatives(&all, until, &pool, task).ok_or_else(Failure::interrupted)
-    })?;
-    outputs.table(Output::DATA, &comparison_table(&rated))?;
-    let remarks = all.iter().zip(&rated).flat_map(|(scene, rated)| {
-        let remarks = remarks(scene, rated, amplitude_g).into_iter();
-        remarks.map(|words| (rated.name.clone(), words))
+    let found = ask("parts", common, |progress| question.run(&first, progress))?;
+    let table = found.table();
+    outputs.table(Output::DATA, &table)?;
+    let remarks = scenes.iter().enumerate().flat_map(|(row, (name, scene))| {
+        let empty = table.columns().iter().filter(|column| column.values.is_missing(row));
+        let empty = empty.map(|column| column.name.as_str());
+        let remarks = remarks(scene, &found.rated[row], found.amplitude_g, empty);
+        remarks.into_iter().map(|words| (name.clone(), words))
     });
     grouped(remarks).iter().for_each(|(names, words)| common.say(&format!("{names}: {words}")));
     if let Some(picture) = picture {
-        let mut caption = caption(&environment);
-        let (count, amplitude, frequency) = (rated.len(), short(amplitude_g), short(frequency_hz));
-        caption.title = format!("{count} scenes under a sine of {amplitude} g at {frequency} Hz");
-        picture.write(&mut outputs, &comparison_chart(&rated, frequency_hz), &caption)?;
+        let mut caption = caption(environment);
+        let [amplitude, frequency] = [found.amplitude_g, found.frequency_hz].map(short);
+        caption.title = format!("{} scenes under a sine of {amplitude} g at {frequency} Hz", scenes.len());
+        picture.write(&mut outputs, &comparison_chart(&found.rated, found.frequency_hz), &caption)?;
     }
+    let documents = scenes.into_iter().map(|(name, scene)| (name, scene.document().clone()));
+    let documents: Vec<(String, Document)> = documents.collect();
     let first = documents.first().map(|(_, document)| document);
-    outputs.manifest(first, pool.count(), |manifest| Ok(manifest.of_scenes(&documents)))?;
+    outputs.manifest(first, common.jobs(), |manifest| Ok(manifest.of_scenes(&documents)))?;
     outputs.finish()
+}
+
+/// Which of excitation and run of a scene those of the environment replace.
+fn replaced(simulation: &Simulation, environment: &Document) -> Option<String> {
+    let (scene, lent) = (simulation.scene(), &environment.scene);
+    let how = match (scene.excitation != lent.excitation, window(&scene.run) != window(&lent.run)) {
+        (true, true) => "under the excitation and with the run of",
+        (true, false) => "under the excitation of",
+        (false, true) => "with the run of",
+        (false, false) => return None,
+    };
+    Some(format!("{how} {}", environment.name))
 }
 
 /// The scenes of the arguments, each with its name in the table and its argument. The manifest of a
@@ -130,7 +131,12 @@ fn grouped(remarks: impl IntoIterator<Item = (String, String)>) -> Vec<(String, 
 }
 
 /// Explains the empty and infinite cells of a row, an early end, rest, and an undecided threshold.
-fn remarks(scene: &Alternative, rated: &Rated, amplitude_g: f64) -> Vec<String> {
+fn remarks<'a>(
+    simulation: &Simulation,
+    rated: &Rated,
+    amplitude_g: f64,
+    empty: impl Iterator<Item = &'a str>,
+) -> Vec<String> {
     let (summary, given) = (&rated.summary, short(amplitude_g));
     let mut all = Vec::new();
     if let Some(at) = summary.outcome.ended_at() {
@@ -153,25 +159,23 @@ fn remarks(scene: &Alternative, rated: &Rated, amplitude_g: f64) -> Vec<String> 
     if let Some((_, size)) = rated.sensitivity.as_ref().filter(|(change, _)| change.is_infinite()) {
         all.push(format!("with {size} changed by 1 % nothing is left to cross, or nothing crosses"));
     }
-    let table = comparison_table(std::slice::from_ref(rated));
-    let empty = table.columns().iter().filter(|column| column.values.is_missing(0));
-    let empty = empty.map(|column| (column.name.clone(), why_empty(&column.name, scene, rated, &given)));
+    let empty = empty.map(|column| (column.to_owned(), why_empty(column, simulation, rated, &given)));
     all.extend(grouped(empty).iter().map(|(names, why)| format!("no {names}: {why}")));
     all
 }
 
-fn why_empty(column: &str, scene: &Alternative, rated: &Rated, given: &str) -> String {
+fn why_empty(column: &str, simulation: &Simulation, rated: &Rated, given: &str) -> String {
     let (summary, crossing) = (&rated.summary, rated.crossing_g());
-    let transducer = scene.scene.transducer != Transducer::None;
+    let transducer = simulation.scene().transducer != Transducer::None;
     match column {
         "release_g" => "it rests on no stop",
         "mean_load_power_w" if !transducer => "it has no transducer",
-        "impact_speed_max_m_per_s" if scene.scene.stops == Stops::None => "it has no stops",
+        "impact_speed_max_m_per_s" if simulation.scene().stops == Stops::None => "it has no stops",
         "impact_speed_max_m_per_s" if summary.outcome.ended_at().is_none() => "it strikes no stop",
         "rms_velocity_m_per_s" | "mean_load_power_w" | "max_abs_x_m" | "impact_speed_max_m_per_s" => {
             "its run ended early"
         }
-        _ if scene.mechanism.landscape.barrier.is_none() => {
+        _ if simulation.mechanism().landscape.barrier.is_none() => {
             "no barrier between two wells, so nothing to cross"
         }
         _ if rated.crossing.is_none() => "no barrier stands between its stops, so nothing to cross",

@@ -1,24 +1,20 @@
 //! `curve`: force, potential and stiffness of the mechanism, and the state and shape of its flexures.
 
 use std::path::PathBuf;
-use std::sync::Arc;
 
 use clap::Args;
-use interwell::dynamics::Model;
-use interwell::mechanics::Mechanism;
 use interwell::numeric::extent;
 use interwell::output::{
     contact_chart, curve_chart, landscape, measured_force_chart, mechanism_chart, shapes_chart,
 };
-use interwell::scene::Document;
-use interwell::study::{
-    CURVE_PICTURE_POINTS, CURVE_POINTS, OutsideCurve, StatesError, Table, contact, curve, default_positions,
-    even_positions, flexures_at, full_curve, metres, shapes, states, stop_positions, stress_warning,
+use interwell::questions::{Curve, Error, Simulation};
+use interwell_studies::study::{
+    CURVE_PICTURE_POINTS, CURVE_POINTS, default_positions, even_positions, metres, stop_positions,
 };
 
 use super::measured::MeasuredForceOptions;
-use super::support::{inputs, load_with_mechanism, model, number, numbers, range};
-use super::{ChartOptions, Common, Failure, Output, Outputs, Picture, interrupt, refuse, whole};
+use super::support::{inputs, load_with_mechanism, number, numbers, range};
+use super::{ChartOptions, Common, Failure, Output, Outputs, Picture, interrupt, whole};
 
 #[derive(Debug, Args)]
 pub struct Arguments {
@@ -121,24 +117,41 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         Some(listed) => listed.clone(),
         None => even(options.points.unwrap_or(points) as usize),
     };
-    let outside = |error: OutsideCurve| match (&options.at_mm, &options.range_mm) {
-        (Some(text), _) => Failure::argument(format!("--at-mm {text}: {error}")),
-        (_, Some(text)) => Failure::argument(format!("--range-mm {text}: {error}")),
-        _ => error.into(),
+    let told = |error: Error| match (error, &options.at_mm, &options.range_mm) {
+        (Error::Argument { problem, .. }, Some(text), _) => {
+            Failure::argument(format!("--at-mm {text}: {problem}"))
+        }
+        (Error::Argument { problem, .. }, _, Some(text)) => {
+            Failure::argument(format!("--range-mm {text}: {problem}"))
+        }
+        (error, ..) => error.into(),
     };
-    let mut table = curve(&mechanism, positions(CURVE_POINTS)).map_err(outside)?;
+    let curve = |positions: Vec<f64>| {
+        Curve { positions: Some(positions) }.of_mechanism(&document, &mechanism).map_err(told)
+    };
+    let flexures = |positions: Vec<f64>, option: &str| {
+        let found = Curve { positions: Some(positions) };
+        found.flexures_of(&document, &mechanism, &interrupt::progress()).map_err(|error| match error {
+            Error::Unfit { .. } => Failure::argument(format!("{option}: {}", error.message())),
+            error => told(error),
+        })
+    };
+    let table = curve(positions(CURVE_POINTS))?;
     let of_flexures = [
         options.full.then_some("--full"),
         options.shapes.is_some().then_some("--shapes"),
         shapes_picture.is_some().then_some("--shapes-plot"),
     ];
-    for option in of_flexures.into_iter().flatten() {
-        flexures_at(&mechanism, &[]).map_err(|error| unknown(&document.name, option, error))?;
-    }
+    // a mechanism without flexures is refused before files are opened
+    of_flexures.into_iter().flatten().try_for_each(|option| flexures(Vec::new(), option).map(drop))?;
     let contact_output = options.contact.as_ref().map(|_| Output::CONTACT);
     let contact_output = contact_output.or(contact_picture.map(|picture| picture.output));
-    let contact_table = |output: Output| contact_table(&document, &mechanism, output.option(), rigid);
-    let contacts = contact_output.map(contact_table).transpose()?;
+    let impact = |output: Output| {
+        let simulation = Simulation::new(&document)?;
+        let wrong = |error: Error| Failure::argument(format!("{}: {}", output.option(), error.message()));
+        Ok::<_, Failure>((simulation.impact(rigid).map_err(wrong)?, simulation))
+    };
+    let impacts = contact_output.map(impact).transpose()?;
     let mut read = inputs(&options.scene, &document);
     read.extend(options.measured.measured.clone());
     let mut outputs = Outputs::new(&read)
@@ -155,80 +168,48 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     if let Some(found) = &measured {
         outputs.table(Output::COMPARISON, &found.table)?;
     }
-    let solved = |positions: &[f64], option: &str| {
-        let found = states(&mechanism, positions, &interrupt::silent_task());
-        found.map_err(|error| unknown(&document.name, option, error))
-    };
     if options.full {
-        let rows = solved(&positions(CURVE_POINTS), "--full")?;
-        let warning = mechanism.flexures.as_ref().and_then(|flexures| stress_warning(flexures, &rows));
-        if let Some(words) = warning {
-            common.say(&format!("warning: {}: {words}", document.name));
-        }
-        table = full_curve(&mechanism, &rows)?;
+        let found = flexures(positions(CURVE_POINTS), "--full")?;
+        let warning = found.warning();
+        warning.iter().for_each(|words| common.say(&format!("warning: {}: {words}", document.name)));
+        outputs.table(Output::DATA, &found.table())?;
+    } else {
+        outputs.table(Output::DATA, &table)?;
     }
-    outputs.table(Output::DATA, &table)?;
     outputs.write(Output::LANDSCAPE, landscape(&mechanism, document.scene.mass_g / 1e3))?;
     // The picture shows the whole curve, even if few positions were requested.
     let stops = stop_positions(&document.scene);
     outputs.draw(picture, &document, |ranges| match &measured {
         Some(found) => {
             let over = even_positions(extent(found.positions.iter().copied()), CURVE_PICTURE_POINTS);
-            Ok(measured_force_chart(found, &curve(&mechanism, over)?, ranges))
+            Ok(measured_force_chart(found, &curve(over)?, ranges))
         }
         None => {
-            let table = curve(&mechanism, even(CURVE_PICTURE_POINTS))?;
+            let table = curve(even(CURVE_PICTURE_POINTS))?;
             Ok(curve_chart(&table, &mechanism, stops, ranges))
         }
     })?;
     if outputs.has(Output::SHAPES) {
-        let drawn = solved(&positions(SHAPES), "--shapes")?;
-        outputs.table(Output::SHAPES, &shapes(&drawn))?;
+        outputs.table(Output::SHAPES, &flexures(positions(SHAPES), "--shapes")?.shapes())?;
     }
     outputs.draw(shapes_picture, &document, |_| {
         let is_named = listed.is_some() || options.points.is_some() || range.is_some();
         let equilibria = || mechanism.landscape.equilibria.iter().map(|equilibrium| equilibrium.x).collect();
         let at = if is_named { positions(SHAPES) } else { equilibria() };
-        let drawn = solved(&at, "--shapes-plot")?;
-        Ok(shapes_chart(&drawn, &mechanism, stops))
+        Ok(shapes_chart(&flexures(at, "--shapes-plot")?.states, &mechanism, stops))
     })?;
     outputs.draw(mechanism_picture, &document, |_| {
-        let (model, named) = (model(&document, &mechanism)?, listed.as_ref().and_then(|at| at.first()));
-        let drawn = mechanism_chart(&model, named.copied().unwrap_or(model.start().0));
-        drawn.map_err(|error| unknown(&document.name, "--mechanism-plot", error))
+        let (simulation, named) = (Simulation::new(&document)?, listed.as_ref().and_then(|at| at.first()));
+        let model = simulation.model();
+        let drawn = mechanism_chart(model, named.copied().unwrap_or(model.start().0));
+        drawn.map_err(|problem| Failure::argument(format!("--mechanism-plot: {}: {problem}", document.name)))
     })?;
-    if let Some((table, model)) = &contacts {
+    if let Some((table, simulation)) = &impacts {
+        let model = simulation.model();
         outputs.table(Output::CONTACT, table)?;
         if let Some(stop) = model.compliant() {
             outputs.draw(contact_picture, &document, |_| Ok(contact_chart(table, &stop, model.mass())))?;
         }
     }
     outputs.finish_rows(&document, 1)
-}
-
-/// The table of one impact on the scene's compliant stop over impact speed, and the model.
-fn contact_table(
-    document: &Document,
-    mechanism: &Arc<Mechanism>,
-    option: &str,
-    rigid: f64,
-) -> Result<(Table, Model), Failure> {
-    let model = model(document, mechanism)?;
-    match contact(&model, rigid) {
-        Some(table) => Ok((table, model)),
-        None => refuse!(
-            "{option}: the stops of {} are not compliant; give it some, such as --set \
-             'stops=Hertz(travel_limit_mm: 1.5, radius_mm: 5, young_gpa: 69, loss_s_per_m: 10.4)'",
-            document.name
-        ),
-    }
-}
-
-fn unknown(scene: &str, option: &str, error: StatesError) -> Failure {
-    match error {
-        StatesError::NoFlexures => Failure::argument(format!("{option}: {scene}: {error}")),
-        StatesError::Outside(error) => error.into(),
-        StatesError::Unsolved(_) => Failure::failed(format!("{scene}: {error}")),
-        StatesError::Cancelled => Failure::interrupted(),
-    }
 }

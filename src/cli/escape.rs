@@ -2,12 +2,10 @@
 
 use clap::Args;
 use interwell::output::{can_show_over_field, escape_chart};
-use interwell::questions::{Escape, no_table};
-use interwell::scene::Document;
-use interwell::study::{Table, Until, Values, escape_table};
+use interwell::questions::{Escape, Table, Until, Values};
 
-use super::support::{counted, finite, load_over, mechanism_of_all, outputs, pool};
-use super::{ChartOptions, Common, Failure, Output, Picture, whole, with_bar};
+use super::support::{counted, finite, load_over, mechanism_of_all, outputs};
+use super::{ChartOptions, Common, Failure, Output, Picture, ask, whole};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -61,17 +59,12 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let question = Escape { runs: options.runs, within, until, ..Escape::default() };
     let settings = question.options(&document, &grid)?;
     mechanism_of_all(&document, &grid, common, &warnings)?;
-    let pool = pool(common)?;
     let mut outputs = outputs(&options.scene, &document, common)?.with_picture(picture)?;
-    let Document { scene, files, name, .. } = &document;
-    let found = with_bar(grid.cells() * settings.runs, "runs", common, |task| {
-        escape_table(scene, files, &grid, &settings, &pool, task)
-    });
-    let table = found.map_err(|end| no_table(&document, end))?;
+    let table = ask("runs", common, |progress| question.in_cells(&document, &grid, progress))?;
     outputs.table(Output::DATA, &table)?;
-    common.say(&format!("{name}: {}", about(&table)));
+    common.say(&format!("{}: {}", document.name, about(&table)));
     outputs.draw(picture, &document, |ranges| Ok(escape_chart(&table, &grid, &settings, ranges)?))?;
-    outputs.finish_rows(&document, pool.count())
+    outputs.finish_rows(&document, common.jobs())
 }
 
 /// What came out, in a sentence.

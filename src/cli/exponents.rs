@@ -1,17 +1,12 @@
 //! `exponents`: Lyapunov exponents of a settled motion, or of every cell of a grid.
 
 use clap::Args;
-use interwell::dynamics::Model;
 use interwell::output::{can_show_over_field, exponents_chart};
-use interwell::questions::{Error, may_have_circuit};
-use interwell::scene::Document;
-use interwell::study::{
-    ExponentCells, ExponentOptions, Exponents, Grid, NoExponents, Table, Tally, drive_fault, exponents,
-    exponents_row,
-};
+use interwell::questions::{ExponentOptions, Exponents, Grid, Table};
+use interwell_studies::study::Tally;
 
 use super::grid_job::GridJob;
-use super::support::{counted, load_model, load_over, outputs, pool, until_settled_on_grid, warn};
+use super::support::{counted, load_over, load_simulation, outputs, pool, settle_limit, warn};
 use super::{ChartOptions, Common, Failure, Output, Picture, interrupt, whole};
 
 const EXAMPLES: &str = "\
@@ -52,78 +47,42 @@ pub struct Arguments {
 
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
+    let periods = options.periods.unwrap_or(ExponentOptions::PERIODS);
+    let until_settled = settle_limit(options.until_settled.as_deref())?;
+    let settings = ExponentOptions { periods, until_settled, circuits: false };
+    let question = Exponents { over: Vec::new(), options: settings };
     if !options.over.is_empty() {
-        return over(options, common, picture);
+        return over(options, common, &question, picture);
     }
     if picture.is_some() {
         can_show_over_field(&Grid::of_one(), "exponents")?;
     }
-    let (document, model) = load_model(&options.scene, common)?;
-    if let Some(fault) = drive_fault(&model, &document.scene) {
-        return Err(document.error_from(vec![fault]).into());
-    }
-    let settings = settings(options, &document, Some(&model))?;
-    let mut outputs = outputs(&options.scene, &document, common)?;
-    let found = exponents(&model, &settings, interrupt::listen()).map_err(|problem| match problem {
-        NoExponents::Cancelled => Failure::interrupted(),
-        _ => Failure::failed(format!("{}: {problem}", document.name)),
-    })?;
-    outputs.table(Output::DATA, &exponents_row(&found))?;
-    outputs.finish_rows(&document, 1)?;
-    common.say(&format!("{}: {}", document.name, about(&found, model.repeats())));
+    let simulation = load_simulation(&options.scene, common)?;
+    let document = simulation.document();
+    let mut outputs = outputs(&options.scene, document, common)?;
+    let found = question.of_one(&simulation, &interrupt::progress())?;
+    outputs.table(Output::DATA, &found.table())?;
+    outputs.finish_rows(document, 1)?;
+    common.say(&format!("{}: {}", document.name, found.describe(simulation.model().repeats())));
     Ok(())
 }
 
-/// Settings of the computation; `model` is that of the first cell, `None` if its flexures have no solution.
-fn settings(
-    options: &Arguments,
-    document: &Document,
-    model: Option<&Model>,
-) -> Result<ExponentOptions, Failure> {
-    let text = options.until_settled.as_deref();
-    let until_settled = until_settled_on_grid(text, document, model)?;
-    let periods = options.periods.unwrap_or(ExponentOptions::PERIODS);
-    Ok(ExponentOptions { periods, until_settled, circuits: false })
-}
-
-/// Explains the exponents of one motion in a sentence.
-fn about(found: &Exponents, forced: bool) -> String {
-    let (unit, units) = match forced {
-        true => ("forcing period", "forcing periods"),
-        false => ("period of small oscillations", "periods of small oscillations"),
-    };
-    let multipliers = "the exponents are those of its multipliers";
-    let over = format!("averages over {} {units}", found.span.0);
-    match found.period {
-        _ if found.rests() => "the mass rests on a stop, after which nothing is left of a change: all \
-                               exponents are minus infinity, written -inf"
-            .to_owned(),
-        Some(1) => format!("the motion repeats in every {unit}; {multipliers}"),
-        Some(n) => format!("the motion repeats after {n} {units}; {multipliers}"),
-        None if found.is_irregular() => {
-            format!("{over}, in which the motion is irregular: the first exponent is clearly above 0")
-        }
-        None => format!("{over}, in which no growth shows that the motion is irregular"),
-    }
-}
-
 /// Computes the exponents of every cell of a grid, one row for each.
-fn over(options: &Arguments, common: &Common, picture: Option<Picture>) -> Result<(), Failure> {
+fn over(
+    options: &Arguments,
+    common: &Common,
+    question: &Exponents,
+    picture: Option<Picture>,
+) -> Result<(), Failure> {
     let (document, warnings, grid) = load_over(&options.scene, &options.over, common)?;
-    let circuits = may_have_circuit(&document, grid.axes());
     if picture.is_some() {
         can_show_over_field(&grid, "exponents")?;
     }
-    let cells = ExponentCells::new(&document.scene, &document.files, grid);
-    let task = interrupt::silent_task();
-    let pool = pool(common)?;
-    cells.validate(&pool, &task).map_err(|cell| Error::cells_of(&document, vec![cell]))?;
-    let settings = settings(options, &document, cells.first_model(&task).as_ref())?;
-    let cells = cells.with(ExponentOptions { circuits, ..settings });
+    let cells = question.cells(&document, grid, &interrupt::progress())?;
     warn(&document, common, &warnings, cells.first_mechanism().ok().as_deref());
     let outputs = outputs(&options.scene, &document, common)?;
     let grid = cells.grid();
-    let mut job = GridJob::open(&document, common, outputs, picture, pool)?;
+    let mut job = GridJob::open(&document, common, outputs, picture, pool(common)?)?;
     let (tally, _) = job.stream(&cells, "cells")?;
     let chart = |rows: &Table, ranges| Ok(exponents_chart(rows, grid, &document.scene, ranges)?);
     let wall_s = job.finish(chart, |manifest| Ok(manifest.of_exponents(grid, &tally)))?;

@@ -7,8 +7,8 @@ use interwell::output::{NoPicture, OpenError};
 use interwell::questions::Error;
 use interwell::scene::lesson::LessonError;
 use interwell::scene::{ArgumentError, SceneError};
-use interwell::study::accuracy::UnknownCase;
-use interwell::study::{GridError, OutsideCurve, SweepEnd, TimesError};
+use interwell_studies::study::accuracy::UnknownCase;
+use interwell_studies::study::{GridError, OutsideCurve, SweepEnd, TimesError};
 
 /// Returns the error of a wrong argument from the function; the message is formatted as by `format!`.
 macro_rules! refuse {
@@ -78,7 +78,8 @@ impl From<Error> for Failure {
         match error {
             Error::Scene(error) => error.into(),
             Error::Argument { name, value, problem } => {
-                let option = format!("--{} {value}", name.replace('_', "-"));
+                let option = if name == "threads" { "jobs".to_owned() } else { name.replace('_', "-") };
+                let option = format!("--{option} {value}");
                 Self::argument(format!("{}: {problem}", option.trim_end()))
             }
             Error::Failed { scene, problem } => Self::failed(format!("{scene}: {problem}")),

@@ -2,9 +2,10 @@
 
 use interwell::output::{Chart, Manifest, Ranges, header, rows};
 use interwell::questions::Error;
+use interwell::questions::Table;
 use interwell::scene::Document;
-use interwell::study::{GridStudy, IMPACTS, Question, Shard, Slice, SweepEnd, Table, Tally, Task};
 use interwell::system::threads::Pool;
+use interwell_studies::study::{GridStudy, IMPACTS, Question, Shard, Slice, SweepEnd, Tally, Task};
 
 use super::support::Watch;
 use super::{Common, Failure, Output, Outputs, Picture, bar, interrupt};

@@ -4,13 +4,13 @@ use std::path::PathBuf;
 
 use clap::Args;
 use interwell::output::{Caption, identified, identified_chart};
-use interwell::questions::{Identify, IdentifyAnswer, Progress, WhatToIdentify};
+use interwell::questions::{Identify, IdentifyAnswer, WhatToIdentify};
 use interwell::scene::Timing;
-use interwell::study::Identity;
+use interwell_studies::study::Identity;
 
 use super::measured::{ColumnOptions, PositionOptions};
 use super::support::Watch;
-use super::{ChartOptions, Common, Failure, Output, Outputs, Picture, refuse};
+use super::{ChartOptions, Common, Failure, Output, Outputs, Picture, interrupt, refuse};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -97,7 +97,8 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         .reading(&record)?
         .with(Output::SUMMARY, options.summary.as_deref())?
         .with_picture(picture)?;
-    let IdentifyAnswer { timing, found, across, values, columns } = question.run(file, &Progress::none())?;
+    let IdentifyAnswer { timing, found, across, values, columns } =
+        question.run(file, &interrupt::progress())?;
     common.say(&format!("{}: {columns}", file.display()));
     outputs.table(Output::DATA, &found.rows)?;
     outputs.write(Output::SUMMARY, identified(of, &found, timing.as_ref(), &watch.origin(1)))?;

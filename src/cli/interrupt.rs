@@ -2,7 +2,7 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use interwell::study::Task;
+use interwell::questions::Progress;
 
 use super::Failure;
 
@@ -20,9 +20,9 @@ pub fn listen() -> &'static AtomicBool {
     &INTERRUPTED
 }
 
-/// A task without progress that Ctrl-C ends.
-pub fn silent_task() -> Task<'static> {
-    Task { tick: &|| (), cancel: listen() }
+/// A question's progress without reports, that Ctrl-C cancels.
+pub fn progress() -> Progress<'static> {
+    Progress::none().stopped_by(listen())
 }
 
 /// The failure of an interrupted command if Ctrl-C was pressed.

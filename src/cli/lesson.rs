@@ -3,12 +3,13 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use interwell::questions::check_lessons;
 use interwell::scene::Fault;
 use interwell::scene::lesson::{LESSONS, LessonDocument, LessonError, Step, TEMPLATE};
-use interwell::study::{LessonFinding, Unjudged, check_lesson, result_fields};
 use interwell::system::files;
+use interwell_studies::study::{LessonFinding, result_fields};
 
-use super::support::{counted, pool};
+use super::support::counted;
 use super::{Common, Failure, Output, Outputs, interrupt, refuse, write_alone};
 
 const EXAMPLES: &str = "\
@@ -98,13 +99,7 @@ fn checked(options: &Arguments, common: &Common) -> Result<(String, Option<Failu
         None => LESSONS.iter().map(|lesson| lesson.name).collect(),
     };
     let documents = specs.iter().map(|spec| load(spec)).collect::<Result<Vec<_>, _>>()?;
-    let task = interrupt::silent_task();
-    let pool = pool(common)?;
-    let check = |_: &mut (), number: usize| check_lesson(&documents[number], Some(&pool), &task);
-    let reports = pool.map(documents.len(), || (), check).map_err(|error| match error {
-        Unjudged::Cancelled => Failure::interrupted(),
-        Unjudged::Scene { .. } => Failure::failed(format!("a scene of the lesson: {error}")),
-    })?;
+    let reports = check_lessons(&documents, &interrupt::progress().threads(common.jobs()))?;
     let mut text = String::new();
     let mut wrong: Vec<String> = Vec::new();
     for (document, report) in documents.iter().zip(&reports) {

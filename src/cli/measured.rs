@@ -2,21 +2,17 @@
 //! a record with the computed motion or force.
 
 use std::path::PathBuf;
-use std::sync::atomic::AtomicBool;
 
 use clap::Args;
-use interwell::dynamics::Model;
 use interwell::mechanics::Mechanism;
 use interwell::numeric::short;
 use interwell::output::aligned;
-use interwell::questions::columns_read;
-use interwell::scene::{ColumnRequest, Measured, Quantity, Scene, read_measured};
-use interwell::study::{
-    Comparison, ForceComparison, MeasuredMotion, NoComparison, compare, compare_force, metres,
-};
+use interwell::questions::{Error, Simulation, columns_read};
+use interwell::scene::{ColumnRequest, Measured, Quantity, read_measured};
+use interwell_studies::study::{Comparison, ForceComparison, MeasuredMotion, compare_force, metres};
 
 use super::support::{finite, numbers};
-use super::{Common, Failure, refuse, say};
+use super::{Common, Failure, interrupt, refuse, say};
 
 /// Columns of time and of what was measured.
 #[derive(Debug, Args)]
@@ -153,14 +149,14 @@ impl MeasuredOptions {
 }
 
 impl MeasuredRecord {
-    /// Compares the record with the run of a model.
-    pub fn compare(&self, scene: &Scene, model: &Model, cancel: &AtomicBool) -> Result<Comparison, Failure> {
+    /// Compares the record with the run of a scene.
+    pub fn compare(&self, simulation: &Simulation) -> Result<Comparison, Failure> {
         let [times, channel] = &self.record.channels;
         let Self { offset, time_scale, shift, .. } = *self;
         let motion = MeasuredMotion { times: &times.values, channel, offset, time_scale, shift };
-        compare(scene, model, &motion, cancel).map_err(|problem| match problem {
-            NoComparison::Cancelled => Failure::interrupted(),
-            problem => Failure::argument(format!("{}: {problem}", self.name)),
+        simulation.compared(&motion, &interrupt::progress()).map_err(|error| match error {
+            Error::Unfit { problem, .. } => Failure::argument(format!("{}: {problem}", self.name)),
+            error => error.into(),
         })
     }
 

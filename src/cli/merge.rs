@@ -6,9 +6,9 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use interwell::output::{manifest_path, merged_manifest, plan_differences};
 use interwell::scene::PROGRAM;
-use interwell::study::{Shard, Slice};
 use interwell::system::checksum::Checksum;
 use interwell::system::files;
+use interwell_studies::study::{Shard, Slice};
 use serde_json::Value;
 
 use super::shard::{PLACE, command, other_name, value};

@@ -44,7 +44,7 @@ use failure::refuse;
 use options::{ChartOptions, Common, PlotOptions, Word, whole};
 use outputs::{Output, Outputs, write_alone};
 use picture::{Picture, caption};
-use progress::{bar, with_bar};
+use progress::{ask, bar};
 
 /// Reads the arguments; an `Err` is the exit status after help or an error has been printed.
 pub fn parse() -> Result<Options, ExitCode> {

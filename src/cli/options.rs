@@ -4,6 +4,7 @@ use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
 use clap::{ArgGroup, Args, CommandFactory, Parser, Subcommand};
+use interwell::system::threads::processors;
 
 use super::pages::{Page, VERSION};
 use super::{Failure, say};
@@ -221,6 +222,11 @@ pub struct Common {
 impl Common {
     /// The names of all of them.
     pub const ALL: &'static [&'static str] = &["set", "tolerance", "jobs", "out", "quiet"];
+
+    /// The number of threads.
+    pub fn jobs(&self) -> usize {
+        self.jobs.map_or_else(processors, usize::from)
+    }
 
     pub fn out(&self) -> &Path {
         self.out.as_deref().unwrap_or(Path::new("-"))

@@ -3,9 +3,9 @@
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use interwell::output::{branch_chart, loci_chart};
-use interwell::questions::{Branch, Locus, Orbit, Progress, branches_remarks, check_fields};
+use interwell::questions::{Branch, BranchEvent, Error, FieldRange, Locus, Orbit};
 use interwell::scene::{Axis, Document};
-use interwell::study::{BranchEvent, BranchOptions, FieldRange, branches_table, loci_table};
+use interwell_studies::study::BranchOptions;
 
 use super::progress::bar_on_terminal;
 use super::support::{finite, outputs, read, simulation};
@@ -89,9 +89,6 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let mut document = read(&options.scene, common)?;
     let over = options.branch.as_ref().map(|text| range("--branch", text, &document)).transpose()?;
     let and = options.and.as_ref().map(|text| range("--and", text, &document)).transpose()?;
-    let fields =
-        [("branch", &over), ("and", &and)].map(|(option, field)| Some(([option; 2], field.as_ref()?)));
-    check_fields(&document.scene, fields.into_iter().flatten())?;
     // the branch begins at these values; those in the scene are never run
     for (option, range) in [("--branch", &over), ("--and", &and)] {
         if let Some(FieldRange { field, range: (from, _) }) = range {
@@ -104,7 +101,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     // the number of motions is not known beforehand
     let bar = bar_on_terminal(None, "{human_pos} motions", common.quiet);
     let count = |done: u64, _: Option<u64>| bar.set_position(done);
-    let progress = Progress::none().reporting_to(&count).stopped_by(interrupt::listen());
+    let progress = interrupt::progress().reporting_to(&count);
     let period = options.period;
     let Some(FieldRange { field, range }) = over else {
         let found = Orbit { period, phase_deg }.run(&simulation, &progress)?;
@@ -116,22 +113,31 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let count = options.count.unwrap_or(BranchOptions::COUNT);
     let branch = Branch { field, range, period, phase_deg, step, count };
     let of = options.locus.as_deref().map(|name| name.strip_suffix("-breaking").unwrap_or(name));
+    let told = |error: Error| {
+        bar.finish_and_clear();
+        let Error::Argument { name, problem, .. } = &error else { return Failure::from(error) };
+        let option = match &**name {
+            "field" | "range" => options.branch.as_ref().map(|text| format!("--branch {text}")),
+            "second" | "second_range" => options.and.as_ref().map(|text| format!("--and {text}")),
+            _ => None,
+        };
+        option
+            .map_or_else(|| error.clone().into(), |option| Failure::argument(format!("{option}: {problem}")))
+    };
     let (table, remarks) = match of.and_then(BranchEvent::named).zip(and) {
         Some((of, second)) => {
-            let found = Locus { branch, of, second }.run(&simulation, &progress);
+            let found = Locus { branch, of, second }.run(&simulation, &progress).map_err(told)?;
             bar.finish_and_clear();
-            let found = found?;
-            outputs.draw(picture, document, |ranges| Ok(loci_chart(&found, phase_deg, ranges)))?;
-            let remarks = (1..).zip(&found).filter_map(|(number, locus)| locus.remark(number)).collect();
-            (loci_table(&found), remarks)
+            outputs.draw(picture, document, |ranges| Ok(loci_chart(&found.loci, phase_deg, ranges)))?;
+            (found.table(), found.remarks())
         }
         None => {
-            let found = branch.with_switches(options.switch.unwrap_or(0), &simulation, &progress);
+            let levels = options.switch.unwrap_or(0);
+            let found = branch.with_switches(levels, &simulation, &progress).map_err(told)?;
             bar.finish_and_clear();
-            let found = found?;
-            outputs.draw(picture, document, |ranges| Ok(branch_chart(&found, phase_deg, ranges)))?;
-            let table = if options.switch.is_some() { branches_table(&found) } else { found[0].table() };
-            (table, branches_remarks(&found, range))
+            outputs.draw(picture, document, |ranges| Ok(branch_chart(&found.branches, phase_deg, ranges)))?;
+            let of_one = || found.branches[0].table();
+            (if options.switch.is_some() { found.table() } else { of_one() }, found.remarks())
         }
     };
     remarks.iter().for_each(|line| common.say(line));

@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use interwell::output::{Manifest, Sink, header, is_regular, manifest_path, repeated, rows, same_target};
+use interwell::questions::Table;
 use interwell::scene::{Document, is_manifest, is_scene_file};
-use interwell::study::Table;
 use interwell::system::checksum::{Checksum, file_checksum};
 use interwell::system::files::{canonical, is_file};
 

@@ -5,10 +5,10 @@ use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use indicatif::{HumanCount, HumanDuration, ProgressBar, ProgressState, ProgressStyle};
-use interwell::study::Task;
+use interwell::questions::{self, Error};
 use interwell::system::clock::WallClock;
 
-use super::{Common, interrupt, say};
+use super::{Common, Failure, interrupt, say};
 
 /// Time between two lines in s.
 const INTERVAL: f64 = 60.0;
@@ -20,20 +20,28 @@ pub struct Progress {
 }
 
 struct Lines {
-    parts: u64,
+    parts: AtomicU64,
     unit: String,
     clock: WallClock,
-    /// Parts done before the clock was started.
+    /// Time of the clock in ms at which the parts began to be counted.
+    begun: AtomicU64,
+    /// Parts done before that.
     before: u64,
     done: AtomicU64,
     /// Number of the interval in which the last line was printed.
     printed: AtomicU64,
 }
 
-/// Runs `work` with a task that Ctrl-C ends and whose parts, called `unit`, are counted by a [`bar`].
-pub fn with_bar<T>(parts: u64, unit: &str, common: &Common, work: impl FnOnce(&Task) -> T) -> T {
-    let bar = bar(parts, 0, unit, common);
-    work(&Task { tick: &|| bar.inc(1), cancel: interrupt::listen() })
+/// The answer of a question that Ctrl-C cancels, that has the threads of `--jobs`, and whose parts, called
+/// `unit`, are counted by a [`bar`].
+pub fn ask<T>(
+    unit: &str,
+    common: &Common,
+    question: impl FnOnce(&questions::Progress) -> Result<T, Error>,
+) -> Result<T, Failure> {
+    let bar = bar(0, 0, unit, common);
+    let count = |done: u64, all: Option<u64>| bar.count(done, all.unwrap_or(0));
+    Ok(question(&interrupt::progress().reporting_to(&count).threads(common.jobs()))?)
 }
 
 /// Progress over a number of parts, called `unit`, of which the first `before` are done already: a bar with
@@ -41,7 +49,8 @@ pub fn with_bar<T>(parts: u64, unit: &str, common: &Common, work: impl FnOnce(&T
 pub fn bar(parts: u64, before: u64, unit: &str, common: &Common) -> Progress {
     let rows_on_terminal = common.out() == Path::new("-") && std::io::stdout().is_terminal();
     let (clock, done, printed) = (WallClock::start(), AtomicU64::new(before), AtomicU64::new(0));
-    let lines = Lines { parts, unit: unit.to_owned(), clock, before, done, printed };
+    let (parts_of_lines, begun) = (AtomicU64::new(parts), AtomicU64::new(0));
+    let lines = Lines { parts: parts_of_lines, unit: unit.to_owned(), clock, begun, before, done, printed };
     let lines = Some(lines).filter(|_| !common.quiet && !std::io::stderr().is_terminal());
     let template = format!("{{wide_bar}} {{human_pos}}/{{human_len}} {unit}  {{rate}}  {{eta}} left");
     let bar = bar_on_terminal(Some(parts), &template, common.quiet || rows_on_terminal);
@@ -67,16 +76,25 @@ impl Progress {
     /// Counts `parts` more as done. May be called from any thread.
     pub fn inc(&self, parts: u64) {
         match &self.lines {
-            Some(lines) => lines.inc(parts),
+            Some(lines) => lines.show(lines.done.fetch_add(parts, Ordering::Relaxed) + parts),
             None => self.bar.inc(parts),
         }
     }
 
-    /// Counts one more part as done, and makes the bar longer if there are more parts than it was made for.
-    pub fn inc_beyond(&self) {
-        self.inc(1);
-        if self.bar.length().is_some_and(|length| self.bar.position() >= length) {
-            self.bar.inc_length(1);
+    /// Shows how many of all parts are done, from 0 at the beginning of a phase. There may be more than all.
+    fn count(&self, done: u64, all: u64) {
+        if let Some(lines) = &self.lines {
+            lines.parts.store(all, Ordering::Relaxed);
+            if done == 0 {
+                lines.begun.store((1e3 * lines.clock.seconds()) as u64, Ordering::Relaxed);
+            }
+            lines.show(done);
+            return;
+        }
+        self.bar.set_length(all.max(done));
+        self.bar.set_position(done);
+        if done == 0 {
+            self.bar.reset_eta();
         }
     }
 }
@@ -88,20 +106,20 @@ impl Drop for Progress {
 }
 
 impl Lines {
-    fn inc(&self, parts: u64) {
-        let done = self.done.fetch_add(parts, Ordering::Relaxed) + parts;
+    fn show(&self, done: u64) {
         let (seconds, printed) = (self.clock.seconds(), self.printed.load(Ordering::Relaxed));
         let due = (seconds / INTERVAL) as u64;
         let free = || self.printed.compare_exchange(printed, due, Ordering::Relaxed, Ordering::Relaxed);
         if due > printed && free().is_ok() {
-            say(&self.line(done, seconds));
+            say(&self.line(done, seconds - 1e-3 * self.begun.load(Ordering::Relaxed) as f64));
         }
     }
 
     fn line(&self, done: u64, seconds: f64) -> String {
         let rate = (done - self.before) as f64 / seconds;
-        let left = self.parts.saturating_sub(done) as f64 / rate;
-        let (done, parts) = (HumanCount(done), HumanCount(self.parts.max(done)));
+        let parts = self.parts.load(Ordering::Relaxed);
+        let left = parts.saturating_sub(done) as f64 / rate;
+        let (done, parts) = (HumanCount(done), HumanCount(parts.max(done)));
         format!("{done} of {parts} {}, {rate:.1}/s, {} left", self.unit, duration(left))
     }
 }
@@ -121,9 +139,10 @@ mod tests {
     #[test]
     fn a_line_has_cells_rate_and_time_left() {
         let lines = Lines {
-            parts: 10_000,
+            parts: AtomicU64::new(10_000),
             unit: "cells".into(),
             clock: WallClock::start(),
+            begun: AtomicU64::new(0),
             before: 1000,
             done: AtomicU64::new(1000),
             printed: AtomicU64::new(0),

@@ -2,14 +2,11 @@
 
 use clap::Args;
 use interwell::output::section_chart;
-use interwell::study::{
-    Carry, IMPACTS, MAX_SECTION, SectionAt, SectionOptions, Sections, Table, Tally, section,
-};
+use interwell::questions::{Carry, Section, SectionAt, SectionOptions, Table};
+use interwell_studies::study::{IMPACTS, MAX_SECTION, Tally};
 
 use super::grid_job::GridJob;
-use super::support::{
-    counted, finite, load_model, load_over, outputs, pool, until_settled, until_settled_on_grid, warn,
-};
+use super::support::{counted, finite, load_over, load_simulation, outputs, pool, settle_limit, warn};
 use super::{ChartOptions, Common, Failure, Output, Picture, interrupt, refuse, say, whole};
 
 const EXAMPLES: &str = "\
@@ -74,26 +71,28 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         }
     };
     let carry = options.carry.as_deref().and_then(Carry::named);
-    let settings = SectionOptions { at, periods: options.skip.zip(options.keep), until_settled: None, carry };
-    let take = if options.over.is_empty() { single } else { diagram };
-    take(options, common, settings)
+    let until_settled = settle_limit(options.until_settled.as_deref())?;
+    let settings = SectionOptions { at, periods: options.skip.zip(options.keep), until_settled, carry };
+    let question = Section { over: Vec::new(), options: settings };
+    if options.over.is_empty() {
+        single(options, common, &question)
+    } else {
+        diagram(options, common, &question)
+    }
 }
 
-fn single(options: &Arguments, common: &Common, mut settings: SectionOptions) -> Result<(), Failure> {
+fn single(options: &Arguments, common: &Common, question: &Section) -> Result<(), Failure> {
     let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
-    let (document, model) = load_model(&options.scene, common)?;
-    settings.until_settled =
-        until_settled(options.until_settled.as_deref(), &document, &settings.run_of(&model))?;
-    let mut outputs = outputs(&options.scene, &document, common)?.with_picture(picture)?;
-    let found = section(&model, &document.scene, &settings, interrupt::listen());
-    let (table, summary) = found.map_err(|fault| document.error_from(vec![fault]))?;
-    interrupt::check()?;
+    let simulation = load_simulation(&options.scene, common)?;
+    let document = simulation.document();
+    let mut outputs = outputs(&options.scene, document, common)?.with_picture(picture)?;
+    let (table, summary) = question.of_one(&simulation, &interrupt::progress())?;
     outputs.table(Output::DATA, &table.without(IMPACTS))?;
-    let stops = model.stop_positions();
-    let chart = |ranges| Ok(section_chart(&table, None, phase(&settings), stops, ranges));
-    outputs.draw(picture, &document, chart)?;
-    outputs.finish_rows(&document, 1)?;
-    if table.rows() == 0 && settings.at == SectionAt::Impacts {
+    let stops = simulation.model().stop_positions();
+    let chart = |ranges| Ok(section_chart(&table, None, phase(question), stops, ranges));
+    outputs.draw(picture, document, chart)?;
+    outputs.finish_rows(document, 1)?;
+    if table.rows() == 0 && question.options.at == SectionAt::Impacts {
         common.say(&format!("{}: no rows, since no impact counts in the settled window", document.name));
     }
     if let Some(at) = summary.outcome.ended_at() {
@@ -103,12 +102,12 @@ fn single(options: &Arguments, common: &Common, mut settings: SectionOptions) ->
     Ok(())
 }
 
-fn phase(settings: &SectionOptions) -> Option<f64> {
-    if let SectionAt::Phase(degrees) = settings.at { Some(degrees) } else { None }
+fn phase(question: &Section) -> Option<f64> {
+    if let SectionAt::Phase(degrees) = question.options.at { Some(degrees) } else { None }
 }
 
 /// The sections of all cells, written as they are computed.
-fn diagram(options: &Arguments, common: &Common, settings: SectionOptions) -> Result<(), Failure> {
+fn diagram(options: &Arguments, common: &Common, question: &Section) -> Result<(), Failure> {
     let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
     let (document, warnings, grid) = load_over(&options.scene, &options.over, common)?;
     let fields = grid.axes().len();
@@ -117,20 +116,15 @@ fn diagram(options: &Arguments, common: &Common, settings: SectionOptions) -> Re
             "--plot shows a diagram over one field, not over {fields}: take the others out, or draw nothing"
         );
     }
-    let sections = Sections::new(&document.scene, &document.files, grid).with(settings);
-    let first = sections.first_model(&interrupt::silent_task());
-    // a fault of the first cell is reported below, with its place
-    let text = options.until_settled.as_deref();
-    let until_settled = until_settled_on_grid(text, &document, first.as_ref())?;
-    let sections = sections.with(SectionOptions { until_settled, ..settings });
-    warn(&document, common, &warnings, first.as_ref().map(|model| &**model.mechanism()));
+    let sections = question.cells(&document, grid, &interrupt::progress())?;
+    warn(&document, common, &warnings, sections.first_mechanism().ok().as_deref());
     let pool = pool(common)?;
     let outputs = outputs(&options.scene, &document, common)?;
     let mut job = GridJob::open(&document, common, outputs, picture, pool)?;
     let (tally, count) = job.stream(&sections, "runs")?;
     let grid = sections.grid();
     let chart =
-        |rows: &Table, ranges| Ok(section_chart(rows, Some(grid), phase(&settings), (None, None), ranges));
+        |rows: &Table, ranges| Ok(section_chart(rows, Some(grid), phase(question), (None, None), ranges));
     let wall_s = job.finish(chart, |manifest| Ok(manifest.of_rows(grid, &tally, None)))?;
     if tally.cells == sections.rows() {
         let rows = counted(count as u64, "row");

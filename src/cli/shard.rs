@@ -4,7 +4,7 @@
 use std::path::{Path, PathBuf};
 
 use interwell::output::is_regular;
-use interwell::study::Shard;
+use interwell_studies::study::Shard;
 
 use super::{Failure, refuse};
 

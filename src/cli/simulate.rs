@@ -6,12 +6,11 @@ use clap::Args;
 use interwell::dynamics::{Model, Outcome};
 use interwell::numeric::{extent, short};
 use interwell::output::{RunPanel, measured_chart, push_number, run_chart, summary};
-use interwell::study::{
-    Keep, Sampling, ended_remedy, sample_times, simulate, simulate_with_trace, yield_warning,
-};
+use interwell::questions::Sampling;
+use interwell_studies::study::{Keep, ended_remedy, yield_warning};
 
 use super::measured::MeasuredOptions;
-use super::support::{Watch, inputs, load_model, number, numbers, until_settled};
+use super::support::{Watch, inputs, load_simulation, number, numbers, settle_limit};
 use super::{ChartOptions, Common, Failure, Output, Outputs, Picture, interrupt, refuse, say};
 
 #[derive(Debug, Args)]
@@ -77,9 +76,11 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         refuse!("--panels: {} is named twice; a picture shows each panel once", panels[twice].name());
     }
     let panels = if panels.is_empty() { RunPanel::USUAL.to_vec() } else { panels };
-    let (document, model) = load_model(&options.scene, common)?;
-    let until_settled = until_settled(options.until_settled.as_deref(), &document, &model)?;
-    let times = sample_times(&document.scene, &model, &sampling, until_settled)?;
+    let simulation = load_simulation(&options.scene, common)?;
+    let (document, model) = (simulation.document(), simulation.model());
+    let until_settled = settle_limit(options.until_settled.as_deref())?;
+    let keep = simulation.to_keep(&sampling, until_settled)?;
+    let keep = Keep { events: options.events.is_some(), ..keep };
     let window = picture.and_then(|picture| picture.ranges.x).or_else(|| span(&sampling));
     let longest = until_settled.unwrap_or(model.duration());
     if let Some((from, to)) = window.filter(|(from, to)| *from < 0.0 || *to > longest) {
@@ -90,7 +91,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     if let Some((from, to)) = inset.filter(|(_, to)| *to > longest) {
         refuse!("--inset {from}:{to}: the run lasts from 0 to {longest} s");
     }
-    let mut read = inputs(&options.scene, &document);
+    let mut read = inputs(&options.scene, document);
     read.extend(options.measured.measured.clone());
     let mut outputs = Outputs::new(&read)
         .with_rows(Some(common.out()))?
@@ -98,44 +99,42 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         .with(Output::SUMMARY, options.summary.as_deref())?
         .with_picture(picture)?
         .with(Output::COMPARISON, options.measured.comparison.as_deref())?;
-    let cancel = interrupt::listen();
     let watch = Watch::start();
-    let keep = Keep { times, events: options.events.is_some(), until_settled };
-    let (simulation, trace) = if picture.is_none() {
-        (simulate(&model, &keep, Some(cancel)), None)
-    } else {
-        let (simulation, trace) = simulate_with_trace(&model, &keep, inset.or(window), Some(cancel));
-        (simulation, Some(RunPanel::complete(&panels, trace, &model, cancel)))
+    let progress = interrupt::progress();
+    let (run, trace) = match picture {
+        None => (simulation.kept(&keep, &progress)?, None),
+        Some(_) => {
+            let (run, trace) = simulation.traced(&keep, inset.or(window), &progress)?;
+            (run, Some(RunPanel::complete(&panels, trace, simulation.model(), progress.stop())))
+        }
     };
-    interrupt::check()?;
-    let compared =
-        record.as_ref().map(|measured| measured.compare(&document.scene, &model, cancel)).transpose()?;
-    outputs.table(Output::DATA, &simulation.samples)?;
-    outputs.table(Output::EVENTS, &simulation.events)?;
-    outputs.write(Output::SUMMARY, summary(&simulation.summary, &document.scene, &watch.origin(1)))?;
+    let compared = record.as_ref().map(|measured| measured.compare(&simulation)).transpose()?;
+    outputs.table(Output::DATA, &run.samples)?;
+    outputs.table(Output::EVENTS, &run.events)?;
+    outputs.write(Output::SUMMARY, summary(&run.summary, &document.scene, &watch.origin(1)))?;
     let compared = record.as_ref().zip(compared.as_ref());
     if let Some(trace) = trace {
         let of = (&**model.mechanism(), model.mass());
-        outputs.draw(picture, &document, |ranges| match compared {
+        outputs.draw(picture, document, |ranges| match compared {
             Some((measured, found)) => {
                 let quantity = measured.record.channels[1].quantity;
                 Ok(measured_chart(&trace, (found, quantity), inset, ranges))
             }
-            None => Ok(run_chart(&trace, &simulation.summary, of, &panels, ranges)),
+            None => Ok(run_chart(&trace, &run.summary, of, &panels, ranges)),
         })?;
     }
     if let Some((_, found)) = compared {
         outputs.table(Output::COMPARISON, &found.table)?;
     }
-    outputs.finish_rows(&document, 1)?;
+    outputs.finish_rows(document, 1)?;
     if let Some((measured, found)) = compared.filter(|_| !common.quiet) {
         measured.report(found);
     }
-    let warning = yield_warning(&model, &simulation.summary);
+    let warning = yield_warning(model, &run.summary);
     if let Some(words) = warning {
         common.say(&format!("warning: {}: {words}", document.name));
     }
-    if let Some(reason) = remark(&model, simulation.summary.outcome) {
+    if let Some(reason) = remark(model, run.summary.outcome) {
         let reason = format!("{}: {reason}", document.name);
         if options.strict {
             return Err(Failure::failed(reason));

@@ -3,8 +3,7 @@
 use clap::Args;
 use interwell::numeric::Taper;
 use interwell::output::{SpectrumQuantity, spectrum_chart};
-use interwell::questions::{Progress, Spectrum};
-use interwell::study::Signal;
+use interwell::questions::{Signal, Spectrum};
 
 use super::support::{load_simulation, number, outputs, settle_limit};
 use super::{ChartOptions, Common, Failure, Output, Picture, interrupt, refuse};
@@ -77,8 +76,8 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let simulation = load_simulation(&options.scene, common)?;
     let document = simulation.document();
     let mut outputs = outputs(&options.scene, document, common)?.with_picture(picture)?;
-    let found = question.run(&simulation, &Progress::none().stopped_by(interrupt::listen()))?;
-    outputs.table(Output::DATA, &found.table)?;
+    let found = question.run(&simulation, &interrupt::progress())?;
+    outputs.table(Output::DATA, found.table())?;
     let quantity = SpectrumQuantity::named(&options.quantity).unwrap_or(SpectrumQuantity::Amplitude);
     outputs.draw(picture, document, |ranges| Ok(spectrum_chart(&found, quantity, ranges)))?;
     outputs.finish_rows(document, 1)?;

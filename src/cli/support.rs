@@ -3,14 +3,12 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use interwell::dynamics::Model;
 use interwell::mechanics::Mechanism;
 use interwell::output::{Provenance, is_regular};
-use interwell::questions::{Error, Simulation, check_until_settled};
+use interwell::questions::{Error, Grid, Simulation};
 use interwell::scene::{Document, SceneError, read_number};
-use interwell::study::Grid;
 use interwell::system::clock::{ProcessClock, WallClock};
-use interwell::system::threads::{Pool, processors};
+use interwell::system::threads::Pool;
 
 use super::{Common, Failure, Outputs, refuse};
 
@@ -117,11 +115,6 @@ pub fn mechanism(document: &Document) -> Result<Arc<Mechanism>, Failure> {
     built.map(Arc::new).map_err(|error| Error::unbuilt(document, error).into())
 }
 
-pub fn model(document: &Document, mechanism: &Arc<Mechanism>) -> Result<Model, Failure> {
-    let model = Model::build(&document.scene, Arc::clone(mechanism));
-    model.map_err(|faults| document.error_from(faults).into())
-}
-
 /// The mechanism of all cells of a grid, `None` if they have different ones; prints the warnings.
 pub fn mechanism_of_all(
     document: &Document,
@@ -140,12 +133,6 @@ pub fn load_with_mechanism(spec: &str, common: &Common) -> Result<(Document, Arc
     let mechanism = mechanism(&document)?;
     warn(&document, common, &warnings, Some(&mechanism));
     Ok((document, mechanism))
-}
-
-/// Like [`load_simulation`], but returns the document and the model.
-pub fn load_model(spec: &str, common: &Common) -> Result<(Document, Model), Failure> {
-    let simulation = load_simulation(spec, common)?;
-    Ok((simulation.document().clone(), simulation.model().clone()))
 }
 
 /// Loads the scene and builds its model; prints the warnings of both.
@@ -209,27 +196,7 @@ pub fn settle_limit(text: Option<&str>) -> Result<Option<f64>, Failure> {
     text.map(|text| finite("--until-settled", text, "not a time; give seconds, such as 300")).transpose()
 }
 
-/// The time in s of `--until-settled`, if given; an error if runs of `model` cannot go on to that time.
-pub fn until_settled(text: Option<&str>, document: &Document, model: &Model) -> Result<Option<f64>, Failure> {
-    let until = settle_limit(text)?;
-    if let Some((until, text)) = until.zip(text) {
-        check_until_settled(until, text, document, model)?;
-    }
-    Ok(until)
-}
-
-/// The same for a grid. `first` is the model of its first cell: `None` if that has flexures without a
-/// solution, or faults, which are reported later with their place.
-pub fn until_settled_on_grid(
-    text: Option<&str>,
-    document: &Document,
-    first: Option<&Model>,
-) -> Result<Option<f64>, Failure> {
-    first.map_or_else(|| settle_limit(text), |model| until_settled(text, document, model))
-}
-
 /// The pool of `--jobs` threads.
 pub fn pool(common: &Common) -> Result<Pool, Failure> {
-    let count = common.jobs.map_or_else(processors, usize::from);
-    Pool::new(count).map_err(|error| Failure::Failed(error.into()))
+    Pool::new(common.jobs()).map_err(|error| Failure::Failed(error.into()))
 }

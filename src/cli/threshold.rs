@@ -3,17 +3,12 @@
 use clap::Args;
 use interwell::numeric::extent;
 use interwell::output::{can_show_thresholds, threshold_chart};
-use interwell::questions::{
-    Escape, NO_MELNIKOV, ProbableThreshold, Threshold, drive_alone, no_table, refuse_searched,
-};
+use interwell::questions::{Error, Escape, Grid, Onset, ProbableThreshold, Progress, Table, Threshold};
 use interwell::scene::Document;
-use interwell::study::{
-    Chance, Grid, Onset, Scan, Table, can_cross, probable_threshold_table, suits_melnikov, threshold_table,
-    with_melnikov,
-};
+use interwell_studies::study::{Chance, Scan, can_cross};
 
-use super::support::{finite, load_over, mechanism_of_all, outputs, pool, until_settled};
-use super::{ChartOptions, Common, Failure, Output, Picture, refuse, whole, with_bar};
+use super::support::{finite, load_over, mechanism_of_all, outputs, settle_limit};
+use super::{ChartOptions, Common, Failure, Output, Picture, ask, whole};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -86,66 +81,67 @@ pub struct Arguments {
     pub chart: ChartOptions,
 }
 
-/// The searched field with its range and resolution, and the probability to reach under noise.
-fn search(
-    options: &Arguments,
-    of: Onset,
-    document: &Document,
-    grid: &Grid,
-) -> Result<(Scan, Option<Chance>), Failure> {
-    let number = |option: &str, text: &Option<String>, remedy: &str| {
-        text.as_deref().map(|text| finite(option, text, remedy)).transpose()
-    };
-    let remedy = "give a number above 0, in the unit of the field";
-    let resolution = number("--resolution", &options.resolution, remedy)?;
-    let probability = number("--probability", &options.probability, "give a share, such as 0.5")?;
-    let within = number("--within", &options.within, "give a time in s, such as 100")?;
-    let field = options.field.clone();
-    let Some(probability) = probability else {
-        let scan = Threshold { field, of, resolution, ..Threshold::default() }.scan(document)?;
-        if options.melnikov && !suits_melnikov(&document.scene, &scan.field) {
-            refuse!("--melnikov with --field {}: {NO_MELNIKOV}", scan.field);
+/// What is asked: without a share of the runs of a motion, with one of motions under noise.
+enum Asked {
+    Threshold(Threshold),
+    Probable(ProbableThreshold),
+}
+
+impl Asked {
+    fn new(options: &Arguments) -> Result<Self, Failure> {
+        let number = |option: &str, text: &Option<String>, remedy: &str| {
+            text.as_deref().map(|text| finite(option, text, remedy)).transpose()
+        };
+        let remedy = "give a number above 0, in the unit of the field";
+        let resolution = number("--resolution", &options.resolution, remedy)?;
+        let probability = number("--probability", &options.probability, "give a share, such as 0.5")?;
+        let within = number("--within", &options.within, "give a time in s, such as 100")?;
+        let (field, over) = (options.field.clone(), Vec::new());
+        let Some(probability) = probability else {
+            let of = Onset::named(&options.of).unwrap_or(Onset::Crossing);
+            let until_settled = settle_limit(options.until_settled.as_deref())?;
+            let melnikov = options.melnikov;
+            return Ok(Self::Threshold(Threshold { over, field, of, resolution, until_settled, melnikov }));
+        };
+        let runs = options.runs.unwrap_or(Escape::RUNS);
+        Ok(Self::Probable(ProbableThreshold { over, field, probability, runs, within, resolution }))
+    }
+
+    fn onset(&self) -> Onset {
+        if let Self::Threshold(question) = self { question.of } else { Onset::Crossing }
+    }
+
+    /// The values that are tried.
+    fn scan(&self, document: &Document, grid: &Grid) -> Result<Scan, Error> {
+        match self {
+            Self::Threshold(question) => question.scan(document, grid),
+            Self::Probable(question) => {
+                question.chance(document, grid)?;
+                question.scan(document, grid)
+            }
         }
-        return Ok((scan, None));
-    };
-    let runs = options.runs.unwrap_or(Escape::RUNS);
-    let question = ProbableThreshold { field, probability, runs, within, resolution, over: Vec::new() };
-    Ok((question.scan(document)?, Some(question.chance(document, grid)?)))
+    }
+
+    fn table(&self, document: &Document, grid: &Grid, progress: &Progress) -> Result<Table, Error> {
+        match self {
+            Self::Threshold(question) => question.in_cells(document, grid, progress),
+            Self::Probable(question) => question.in_cells(document, grid, progress),
+        }
+    }
 }
 
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
     let (document, warnings, grid) = load_over(&options.scene, &options.over, common)?;
-    let onset = Onset::named(&options.of).unwrap_or(Onset::Crossing);
-    let (mut scan, chance) = search(options, onset, &document, &grid)?;
-    refuse_searched(&grid, &scan)?;
+    let (asked, Document { scene, name, .. }) = (Asked::new(options)?, &document);
+    let (scan, onset) = (asked.scan(&document, &grid)?, asked.onset());
     if picture.is_some() {
         can_show_thresholds(&grid)?;
     }
     let mechanism = mechanism_of_all(&document, &grid, common, &warnings)?;
-    if let Some(text) = options.until_settled.as_deref() {
-        let mut first = document.scene.clone();
-        grid.apply(0, &mut first);
-        scan.until_settled = until_settled(Some(text), &document, &drive_alone(&document, first)?)?;
-    }
-    let pool = pool(common)?;
     let mut outputs = outputs(&options.scene, &document, common)?.with_picture(picture)?;
-    let Document { scene, files, name, .. } = &document;
-    let (parts, unit) = match chance {
-        Some(chance) => (chance.runs, "runs"),
-        None => (scan.values.len() as u64, "values"),
-    };
-    let found = with_bar(grid.cells() * parts, unit, common, |task| match chance {
-        Some(chance) => probable_threshold_table(scene, files, &grid, &scan, &chance, &pool, task),
-        None => {
-            let table = threshold_table(scene, files, &grid, &scan, onset, &pool, task)?;
-            if !options.melnikov {
-                return Ok(table);
-            }
-            with_melnikov(table, scene, files, &grid, &pool, task)
-        }
-    });
-    let table = found.map_err(|end| no_table(&document, end))?;
+    let unit = if matches!(asked, Asked::Probable(_)) { "runs" } else { "values" };
+    let table = ask(unit, common, |progress| asked.table(&document, &grid, progress))?;
     outputs.table(Output::DATA, &table)?;
     let mut fields = grid.axes().iter().map(|axis| &axis.field).chain([&scan.field]);
     let fixed = !fields.any(|field| field.starts_with("stops") || field.starts_with("mechanism"));
@@ -154,15 +150,15 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         None => "there is no barrier between two wells",
         Some(_) => "no barrier lies between the stops",
     });
-    let missing = match chance {
-        Some(chance) => too_few(&table, &scan, &chance),
-        None => missing(&table, &scan, onset, &grid, blocked),
+    let missing = match &asked {
+        Asked::Probable(question) => too_few(&table, &scan, &question.chance(&document, &grid)?),
+        Asked::Threshold(_) => missing(&table, &scan, onset, &grid, blocked),
     };
     let remarks = [missing, undecided(&table), without_melnikov(&table)];
     remarks.iter().flatten().for_each(|words| common.say(&format!("{name}: {words}")));
     let chart = |ranges| Ok(threshold_chart(&table, &grid, scene, &scan.field, onset, ranges)?);
     outputs.draw(picture, &document, chart)?;
-    outputs.finish_rows(&document, pool.count())
+    outputs.finish_rows(&document, common.jobs())
 }
 
 /// The clause "`count` of `all` rows" with the singular or plural of a verb. Returns `None` if `count` is 0.

@@ -2,7 +2,8 @@
 //! the command line and the window of interwell.
 //!
 //! It is a separate crate so that a change in the window does not recompile the studies. Programs use the
-//! crate `interwell`, which re-exports these modules.
+//! crate `interwell`, which re-exports [`questions`] and [`output`]. The studies themselves, which the
+//! questions ask, are for the command line, the window and the tests of this workspace.
 
 // Tests compare with the functions of std.
 #![cfg_attr(test, allow(clippy::disallowed_methods))]
@@ -11,5 +12,6 @@ pub(crate) use interwell_kernel::{dynamics, mechanics, numeric, scene, system};
 
 pub mod output;
 #[macro_use]
+#[doc(hidden)]
 pub mod study;
 pub mod questions;

@@ -5,9 +5,9 @@ use std::f64::consts::TAU;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use interwell::dynamics::{Model, Phase, Request};
-use interwell::study::Task;
-use interwell::study::accuracy::methods::{MethodRun, Scheme, dormand_prince, fixed_step};
-use interwell::study::accuracy::{
+use interwell_studies::study::Task;
+use interwell_studies::study::accuracy::methods::{MethodRun, Scheme, dormand_prince, fixed_step};
+use interwell_studies::study::accuracy::{
     Check, HARD_CASES, Report, Selection, Stopped, Variant, accuracy, description, names,
 };
 

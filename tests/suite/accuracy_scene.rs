@@ -4,8 +4,8 @@
 use std::sync::atomic::AtomicBool;
 
 use interwell::dynamics::Model;
-use interwell::study::accuracy::methods::Scheme;
-use interwell::study::accuracy::scene::{
+use interwell_studies::study::accuracy::methods::Scheme;
+use interwell_studies::study::accuracy::scene::{
     Course, Lateness, StepSize, TOLERANCES, TRUSTED_SHARE, Tolerances, Trust, Unfit, duration, length_mm,
     moment, scene_table, small_length, step_name, step_size, tolerances, trust,
 };

@@ -6,8 +6,8 @@ use std::sync::atomic::AtomicBool;
 
 use interwell::dynamics::{Arrival, EventKind, MapState, Model, Outcome, Pursued, Pursuit, Request};
 use interwell::scene::{Document, Files};
-use interwell::study::*;
 use interwell::system::threads::Pool;
+use interwell_studies::study::*;
 
 use super::support::*;
 

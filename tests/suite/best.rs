@@ -4,11 +4,11 @@ use std::sync::atomic::AtomicBool;
 
 use interwell::dynamics::{Outcome, Request};
 use interwell::scene::{Document, Files};
-use interwell::study::{
+use interwell::system::threads::Pool;
+use interwell_studies::study::{
     BestDesign, BestQuestion, Constraint, DesignRange, Environment, NoBest, SummaryField, Task, Variation,
     best,
 };
-use interwell::system::threads::Pool;
 
 use crate::cli::{headless, refused, stdout};
 use crate::support::*;

@@ -7,7 +7,7 @@ use std::path::Path;
 
 use interwell::dynamics::{EventKind, Outcome, Phase, Regime};
 use interwell::scene::{Document, FIELDS, Files};
-use interwell::study::{Cell, SUMMARY_FIELDS};
+use interwell_studies::study::{Cell, SUMMARY_FIELDS};
 
 use crate::cli::{headless, stdout};
 

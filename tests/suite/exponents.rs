@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 use std::sync::atomic::AtomicBool;
 
 use interwell::dynamics::{EventKind, Jacobian, Model, STANDARD_GRAVITY};
-use interwell::study::{ExponentOptions, Exponents, NoExponents, average_exponents, exponents};
+use interwell_studies::study::{ExponentOptions, Exponents, NoExponents, average_exponents, exponents};
 
 use crate::support::{build, documented, model, near, near_relative, of_kind, preset, run, unit_well};
 

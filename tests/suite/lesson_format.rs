@@ -6,7 +6,7 @@ use std::sync::atomic::AtomicBool;
 use interwell::dynamics::{Model, Request, Summary};
 use interwell::scene::Document;
 use interwell::scene::lesson::{LessonDocument, LessonError};
-use interwell::study::{
+use interwell_studies::study::{
     LessonReport, Subject, SummaryField, Task, Values, check_lesson, goal_lack, result_fields,
 };
 use predicates::str::contains;
@@ -267,7 +267,7 @@ fn the_turns_of_a_walk_are_where_it_begins_and_ends_to_cross() {
 fn the_check_finds_what_a_lesson_must_not_have() {
     let find = |steps: &str, more: &str| {
         let report = checked(&text(steps, more));
-        let said = |findings: &[interwell::study::LessonFinding]| {
+        let said = |findings: &[interwell_studies::study::LessonFinding]| {
             findings
                 .iter()
                 .map(|finding| format!("{}: {}", finding.field, finding.problem))

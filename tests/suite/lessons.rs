@@ -6,7 +6,7 @@ mod numbers;
 use std::sync::atomic::AtomicBool;
 
 use interwell::scene::lesson::{LESSONS, LessonDocument, LessonError, Step, TEMPLATE};
-use interwell::study::{LessonReport, Task, check_lesson, result_fields};
+use interwell_studies::study::{LessonReport, Task, check_lesson, result_fields};
 
 fn read(text: &str) -> Result<LessonDocument, LessonError> {
     LessonDocument::from_text("own.ron", text, None, &result_fields())

@@ -1,7 +1,7 @@
 //! Live runs: the same run in any pieces, changes on the way, and the memory of what was seen.
 
 use interwell::dynamics::{EventKind, Live, LiveOutput, Model, Phase, Request, Sample, Side};
-use interwell::study::Watch;
+use interwell_studies::study::Watch;
 
 use crate::support::*;
 

@@ -12,7 +12,7 @@ mod restitution;
 
 use std::f64::consts::TAU;
 
-use interwell::study::{Identified, Identity};
+use interwell_studies::study::{Identified, Identity};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 

@@ -16,7 +16,7 @@ use std::sync::atomic::AtomicBool;
 
 use interwell::dynamics::{Outcome, Regime, Request, Summary};
 use interwell::scene::{PRESETS, Preset};
-use interwell::study::{Onset, Scan, Task, threshold};
+use interwell_studies::study::{Onset, Scan, Task, threshold};
 
 use super::support::*;
 

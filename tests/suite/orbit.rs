@@ -15,7 +15,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use interwell::dynamics::{Model, Multiplier, Outcome, STANDARD_GRAVITY};
 use interwell::mechanics::Mechanism;
 use interwell::scene::{Document, Files};
-use interwell::study::{
+use interwell_studies::study::{
     Branch, BranchEnd, BranchEvent, BranchOptions, Family, NoOrbit, Orbit, Task, branch, orbit, orbit_near,
     orbit_table,
 };

@@ -1,11 +1,11 @@
 //! Questions: cancellation of mechanisms and records, and which argument a fault names.
 
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use interwell::mechanics::ForceCurve;
 use interwell::questions::{
-    Branch, Curve, Error, Identify, Progress, Sampling, Simulation, Sweep, WhatToIdentify,
+    Best, Branch, Curve, Error, Identify, Progress, Sampling, Simulation, Sweep, WhatToIdentify,
 };
 use interwell::scene::{Document, Excitation};
 
@@ -29,6 +29,23 @@ fn a_mechanism_is_cancelled_and_solved_once() {
     std::fs::write(&record, "t_s\n0\n1\n1.5\n1.75\n1.875\n").unwrap();
     let question = Identify { impact_times: true, ..Identify::of(WhatToIdentify::Restitution) };
     assert_eq!(question.run(&record, &stopped).unwrap_err(), Error::Cancelled);
+    let curve = |cancel| ForceCurve::from_fn_cancellable(f64::sin, (-1.0, 1.0), 1e-6, &[], cancel);
+    assert_eq!(curve(&stop).map_err(Error::from).unwrap_err(), Error::Cancelled);
+    stop.store(false, Ordering::Relaxed);
+    assert!(curve(&stop).is_ok() && question.run(&record, &stopped).is_ok());
+}
+
+#[test]
+fn a_fit_is_cancelled_while_it_is_under_way() {
+    // the function sets the flag by its last sample before the first fit
+    let (stop, calls) = (AtomicBool::new(false), AtomicUsize::new(0));
+    let force = |x: f64| {
+        stop.store(calls.fetch_add(1, Ordering::Relaxed) == 64, Ordering::Relaxed);
+        x.powi(3) - x
+    };
+    let found = ForceCurve::from_fn_cancellable(force, (-2.0, 2.0), 1e-8, &[], &stop);
+    assert_eq!(found.map_err(Error::from).unwrap_err(), Error::Cancelled);
+    assert_eq!(calls.into_inner(), 65);
 }
 
 /// Field and value of the fault of an argument.
@@ -50,6 +67,13 @@ fn a_fault_names_the_argument_and_its_value() {
         question.run("no.csv".as_ref(), &Progress::none())
     };
     let uncertain = |law: &str| Sweep::over("mass_g", 15.0..=16.0, 2).uncertain(law);
+    let unswept = Simulation::preset("elastic-box").unwrap();
+    let step = ForceCurve::from_fn(|x| f64::from(x >= 0.3), (-1.0, 1.0), 1e-8, &[]);
+    let (force, place) = fault(step.map_err(Error::from));
+    assert!(force == "force" && place.starts_with("a function, near 0."), "{place}");
+    // 1e4 places of one field are few, 1e8 of two are too many to keep
+    let axes = ["mass_g=10:20:0.001", "stops.travel_limit_mm=1:6:0.0005"].map(str::to_owned);
+    let (too_many, best) = (&*axes.join(", "), Best { over: axes.to_vec(), ..Best::default() });
     let sampled = |sampling| scene.record(&sampling, None, &Progress::none());
     let beyond = Curve { positions: Some(vec![99.0]) }.run(&Simulation::preset("paper").unwrap());
     for (found, expected) in [
@@ -66,6 +90,8 @@ fn a_fault_names_the_argument_and_its_value() {
         (fault(sampled(Sampling::Every(0.0))), ("dt", "0")),
         (fault(sampled(Sampling::At(vec![99.0]))), ("at", "99")),
         (fault(beyond), ("positions", "99")),
+        (fault(unswept.grid(&[])), ("over", "none")),
+        (fault(best.run(&scene, &Progress::none())), ("over", too_many)),
     ] {
         assert_eq!((&*found.0, &*found.1), expected);
     }

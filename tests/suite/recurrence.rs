@@ -1,7 +1,7 @@
 //! Runs that are completed from a repeated cycle, against the same runs integrated to the end.
 
 use interwell::dynamics::{Ledger, Model, Outcome, Request, Run, Summary};
-use interwell::study::{Read, SUMMARY_FIELDS};
+use interwell_studies::study::{Read, SUMMARY_FIELDS};
 
 use super::support::*;
 

@@ -5,8 +5,8 @@ use std::sync::atomic::AtomicBool;
 
 use interwell::dynamics::{MapState, Model, Request, STANDARD_GRAVITY, SectionPoint};
 use interwell::scene::{Document, Files};
-use interwell::study::*;
 use interwell::system::threads::Pool;
+use interwell_studies::study::*;
 
 use crate::support::{model, near, near_relative, preset, same_bits};
 

@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicBool;
 
 use interwell::dynamics::{Model, Request, STANDARD_GRAVITY};
 use interwell::numeric::Taper;
-use interwell::study::*;
+use interwell_studies::study::*;
 
 use super::cli::{column, headless, refused, stdout};
 use super::support::*;
@@ -19,7 +19,7 @@ fn of(model: &Model, options: SpectrumOptions) -> Spectrum {
 
 /// Frequencies, amplitudes and densities.
 fn lines(spectrum: &Spectrum) -> [&[f64]; 3] {
-    ["frequency_hz", "amplitude", "psd"].map(|name| spectrum.table.numbers(name).unwrap())
+    ["frequency_hz", "amplitude", "psd"].map(|name| spectrum.table().numbers(name).unwrap())
 }
 
 /// The density, integrated.
@@ -171,7 +171,7 @@ fn a_rate_is_made_a_whole_number_a_period() {
     for (asked, samples) in [(300.0, 1500), (301.0, 1515), (0.9, 15)] {
         let spectrum = at(asked);
         assert_eq!(
-            (spectrum.samples, spectrum.window, spectrum.table.rows()),
+            (spectrum.samples, spectrum.window, spectrum.table().rows()),
             (samples, (5.0, 10.0), samples / 2 + 1)
         );
         near_relative(spectrum.rate_hz, samples as f64 / 5.0, 1e-15);

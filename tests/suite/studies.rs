@@ -6,8 +6,8 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use interwell::dynamics::{Model, Request};
 use interwell::mechanics::{ForceCurve, Mechanism, Piece};
 use interwell::scene::{Document, Files};
-use interwell::study::*;
 use interwell::system::threads::Pool;
+use interwell_studies::study::*;
 
 fn model(document: &Document) -> Model {
     let mechanism = Mechanism::build(&document.scene.mechanism, &document.files).unwrap();
@@ -170,7 +170,7 @@ fn a_damping_ratio_is_told_in_all_its_meanings() {
     let curve = ForceCurve::from_pieces(pieces, vec![-kink, kink], (-8e-3, 8e-3), true, None).unwrap();
     let mut document = Document::load("paper").unwrap();
     document.set("damping=Ratio(0.023)").unwrap();
-    let lines = inspect(&document.scene, &Arc::new(Mechanism::new(curve))).unwrap();
+    let lines = inspected(&document, Mechanism::new(curve));
     let of = |beginning: &str| {
         let found: Vec<&String> = lines.iter().filter(|line| line.starts_with(beginning)).collect();
         assert_eq!(found.len(), 1, "{lines:?}");
@@ -190,17 +190,21 @@ fn a_damping_ratio_is_told_in_all_its_meanings() {
     for name in ["paper-table", "nominal-cubic"] {
         let document = Document::load(name).unwrap();
         let mechanism = Mechanism::build(&document.scene.mechanism, &document.files).unwrap();
-        let lines = inspect(&document.scene, &Arc::new(mechanism)).unwrap();
+        let lines = inspected(&document, mechanism);
         let ratio = lines.iter().filter(|line| line.contains("ratio ")).collect::<Vec<_>>();
         assert!(ratio.len() == 1 && !ratio[0].contains("kink"), "{ratio:?}");
     }
+}
+
+fn inspected(document: &Document, mechanism: Mechanism) -> Vec<String> {
+    inspect(&document.scene, &Model::build(&document.scene, Arc::new(mechanism)).unwrap())
 }
 
 #[test]
 fn flexures_are_told_in_words() {
     let document = flexures();
     let mechanism = Mechanism::build(&document.scene.mechanism, &document.files).unwrap();
-    let text = inspect(&document.scene, &Arc::new(mechanism)).unwrap().join("\n");
+    let text = inspected(&document, mechanism).join("\n");
     for words in [
         "flexures: 2 parallel, 26 mm long and 20 mm wide; 1 buckling, 27.7 mm long and 6.8 mm wide; \
          all 0.1 mm thick",

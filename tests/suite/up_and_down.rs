@@ -3,8 +3,8 @@
 use std::sync::Mutex;
 use std::sync::atomic::AtomicBool;
 
-use interwell::study::{Direction, Family, Task, Visit, up_and_down};
 use interwell::system::threads::Pool;
+use interwell_studies::study::{Direction, Family, Task, Visit, up_and_down};
 
 use super::cli::{column, stdout};
 use super::support::*;

@@ -6,7 +6,7 @@ use egui_kittest::kittest::Queryable as _;
 use interwell::app::views::View;
 use interwell::app::window::Command;
 use interwell::app::window::Window;
-use interwell::study::accuracy::methods::Scheme;
+use interwell_studies::study::accuracy::methods::Scheme;
 
 use crate::support::{LONG, PROJECTED, WIDE, command, press, session, window};
 

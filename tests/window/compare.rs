@@ -8,7 +8,7 @@ use interwell::app::views::View;
 use interwell::app::window::{Command, Window};
 use interwell::dynamics::EventKind;
 use interwell::scene::{Layout, Stops};
-use interwell::study::distances;
+use interwell_studies::study::distances;
 
 use crate::support::{
     LONG, PROJECTED, WIDE, command, painted, press, press_with_ctrl, session, wait_until, window,

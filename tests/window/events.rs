@@ -8,7 +8,7 @@ use egui_kittest::{
 use interwell::app::views::View;
 use interwell::app::window::{Command, Window};
 use interwell::dynamics::EventKind;
-use interwell::study::{Watch, events_table, watched_events};
+use interwell_studies::study::{Watch, events_table, watched_events};
 
 use crate::support::{PROJECTED, WIDE, command, is_painted, press, session, settled, sliced, window};
 

@@ -6,7 +6,7 @@ use interwell::app::session::explore::WalkQuantity;
 use interwell::app::views::View;
 use interwell::app::window::{Command, Window};
 use interwell::scene::{Layout, Start};
-use interwell::study::{Direction, Signal};
+use interwell_studies::study::{Direction, Signal};
 
 use crate::shared::axis;
 use crate::support::{PROJECTED, WIDE, command, press_with_ctrl, wait_until, window};

@@ -10,8 +10,8 @@ use interwell::app::views::View;
 use interwell::app::window::{Command, Window};
 use interwell::output::RunPanel;
 use interwell::scene::Layout;
-use interwell::study::Signal;
-use interwell::study::SummaryField;
+use interwell_studies::study::Signal;
+use interwell_studies::study::SummaryField;
 
 use crate::measured::{dropped, instrument};
 use crate::shared::axis;

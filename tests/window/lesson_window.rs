@@ -8,7 +8,7 @@ use interwell::app::views::View;
 use interwell::app::window::{Command, Window};
 use interwell::scene::lesson::{LESSONS, LessonDocument, Step};
 use interwell::scene::{Document, Stops};
-use interwell::study::result_fields;
+use interwell_studies::study::result_fields;
 
 use crate::lessons::{
     OWN, Shown, go_on, go_to, is_anywhere, number, opened, opened_own, step, until, written,

@@ -9,7 +9,7 @@ use interwell::app::window::{Command, Window};
 use interwell::app::words::columns::{COLUMNS, title};
 use interwell::output::{Cell as DrawnCell, Cut, Marks, Panel, Projection, Role as Drawn, View, words_of};
 use interwell::scene::{Layout, Stops, SweepAxis};
-use interwell::study::{Cell, RMS_VELOCITY, STANDARD_COLUMNS, SummaryField};
+use interwell_studies::study::{Cell, RMS_VELOCITY, STANDARD_COLUMNS, SummaryField};
 
 use crate::shared::axis;
 use crate::support::{

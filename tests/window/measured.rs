@@ -10,7 +10,7 @@ use interwell::app::ui::settings::Settings;
 use interwell::app::views::View;
 use interwell::app::window::{Command, Wanted, Window};
 use interwell::scene::{Excitation, Quantity, Unit};
-use interwell::study::{Comparison, Keep, simulate};
+use interwell_studies::study::{Comparison, Keep, simulate};
 
 use crate::support::{PROJECTED, WIDE, command, is_painted, press, sliced, wait_until, window};
 

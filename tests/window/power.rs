@@ -8,7 +8,7 @@ use interwell::app::session::explore::WalkQuantity;
 use interwell::app::views::View;
 use interwell::app::window::{Command, Window};
 use interwell::scene::{Excitation, FieldPath, Layout, Stops, Transducer};
-use interwell::study::SummaryField;
+use interwell_studies::study::SummaryField;
 
 use crate::shared::axis;
 use crate::support::{

@@ -8,7 +8,7 @@ use interwell::app::views::View;
 use interwell::app::window::Command;
 use interwell::dynamics::{Model, STANDARD_GRAVITY};
 use interwell::scene::{Layout, PRESETS, SweepAxis};
-use interwell::study::Watch;
+use interwell_studies::study::Watch;
 
 use crate::screen::Screen;
 use crate::shared::axis;

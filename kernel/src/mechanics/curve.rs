@@ -91,6 +91,22 @@ pub struct FitReport {
 }
 
 /// The restoring force of a mechanism as a piecewise polynomial.
+///
+/// Force in N, potential in J (0 at x = 0) and stiffness in N/m are exact derivatives of each other at every
+/// displacement in m. The pieces meet at breaks, where smoothness ends; a curve of a table or a function ends
+/// at its [`domain`](Self::domain), and a run ends where the mass leaves that. [`fit`](Self::fit) says how
+/// well it follows what it was made of.
+///
+/// ```
+/// use interwell_kernel::mechanics::ForceCurve;
+///
+/// // F = -40 x + 8e5 x^3: wells at sqrt(40 / 8e5) m
+/// let curve = ForceCurve::polynomial(&[0.0, -40.0, 0.0, 8e5]);
+/// let well = (40.0_f64 / 8e5).sqrt();
+/// assert!(curve.force(well).abs() < 1e-15);
+/// assert!((curve.stiffness(well) - 80.0).abs() < 1e-9);
+/// assert!((curve.potential(well) + 40.0 * well.powi(2) / 4.0).abs() < 1e-12);
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct ForceCurve {
     pieces: Vec<Piece>,

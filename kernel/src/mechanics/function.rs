@@ -2,9 +2,10 @@
 
 use std::cell::RefCell;
 use std::collections::HashMap;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::curve::{FitReport, ForceCurve, Piece};
-use super::fit::{fit, force_scale};
+use super::fit::{fit_cancellable, force_scale};
 use super::table::{ForceTable, MAX_POINTS, MIN_POINTS};
 use crate::numeric::{bisect, number_text};
 use crate::scene;
@@ -78,6 +79,9 @@ pub enum FunctionError {
     /// The fit of the samples failed.
     #[error("the force {0}")]
     Fit(String),
+    /// It was cancelled.
+    #[error("cancelled")]
+    Cancelled,
     /// The numbers of pieces and breaks do not fit, or the domain does not go upward.
     #[error(
         "{0} pieces have {1} breaks over {2} to {3} m; give one piece more than breaks, and the smaller end \
@@ -128,6 +132,17 @@ impl ForceCurve {
         tolerance: f64,
         breaks: &[f64],
     ) -> Result<Self, FunctionError> {
+        Self::from_fn_cancellable(force, range, tolerance, breaks, &AtomicBool::new(false))
+    }
+
+    /// Like [`from_fn`](Self::from_fn), but gives [`FunctionError::Cancelled`] soon after `cancel` is set.
+    pub fn from_fn_cancellable(
+        force: impl Fn(f64) -> f64,
+        range: (f64, f64),
+        tolerance: f64,
+        breaks: &[f64],
+        cancel: &AtomicBool,
+    ) -> Result<Self, FunctionError> {
         let (low, high) = range;
         if !(low < high && low.is_finite() && high.is_finite()) {
             return Err(FunctionError::Range(low, high));
@@ -136,7 +151,7 @@ impl ForceCurve {
         if let Some(outside) = breaks.iter().find(|x| !(low < **x && **x < high)) {
             return Err(FunctionError::Break(*outside));
         }
-        let function = Sampled { force, values: RefCell::default() };
+        let function = Sampled { force, values: RefCell::default(), cancel };
         let mut breaks = breaks.to_vec();
         loop {
             breaks.sort_by(f64::total_cmp);
@@ -152,6 +167,17 @@ impl ForceCurve {
     /// follows them to `tolerance` (1e-10 to 0.1) times the largest force between the wells, as that of a
     /// table in a scene does. The error that was found at the samples is in [`fit`](Self::fit).
     pub fn from_samples(x: &[f64], force: &[f64], tolerance: f64) -> Result<Self, FunctionError> {
+        Self::from_samples_cancellable(x, force, tolerance, &AtomicBool::new(false))
+    }
+
+    /// Like [`from_samples`](Self::from_samples), but gives [`FunctionError::Cancelled`] soon after `cancel`
+    /// is set.
+    pub fn from_samples_cancellable(
+        x: &[f64],
+        force: &[f64],
+        tolerance: f64,
+        cancel: &AtomicBool,
+    ) -> Result<Self, FunctionError> {
         check_tolerance(tolerance)?;
         let wrong = |problem: String| Err(FunctionError::Samples(problem));
         if x.len() != force.len() {
@@ -169,7 +195,7 @@ impl ForceCurve {
                 "{after} m follows {before} m; sort them, with one force for each position"
             ));
         }
-        fit(&ForceTable { x: x.to_vec(), force: force.to_vec() }, tolerance).map_err(FunctionError::Fit)
+        fitted(&ForceTable { x: x.to_vec(), force: force.to_vec() }, tolerance, cancel)
     }
 
     /// The curve of polynomials in a scene that has passed its check.
@@ -205,6 +231,13 @@ impl ForceCurve {
     }
 }
 
+fn fitted(table: &ForceTable, tolerance: f64, cancel: &AtomicBool) -> Result<ForceCurve, FunctionError> {
+    fit_cancellable(table, tolerance, Some(cancel)).map_err(|problem| match cancel.load(Ordering::Relaxed) {
+        true => FunctionError::Cancelled,
+        false => FunctionError::Fit(problem),
+    })
+}
+
 fn check_tolerance(tolerance: f64) -> Result<(), FunctionError> {
     match TOLERANCES.0 <= tolerance && tolerance <= TOLERANCES.1 {
         true => Ok(()),
@@ -213,8 +246,9 @@ fn check_tolerance(tolerance: f64) -> Result<(), FunctionError> {
 }
 
 /// A function with the values that are known.
-struct Sampled<F> {
+struct Sampled<'a, F> {
     force: F,
+    cancel: &'a AtomicBool,
     /// By the bits of the position.
     values: RefCell<HashMap<u64, f64>>,
 }
@@ -234,7 +268,7 @@ struct Compared {
     refined: Vec<(f64, f64)>,
 }
 
-impl<F: Fn(f64) -> f64> Sampled<F> {
+impl<F: Fn(f64) -> f64> Sampled<'_, F> {
     fn value(&self, x: f64) -> Result<f64, FunctionError> {
         let mut values = self.values.borrow_mut();
         if let Some(known) = values.get(&x.to_bits()) {
@@ -242,6 +276,9 @@ impl<F: Fn(f64) -> f64> Sampled<F> {
         }
         if values.len() >= MAX_CALLS {
             return Err(FunctionError::Rough(x));
+        }
+        if self.cancel.load(Ordering::Relaxed) {
+            return Err(FunctionError::Cancelled);
         }
         let value = (self.force)(x);
         values.insert(x.to_bits(), value);
@@ -267,7 +304,7 @@ impl<F: Fn(f64) -> f64> Sampled<F> {
         let values = x.iter().map(|x| self.value(*x)).collect::<Result<Vec<f64>, _>>()?;
         let mut table = ForceTable { x, force: values };
         loop {
-            let curve = fit(&table, AT_SAMPLES * tolerance).map_err(FunctionError::Fit)?;
+            let curve = fitted(&table, AT_SAMPLES * tolerance, self.cancel)?;
             let compared = self.compared(&curve, &table, tolerance)?;
             if compared.refined.is_empty() {
                 return Ok(Attempt::Curve(curve.with_fit(compared.report)));

@@ -96,6 +96,9 @@ pub struct KinkAtWell {
 }
 
 /// Equilibria, barrier, force extrema and kinks of one force curve, each from left to right.
+///
+/// They are roots of the polynomials of the curve, to rounding. Positions are in m, forces in N, heights in
+/// J. For a curve that was fitted to data, what is smaller than the error of the fit is left out.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Landscape {
     /// Every isolated position where the force is 0; intervals of zero force are left out, with their ends.

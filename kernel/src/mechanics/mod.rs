@@ -57,6 +57,9 @@ use self::flexure::{Geometry, Group};
 use crate::scene::{self, Fault, Files, FlexureGroup, Moments};
 
 /// A mechanism in SI units: its force curve and what follows from it.
+///
+/// Building it is the slow part of a scene with flexures or a table, so that it is shared by all models with
+/// the same mechanism. Errors are those of its fields, or flexures without a solution.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mechanism {
     /// The force curve.

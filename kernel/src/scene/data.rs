@@ -17,6 +17,10 @@ use super::stops::Stops;
 use super::transducer::Transducer;
 
 /// A scene: one mechanism, how it is shaken and stopped, and how long it runs.
+///
+/// Fields have the unit in their names and the ranges of `docs/scene.md`. A scene that is read from a file or
+/// a text is checked as a whole, with all faults at once, when a `Document` or a simulation of it is made;
+/// one that a program fills in is checked when its model is built.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Scene {
@@ -74,6 +78,10 @@ pub enum Damping {
 }
 
 /// Acceleration of the base, positive to the right, or a force on the mass.
+///
+/// Amplitudes are in g (9.80665 m/s^2) but for those of `Cosine`, `Force` and of series, which name their
+/// unit. A drive of a program's own is made by [`from_fn`](Self::from_fn) or
+/// [`from_samples`](Self::from_samples).
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum Excitation {

@@ -41,6 +41,10 @@ pub enum Source {
 }
 
 /// A scene with its text and the arguments that have changed it.
+///
+/// It is what is read from a file, a preset or a text, and what a simulation is made of. The text is kept so
+/// that a fault is reported with its line, and so that arithmetic and comments survive when the scene is
+/// written.
 #[derive(Debug, Clone)]
 pub struct Document {
     /// The scene, with every argument applied.

@@ -70,6 +70,8 @@ pub struct SweepRequest {
 }
 
 /// Uncertain inputs of a sweep: normally distributed fields, and how many draws of them each cell has.
+///
+/// It is a part of a sweep, whose columns then have bands.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Uncertain {

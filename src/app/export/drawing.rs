@@ -1,16 +1,14 @@
 //! Drawing of figures: reads the scene as the command line does, runs the study and plots its table.
 
-use std::convert::Infallible;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use anyhow::{Error, Result, anyhow, ensure};
+use anyhow::{Result, ensure};
 
 use crate::app::session::explore::STARTS;
 use crate::app::session::map::over;
 use crate::app::session::measured::Overlay as Laid;
-use crate::app::task::pool;
-use crate::dynamics::Model;
+use crate::app::task::threads;
 use crate::mechanics::Mechanism;
 use crate::numeric::extent;
 use crate::output::{
@@ -18,16 +16,17 @@ use crate::output::{
     basins_chart, can_show, curve_chart, measured_chart, measured_force_chart, mechanism_chart, run_chart,
     scene_accuracy_chart, section_chart, spectrum_chart, sweep_chart,
 };
-use crate::scene::{Document, Fault, FieldPath, arguments};
-use crate::study::accuracy::methods::Scheme;
-use crate::study::accuracy::scene::{step_size, tolerances};
-use crate::study::{
-    Basins, CURVE_PICTURE_POINTS, Carry, EvenRange, Grid, GridStudy, Keep, MeasuredMotion, NoBasins,
-    Question, STANDARD_COLUMNS, Sampling, SectionOptions, Sections, Signal, SpectrumOptions, Starts,
-    SummaryField, Sweep, SweepOptions, Table, Task, compare, compare_force, curve, default_positions,
-    even_positions, metres, sample_times, section, simulate_with_trace, spectrum, stop_positions,
+use crate::questions::{
+    Basins, Carry, Curve, Error, EvenRange, Grid, Progress, Section, SectionOptions, Signal, Simulation,
+    Spectrum, Sweep,
 };
-use crate::system::threads::Pool;
+use crate::scene::{Document, FieldPath, arguments};
+use interwell_studies::study::accuracy::methods::Scheme;
+use interwell_studies::study::accuracy::scene::{step_size, tolerances};
+use interwell_studies::study::{
+    CURVE_PICTURE_POINTS, Keep, MeasuredMotion, compare_force, default_positions, even_positions, metres,
+    stop_positions,
+};
 
 use super::figure::{FigureOrder, Subject};
 
@@ -44,7 +43,7 @@ pub(super) fn draw(order: &FigureOrder, cancel: &AtomicBool) -> Result<Option<Fi
 fn figure(order: &FigureOrder, cancel: &AtomicBool) -> Result<Figure> {
     let document = document(order)?;
     let caption = Caption::new(&document, env!("CARGO_PKG_VERSION"));
-    let drawing = Drawing { task: Task { tick: &|| (), cancel }, document };
+    let drawing = Drawing { progress: Progress::none().stopped_by(cancel).threads(threads()), document };
     let chart = match &order.subject {
         Subject::Run(times, panels) => drawing.run(*times, panels),
         Subject::Curve => drawing.curve(),
@@ -79,26 +78,19 @@ fn document(order: &FigureOrder) -> Result<Document> {
     Ok(document)
 }
 
-fn threads() -> Result<Pool> {
-    pool().ok_or_else(|| anyhow!("The system has no threads to give: close something, and save again."))
-}
-
-fn cancelled() -> Error {
-    anyhow!("cancelled")
-}
-
 struct Drawing<'a> {
     document: Document,
-    task: Task<'a>,
+    progress: Progress<'a>,
 }
 
 impl Drawing<'_> {
-    fn mechanism(&self) -> Result<Arc<Mechanism>> {
-        Ok(Arc::new(Mechanism::build(&self.document.scene.mechanism, &self.document.files)?))
+    fn simulation(&self) -> Result<Simulation> {
+        Ok(Simulation::build(self.document.clone(), &self.progress)?)
     }
 
-    fn model(&self) -> Result<Model> {
-        Model::build(&self.document.scene, self.mechanism()?).map_err(|faults| self.faulty(faults))
+    /// The mechanism of a scene whose own start need not be possible.
+    fn mechanism(&self) -> Result<Arc<Mechanism>> {
+        Ok(Arc::new(Mechanism::build(&self.document.scene.mechanism, &self.document.files)?))
     }
 
     fn grid(&self, subject: &Subject) -> Result<Grid> {
@@ -106,77 +98,60 @@ impl Drawing<'_> {
         Ok(Grid::new(self.document.axes(&over)?)?)
     }
 
-    fn faulty(&self, faults: Vec<Fault>) -> Error {
-        self.document.error_from(faults).into()
-    }
-
-    /// All rows of a study.
-    fn rows<Q: Question>(&self, study: &GridStudy<Q>) -> Result<Table> {
-        let (pool, mut rows) = (threads()?, Table::new());
-        study.validate(&pool, &self.task).map_err(|cell| self.faulty(cell.faults))?;
-        let end = study.run(&pool, &self.task, |table| {
-            rows.append(table);
-            Ok::<_, Infallible>(true)
-        });
-        end.map(|_| rows).map_err(|_| cancelled())
-    }
-
     fn run(&self, times: Option<(f64, f64)>, panels: &[RunPanel]) -> Result<Chart> {
-        let (document, model) = (&self.document, self.model()?);
-        let sample_times = sample_times(&document.scene, &model, &Sampling::Default, None)?;
-        let keep = Keep { times: sample_times, events: false, until_settled: None };
-        let (simulation, trace) = simulate_with_trace(&model, &keep, times, Some(self.task.cancel));
-        let trace = RunPanel::complete(panels, trace, &model, self.task.cancel);
-        let (mechanism, ranges) = (model.mechanism(), Ranges { x: times, y: None });
-        Ok(run_chart(&trace, &simulation.summary, (mechanism, model.mass()), panels, ranges))
+        let simulation = self.simulation()?;
+        let (run, trace) = simulation.traced(&Keep::default(), times, &self.progress)?;
+        let trace = RunPanel::complete(panels, trace, simulation.model(), self.progress.stop());
+        let (of, ranges) =
+            ((&**simulation.mechanism(), simulation.model().mass()), Ranges { x: times, y: None });
+        Ok(run_chart(&trace, &run.summary, of, panels, ranges))
     }
 
     fn curve(&self) -> Result<Chart> {
-        let (scene, mechanism) = (&self.document.scene, self.mechanism()?);
-        let table = curve(&mechanism, default_positions(scene, &mechanism, CURVE_PICTURE_POINTS))?;
-        Ok(curve_chart(&table, &mechanism, stop_positions(scene), Ranges::default()))
+        let simulation = self.simulation()?;
+        let (scene, mechanism) = (simulation.scene(), simulation.mechanism());
+        let positions = Some(default_positions(scene, mechanism, CURVE_PICTURE_POINTS));
+        let table = Curve { positions }.run(&simulation)?;
+        Ok(curve_chart(&table, mechanism, stop_positions(scene), Ranges::default()))
     }
 
     fn mechanism_at(&self, mm: f64) -> Result<Chart> {
-        Ok(mechanism_chart(&self.model()?, metres(mm))?)
+        Ok(mechanism_chart(self.simulation()?.model(), metres(mm))?)
     }
 
     fn accuracy(&self, stepped: Option<(Scheme, f64)>) -> Result<Chart> {
-        let (model, cancel) = (self.model()?, self.task.cancel);
-        let known = tolerances(&model, cancel).ok_or_else(cancelled)?;
-        let stepped = stepped.map(|(scheme, step)| step_size(&model, scheme, step, cancel)).transpose()?;
+        let (simulation, cancel) = (self.simulation()?, self.progress.stop());
+        let model = simulation.model();
+        let known = tolerances(model, cancel).ok_or(Error::Cancelled)?;
+        let stepped = stepped.map(|(scheme, step)| step_size(model, scheme, step, cancel)).transpose()?;
         let stops = stop_positions(&self.document.scene);
         Ok(scene_accuracy_chart(&known, model.tolerance(), stepped.as_slice(), stops))
     }
 
     fn measured(&self, over: &Laid) -> Result<Chart> {
-        let (scene, model, record) = (&self.document.scene, self.model()?, &over.record);
+        let (simulation, record) = (self.simulation()?, &over.record);
         let (across, channel, ranges) = (&record.across.values, &record.values, Ranges::default());
         if over.is_force() {
             let positions: Vec<f64> = across.iter().map(|x| x + over.offset).collect();
-            let mechanism = model.mechanism();
-            let found = compare_force(mechanism, &positions, &channel.values)?;
+            let found = compare_force(simulation.mechanism(), &positions, &channel.values)?;
             let over = even_positions(extent(found.positions.iter().copied()), CURVE_PICTURE_POINTS);
-            return Ok(measured_force_chart(&found, &curve(mechanism, over)?, ranges));
+            let table = Curve { positions: Some(over) }.run(&simulation)?;
+            return Ok(measured_force_chart(&found, &table, ranges));
         }
         let (offset, time_scale, shift) = (over.added(), over.time_scale, Some(over.shift));
         let motion = MeasuredMotion { times: across, channel, offset, time_scale, shift };
-        let found = compare(scene, &model, &motion, self.task.cancel)?;
-        let times = sample_times(scene, &model, &Sampling::Default, None)?;
-        let keep = Keep { times, events: false, until_settled: None };
-        let (_, trace) = simulate_with_trace(&model, &keep, None, Some(self.task.cancel));
+        let found = simulation.compared(&motion, &self.progress)?;
+        let (_, trace) = simulation.traced(&Keep::default(), None, &self.progress)?;
         Ok(measured_chart(&trace, (&found, channel.quantity), None, ranges))
     }
 
     fn sweep(&self, subject: &Subject, quantity: &str, view: View) -> Result<Chart> {
-        let (grid, scene) = (self.grid(subject)?, &self.document.scene);
-        let carry = subject.is_walked().then_some(Carry::Both);
-        let names = STANDARD_COLUMNS.into_iter().filter(|name| *name != quantity).chain([quantity]);
-        let columns = names.filter_map(SummaryField::find).collect();
-        let options = SweepOptions { columns, carry, ..SweepOptions::default() };
-        let sweep = Sweep::new(scene, &self.document.files, grid).with(options);
-        can_show(sweep.grid(), quantity, &view, &sweep.empty_table())?;
-        let (rows, grid) = (self.rows(&sweep)?, sweep.grid());
+        let (scene, carry) = (&self.document.scene, subject.is_walked().then_some(Carry::Both));
+        let question = Sweep { carry, ..Sweep::default() };
+        let cells = question.cells(&self.document, self.grid(subject)?, Some(quantity), &self.progress)?;
+        let (sweep, grid) = (&cells.sweep, cells.sweep.grid());
+        can_show(grid, quantity, &view, &sweep.empty_table())?;
+        let rows = cells.rows(&self.document, &self.progress)?;
         let overlay = match carry {
             Some(_) => Overlay::default(),
             None => Overlay::of(scene, sweep.first_mechanism().ok().as_deref(), grid, &rows),
@@ -196,35 +171,29 @@ impl Drawing<'_> {
 
     fn diagram(&self, subject: &Subject) -> Result<Chart> {
         let options = SectionOptions { carry: Some(Carry::Both), ..SectionOptions::default() };
-        let sections = Sections::new(&self.document.scene, &self.document.files, self.grid(subject)?);
-        let sections = sections.with(options);
-        let rows = self.rows(&sections)?;
-        Ok(section_chart(&rows, Some(sections.grid()), Some(0.0), (None, None), Ranges::default()))
+        let question = Section { over: Vec::new(), options };
+        let grid = self.grid(subject)?;
+        let rows = question.in_cells(&self.document, grid.clone(), &self.progress)?;
+        Ok(section_chart(&rows, Some(&grid), Some(0.0), (None, None), Ranges::default()))
     }
 
     fn section(&self) -> Result<Chart> {
-        let (model, options) = (self.model()?, SectionOptions::default());
-        let found = section(&model, &self.document.scene, &options, self.task.cancel);
-        let (rows, _) = found.map_err(|fault| self.faulty(vec![fault]))?;
-        Ok(section_chart(&rows, None, Some(0.0), model.stop_positions(), Ranges::default()))
+        let simulation = self.simulation()?;
+        let (rows, _) = Section::default().of_one(&simulation, &self.progress)?;
+        Ok(section_chart(&rows, None, Some(0.0), simulation.model().stop_positions(), Ranges::default()))
     }
 
     fn basins(&self, x_mm: (f64, f64), v: (f64, f64)) -> Result<Chart> {
         let even = |(from, to): (f64, f64)| EvenRange { from, to, count: STARTS };
-        let starts = Starts::grid(&even(x_mm), &even(v))?;
-        let basins = Basins::new(&self.document.scene, self.mechanism()?, starts);
-        let (mut basins, pool) = match basins {
-            Err(NoBasins::Faults(faults)) => return Err(self.faulty(faults)),
-            found => (found?, threads()?),
-        };
-        while !basins.is_whole() && basins.run_level(&pool, &self.task) {}
-        let answer = basins.answer(&self.task).ok_or_else(cancelled)?;
-        Ok(basins_chart(&basins, &answer))
+        let question = Basins { x_mm: even(x_mm), v: even(v), random: None };
+        let begun = question.begin(question.starts()?, &self.document, &self.mechanism()?)?;
+        let found = Basins::follow(begun, &self.progress)?;
+        Ok(basins_chart(&found.basins, &found.answer))
     }
 
-    fn spectrum(&self, signal: Signal, until_settled: Option<f64>) -> Result<Chart> {
-        let options = SpectrumOptions { signal, taper: None, rate_hz: None, until_settled };
-        let found = spectrum(&self.model()?, &options, &self.task)?;
+    fn spectrum(&self, of: Signal, until_settled: Option<f64>) -> Result<Chart> {
+        let question = Spectrum { of, until_settled, ..Spectrum::default() };
+        let found = question.run(&self.simulation()?, &self.progress)?;
         Ok(spectrum_chart(&found, SpectrumQuantity::Amplitude, Ranges::default()))
     }
 }

@@ -17,9 +17,9 @@ use crate::output::{
     Argument, Cut, Figure, Format, RMS, RunPanel, Sheet, Sink, View, csv, picture_arguments, words_of,
 };
 use crate::scene::{FieldPath, Scene, Start, SweepAxis, arguments};
-use crate::study::Signal;
-use crate::study::accuracy::methods::Scheme;
 use crate::system::files;
+use interwell_studies::study::Signal;
+use interwell_studies::study::accuracy::methods::Scheme;
 
 use super::drawing::draw;
 use super::{WriteResult, quoted};

@@ -22,7 +22,7 @@ use crate::app::task::{Each, Question};
 use crate::dynamics::Model;
 use crate::output::{csv, write_file};
 use crate::scene::{FieldPath, Scene, arguments};
-use crate::study::{
+use interwell_studies::study::{
     CURVE_POINTS, Keep, OutsideCurve, Sampling, continued_scene, curve, default_positions, events_table,
     sample_times, samples_table, simulate, watched_events,
 };

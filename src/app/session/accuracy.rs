@@ -12,11 +12,11 @@ use serde::{Deserialize, Serialize};
 use crate::app::task::{Background, Each, Question, Wake};
 use crate::app::words::capital;
 use crate::dynamics::{Model, Summary};
-use crate::study::accuracy::methods::Scheme;
-use crate::study::accuracy::scene::{
+use interwell_studies::study::accuracy::methods::Scheme;
+use interwell_studies::study::accuracy::scene::{
     Course, StepSize, Tolerances, Trust, Unfit, lasting, moment, small_length, step_size, tolerances, trust,
 };
-use crate::study::settled;
+use interwell_studies::study::settled;
 
 use super::prepared::SharedModel;
 

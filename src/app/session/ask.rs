@@ -10,7 +10,7 @@ use crate::app::task::{Each, Question, Uncompared};
 use crate::app::words::status;
 use crate::mechanics::Mechanism;
 use crate::scene::{Scene, Start};
-use crate::study::{self, Task, Thresholds};
+use interwell_studies::study::{self, Task, Thresholds};
 
 use super::Session;
 use super::accuracy::LiveRun;

@@ -57,7 +57,7 @@ mod tests {
     use crate::app::session::measured::MeasuredRecord;
     use crate::scene::lesson::{LESSONS, LessonDocument};
     use crate::scene::{Channel, Document, Quantity, SweepAxis};
-    use crate::study::result_fields;
+    use interwell_studies::study::result_fields;
 
     /// Questions that take longer than a second about these presets; others are asked the same.
     const SLOW: [(&str, &str); 4] = [
@@ -188,7 +188,7 @@ mod tests {
             session.want_walks();
             compare(session.explore.walks.found.question(), true);
         }
-        session.map.show(crate::study::SummaryField::find("work_j").unwrap());
+        session.map.show(interwell_studies::study::SummaryField::find("work_j").unwrap());
         session.map.choose(Some(axes));
         session.want_map(0.0);
         compare(session.map.cells.question(), true);

@@ -9,7 +9,7 @@ use crate::app::task::{Background, Each, Question, pool};
 use crate::app::words::best_stops::{looking, sentence};
 use crate::app::words::fields::info;
 use crate::scene::{FieldPath, Stops, SweepAxis};
-use crate::study::{
+use interwell_studies::study::{
     BestDesign, BestQuestion, DesignRange, Environment, INTERVALS, NoBest, Optimum, RMS_VELOCITY,
     SummaryField, Task, best,
 };

@@ -14,7 +14,7 @@ use crate::app::words::numbers::decimal;
 use crate::dynamics::Model;
 use crate::output::{Chart, basins_chart, suited_unit};
 use crate::scene::{Axis, FieldPath, Scene, Start, SweepAxis};
-use crate::study::{
+use interwell_studies::study::{
     Answer, Basins, Direction, EvenRange, Family, NoBasins, Signal, Spectrum, SpectrumOptions, Starts, Task,
     Visit, followed_until, spectrum, up_and_down,
 };

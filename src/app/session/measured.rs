@@ -11,7 +11,9 @@ use crate::app::words::capital;
 use crate::numeric::{extent, short};
 use crate::output::Argument;
 use crate::scene::{Channel, Excitation, Measured, MeasuredText, Quantity, Timing, Unit, read_record};
-use crate::study::{Comparison, ForceComparison, MeasuredMotion, NoComparison, compare, compare_force};
+use interwell_studies::study::{
+    Comparison, ForceComparison, MeasuredMotion, NoComparison, compare, compare_force,
+};
 
 use super::Session;
 use super::prepared::{SceneWithFiles, SharedModel};

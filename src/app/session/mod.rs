@@ -27,7 +27,7 @@ use crate::app::words::status::{self, DrivenMotion, Sentence};
 use crate::dynamics::{Model, Outcome, Summary};
 use crate::mechanics::{FLEXURE_TOLERANCE, Mechanism};
 use crate::scene::{self, Scene, Stops};
-use crate::study::{self, Thresholds};
+use interwell_studies::study::{self, Thresholds};
 
 use accuracy::{Accuracy, LiveRun};
 use ask::{StopsQuestion, ThresholdsQuestion};

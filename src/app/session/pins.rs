@@ -5,8 +5,8 @@ use std::time::Duration;
 use crate::app::task::{Background, Wake};
 use crate::dynamics::Summary;
 use crate::scene::{Scene, Start, Stops};
-use crate::study::{Thresholds, Watch};
 use crate::system::clock::WallClock;
+use interwell_studies::study::{Thresholds, Watch};
 
 use super::Session;
 use super::accuracy::LiveRun;

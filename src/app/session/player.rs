@@ -8,8 +8,8 @@ use std::time::Duration;
 use crate::dynamics::{Event, EventKind, Model, Outcome, Sample};
 use crate::numeric::elementary;
 use crate::scene::{Excitation, Scene};
-use crate::study::Watch;
 use crate::system::clock::WallClock;
+use interwell_studies::study::Watch;
 
 /// Speeds relative to real time, with their names; for the keys 1 to 7.
 pub const SPEEDS: [(f64, &str); 7] = [

@@ -6,7 +6,7 @@ use crate::app::ui::knob::Knob;
 use crate::app::ui::widgets::tell;
 use crate::app::words::fields::{Reach, name_and_unit};
 use crate::scene::{SweepAxis, column_names};
-use crate::study::label_and_unit;
+use interwell_studies::study::label_and_unit;
 
 /// The name of a field without its unit: that of its control, or else of its column.
 pub fn field_name(path: &str) -> String {

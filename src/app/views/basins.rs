@@ -66,7 +66,7 @@ fn shown(mut chart: Chart, across: (f64, f64), up: (f64, f64)) -> Chart {
     if chart.first_panel().is_none() {
         let axis = |words: &str| PlotAxis::between(0.0, 1.0, words);
         let panel = Panel::new(axis("displacement at the start (mm)"), axis("velocity at the start (mm/s)"));
-        chart = Chart::stack(vec![panel], "", crate::study::Table::new());
+        chart = Chart::stack(vec![panel], "", interwell_studies::study::Table::new());
     }
     if let Some(panel) = chart.first_panel() {
         panel.layers.retain(|layer| layer.role != Role::Stop);

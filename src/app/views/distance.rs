@@ -7,7 +7,7 @@ use crate::app::ui::widgets::tell;
 use crate::app::words::numbers::{UNKNOWN, three};
 use crate::numeric::elementary;
 use crate::output::{Chart, Marks, Panel, PlotAxis, Role, TIME};
-use crate::study::{Table, distances};
+use interwell_studies::study::{Table, distances};
 
 use super::cursors::{cursors_ui, readout_height, readout_ui};
 use super::hand::axes_input;

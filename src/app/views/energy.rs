@@ -9,7 +9,7 @@ use crate::app::ui::style::Style;
 use crate::app::words::numbers::UNKNOWN;
 use crate::dynamics::LiveLedger;
 use crate::output::{LedgerTerm, ledger_bars, ledger_decimals, ledger_number, share_of_work, three_digits};
-use crate::study::Watch;
+use interwell_studies::study::Watch;
 
 use super::ViewContext;
 use super::pane::bare_panel;

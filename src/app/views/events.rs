@@ -5,7 +5,7 @@ use eframe::egui::{self, Align2, Rect, RichText, Role, ScrollArea, Sense, Ui, Wi
 use crate::app::export::events_seen_csv;
 use crate::app::ui::style::Style;
 use crate::app::words::numbers::{UNKNOWN, three, with_minus};
-use crate::study::{Table, Values, watched_events};
+use interwell_studies::study::{Table, Values, watched_events};
 
 use super::energy::unit_of;
 use super::{ViewContext, empty_ui};

@@ -15,7 +15,7 @@ use crate::dynamics::{Model, STANDARD_GRAVITY};
 use crate::output::{
     Chart, DISPLACEMENT, HOLDING_FORCE, Layer, Marks, PlotAxis, Role, axis_name, force_panel,
 };
-use crate::study::Table;
+use interwell_studies::study::Table;
 
 use super::ghosts::ghosts;
 use super::hand::axes_input;

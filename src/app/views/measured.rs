@@ -11,7 +11,7 @@ use crate::app::words::numbers::{UNKNOWN, below, decimals_for, three};
 use crate::dynamics::STANDARD_GRAVITY;
 use crate::numeric::short;
 use crate::scene::{Quantity, Start};
-use crate::study::{Table, metres};
+use interwell_studies::study::{Table, metres};
 
 use super::{ViewContext, offer_ui, page_ui};
 

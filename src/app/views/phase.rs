@@ -15,7 +15,7 @@ use crate::app::words::numbers::three;
 use crate::app::words::status::Kind;
 use crate::dynamics::{Model, Phase, Sample};
 use crate::output::{Chart, DISPLACEMENT, Layer, Marks, PlotAxis, Role, VELOCITY, axis_name, portrait_panel};
-use crate::study::{Table, between};
+use interwell_studies::study::{Table, between};
 
 use super::context::sized_ui;
 use super::ghosts::ghosts;

@@ -4,7 +4,7 @@ use eframe::egui::{self, Rect, Ui, UiBuilder, vec2};
 
 use crate::app::ui::widgets::tell;
 use crate::output::{Ranges, SpectrumQuantity, spectrum_chart};
-use crate::study::Signal;
+use interwell_studies::study::Signal;
 
 use super::pane::pane_ui;
 use super::{View, ViewContext, empty_ui};

@@ -12,7 +12,7 @@ use crate::app::words::numbers::decimals_for;
 use crate::dynamics::{EventKind, Model, Phase, STANDARD_GRAVITY, Sample, Side};
 use crate::output::{Chart, Layer, Marks, OverTime, PlotAxis, Role, RunPanel, TIME};
 use crate::scene::Quantity;
-use crate::study::{Table, Watch};
+use interwell_studies::study::{Table, Watch};
 
 use super::cursors::{cursors_ui, readout_height, readout_ui};
 use super::hand::axes_input;

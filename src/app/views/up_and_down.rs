@@ -11,7 +11,7 @@ use crate::dynamics::Regime;
 use crate::numeric::short;
 use crate::output::{Chart, Marks, Panel, PlotAxis, Role, suited_unit};
 use crate::scene::{FieldPath, SweepAxis, column_names};
-use crate::study::{Direction, Table, Visit};
+use interwell_studies::study::{Direction, Table, Visit};
 
 use super::axes::{field_name, field_ui, range_row_ui};
 use super::labels::haloed;

@@ -17,7 +17,7 @@ use crate::app::words::wells::well_name;
 use crate::dynamics::Model;
 use crate::mechanics::Barrier;
 use crate::output::{Chart, DISPLACEMENT, Layer, Marks, Panel, PlotAxis, Role, axis_name, suited_unit};
-use crate::study::Table;
+use interwell_studies::study::Table;
 
 use super::ghosts::{Ghost, PINNED, ghosts};
 use super::hand::axes_input;

@@ -20,8 +20,8 @@ use crate::app::words::fields::name_and_unit;
 use crate::app::words::lesson::{bold_words, letter, numbered, plain};
 use crate::scene::lesson::{BuiltInLesson, LessonDocument, LessonError, Step};
 use crate::scene::{Document, PRESETS, SceneError, is_link, linked_lesson};
-use crate::study::result_fields;
 use crate::system::files;
+use interwell_studies::study::result_fields;
 
 use super::Window;
 use super::layouts::{Arrangement, Tiling};

@@ -11,7 +11,7 @@ use crate::app::views::View;
 use crate::app::words::lesson::numbered;
 use crate::scene::lesson::{LESSONS, Lesson, LessonDocument};
 use crate::scene::{Document, PRESETS};
-use crate::study::result_fields;
+use interwell_studies::study::result_fields;
 
 use super::Window;
 use super::command::{Command, DISCARD, MENUS, Part};

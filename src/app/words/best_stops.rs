@@ -3,7 +3,7 @@
 use crate::app::words::numbers::{power, three};
 use crate::app::words::status::speed;
 use crate::numeric::short;
-use crate::study::{Basins, BestDesign, DesignRange, NoBest, Optimum, SummaryField};
+use interwell_studies::study::{Basins, BestDesign, DesignRange, NoBest, Optimum, SummaryField};
 
 /// A value of the maximised column, with its unit.
 fn value_of(column: &str, value: f64) -> String {

@@ -2,7 +2,7 @@
 
 use crate::app::words::capital;
 use crate::output::RMS;
-use crate::study::SummaryField;
+use interwell_studies::study::SummaryField;
 
 /// The columns that are offered, in groups.
 #[rustfmt::skip]
@@ -54,7 +54,7 @@ pub fn said(column: &str, word: &str) -> String {
 mod tests {
     use super::*;
     use crate::output::words_of;
-    use crate::study::{Read, SUMMARY_FIELDS};
+    use interwell_studies::study::{Read, SUMMARY_FIELDS};
 
     #[test]
     fn every_field_of_a_summary_has_one_name() {

@@ -4,7 +4,7 @@ use super::fields::name_and_unit;
 use super::numbers::three;
 use crate::scene::Start;
 use crate::scene::lesson::{Condition, Lesson};
-use crate::study::{Lack, Value, label_and_unit};
+use interwell_studies::study::{Lack, Value, label_and_unit};
 
 /// The short title of a lesson: "Lesson" with its number, if its name begins with one.
 pub fn numbered(name: &str) -> String {
@@ -319,7 +319,7 @@ mod tests {
             }
         }
         for lesson in crate::scene::lesson::LESSONS {
-            let results = crate::study::result_fields();
+            let results = interwell_studies::study::result_fields();
             let read = crate::scene::lesson::LessonDocument::load(lesson.name, &results).unwrap();
             let goals = read.lesson.steps.iter().filter_map(|step| match step {
                 crate::scene::lesson::Step::Do { goal, .. } => Some(goal),

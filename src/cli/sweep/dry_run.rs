@@ -5,9 +5,9 @@ use std::time::Duration;
 
 use interwell::output::rows;
 use interwell::questions::Error;
-use interwell::study::{Shard, Task};
 use interwell::system::clock::WallClock;
 use interwell::system::threads::{Pool, within};
+use interwell_studies::study::{Shard, Task};
 
 use super::super::Failure;
 use super::super::progress::duration;

@@ -5,8 +5,9 @@ mod prepared;
 mod rows;
 
 use interwell::output::{Chart, Made, Overlay, Ranges, SweepPicture, header, is_regular, rows, sweep_chart};
+use interwell::questions::Table;
 use interwell::scene::Document;
-use interwell::study::{SweepOptions, Table, Tally};
+use interwell_studies::study::{SweepOptions, Tally};
 
 use super::grid_job::GridJob;
 use super::support::{counted, inputs, pool};

@@ -6,13 +6,13 @@ use std::sync::Arc;
 use clap::Args;
 use interwell::mechanics::{BuildError, Mechanism};
 use interwell::output::{Cut, View, can_show, plan};
-use interwell::questions::{Error, Uncertain, assign_uncertain, column_names, uncertain_draws};
+use interwell::questions::{self, Carry, Error, Grid, SweepCells, Uncertain, assign_uncertain};
 use interwell::scene::{Document, find_name, is_manifest, read_number};
-use interwell::study::{Carry, Grid, MAX_DRAWS, Shard, Slice, SummaryField, Sweep, SweepOptions};
+use interwell_studies::study::{MAX_DRAWS, Shard, Slice, SummaryField, Sweep};
 use serde_json::{Value, json};
 
 use super::super::shard::{placed, shard};
-use super::super::support::{check, read, until_settled_on_grid, warn};
+use super::super::support::{check, read, settle_limit, warn};
 use super::super::{ChartOptions, Common, Failure, Picture, interrupt, whole};
 
 #[derive(Debug, Args)]
@@ -140,22 +140,16 @@ impl<'a> Prepared<'a> {
         let variable = |name: &str| std::env::var(name).ok();
         let shard = number.map_or(Ok(Shard::WHOLE), |text| shard(text, variable))?;
         let out = placed(common.out(), options.shard.as_deref(), shard)?;
-        let sweep = Sweep::new(&document.scene, &document.files, Grid::new(document.axes(&options.over)?)?);
-        let mechanism = first_mechanism(&document, &sweep)?;
+        let grid = Grid::new(document.axes(&options.over)?)?;
+        let until_settled = settle_limit(options.until_settled.as_deref())?.or(swept.until_settled);
         let carry = options.carry.as_ref().or(swept.carry.as_ref()).and_then(|word| Carry::named(word));
-        let draws = uncertain_draws(&uncertain, &document, sweep.grid(), carry)?;
-        let chosen = if options.columns.is_empty() { &swept.columns } else { &options.columns };
-        let columns = column_names(chosen, sweep.grid(), carry)?;
-        // a fault of the first cell is reported when the cells are checked, with its place
-        let first = sweep.first_model(&interrupt::silent_task());
-        let until = options.until_settled.clone().or(swept.until_settled.map(|limit| limit.to_string()));
-        let until_settled = until_settled_on_grid(until.as_deref(), &document, first.as_ref())?;
+        let columns = if options.columns.is_empty() { swept.columns } else { options.columns.clone() };
+        let question = questions::Sweep { over: Vec::new(), columns, until_settled, carry, uncertain };
         // the quantity of the picture is computed even if its column is not written
-        let shown = picture.map(|_| quantity).filter(|name| !columns.iter().any(|column| column == name));
-        let fields = columns.iter().map(String::as_str).chain(shown).filter_map(SummaryField::find).collect();
-        let chosen = columns[sweep.grid().columns().len() + usize::from(carry.is_some())..].to_vec();
-        let columns = draws.columns(&columns);
-        let sweep = sweep.with(SweepOptions { columns: fields, until_settled, carry, draws });
+        let shown = picture.map(|_| quantity);
+        let cells = question.cells(&document, grid, shown, &interrupt::progress())?;
+        let SweepCells { sweep, chosen, written: columns } = cells;
+        let mechanism = first_mechanism(&document, &sweep)?;
         let slice = sweep.slice(shard);
         warn(&document, common, &warnings, mechanism.as_deref());
         let view = view(options, sweep.grid())?;

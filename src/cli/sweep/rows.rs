@@ -4,10 +4,11 @@ use std::io::{BufReader, Read};
 use std::path::Path;
 
 use interwell::output::{csv_table, manifest_path, plan_differences};
-use interwell::study::{SweepEnd, Table, Tally};
+use interwell::questions::Table;
 use interwell::system::checksum::file_checksum;
 use interwell::system::clock::WallClock;
 use interwell::system::{Opened, Part, PartError, files};
+use interwell_studies::study::{SweepEnd, Tally};
 use serde_json::{Value, json};
 
 use super::super::{Failure, Output, Outputs, refuse};

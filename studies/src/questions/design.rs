@@ -1,108 +1,13 @@
-//! Questions about designs: comparison of scenes, and the best design for an environment.
+//! The question about the best design for an environment.
 
 use super::grid::{check_until, drive_alone};
 use super::{Error, Progress, Simulation, sweep};
-use crate::scene::{
-    Axis, Document, Excitation, FieldPath, RunSettings, Start, Transducer, find_name, is_whole, read_number,
-};
+use crate::scene::{Axis, Document, FieldPath, RunSettings, Transducer, find_name, is_whole, read_number};
 use crate::study::{
-    Alternative, BestDesign, BestQuestion, Constraint, DesignRange, Environment, INTERVALS, MOST_FIELDS,
-    NoBest, Rated, Read, SUMMARY_FIELDS, SummaryField, Table, Task, Variation, alternatives, best,
-    comparison_parts, comparison_table, names, place, quantity, scan_runs,
+    BestDesign, BestQuestion, Constraint, DesignRange, Environment, INTERVALS, MOST_FIELDS, NoBest, Read,
+    SUMMARY_FIELDS, SummaryField, Table, Variation, best, names, place, quantity, scan_runs,
 };
 use crate::system::files::{canonical, is_file};
-use crate::system::threads::Pool;
-
-/// Comparison of scenes under the sine and with the run settings of the first one, each from rest.
-///
-/// [`Compare::table`] has one row per scene: `scene`, `release_g`, `crossing_g`, `crossing_low_g`,
-/// `crossing_high_g`, `crossing_undecided`, `rms_velocity_m_per_s`, `mean_load_power_w`, `max_abs_x_m`,
-/// `impact_speed_max_m_per_s`, `crosses_from_hz`, `crosses_to_hz`, `threshold_sensitivity` (a share) and
-/// `most_sensitive_to`. A value is missing where a scene has no such number.
-///
-/// Method: the release has a closed form; the crossing amplitude is found by a scan and bisection, as by
-/// [`Threshold`](super::Threshold); the band of frequencies by 40 steps per decade, from a tenth to ten times
-/// the frequency of the sine, whose ends are bisected to a thousandth; the sensitivity by changing one
-/// length, thickness or gap of the mechanism at a time by 1 % up and down. Each of these changes is a
-/// separate search, for which flexures are solved anew.
-///
-/// Errors: [`Error::Unfit`] if the excitation of the first scene is no sine; [`Error::Scene`] if another
-/// scene has faults under it; [`Error::Argument`] for `until_settled`; [`Error::Cancelled`].
-///
-/// ```
-/// use interwell_studies::questions::{Compare, Progress, Simulation};
-///
-/// // Stops at 2 mm release the mass at a lower amplitude than stops at 4 mm.
-/// let far = Simulation::preset("nominal-cubic")?.with("run.tolerance", 1e-6)?;
-/// let near = far.with("stops.travel_limit_mm", 2.0)?;
-/// let question = Compare { with: vec![("near".into(), near)], name: "far".into(), until_settled: None };
-/// let rated = question.run(&far, &Progress::none())?;
-/// assert!(rated[1].release_g < rated[0].release_g);
-/// assert_eq!(Compare::table(&rated).rows(), 2);
-/// # Ok::<(), interwell_studies::questions::Error>(())
-/// ```
-#[derive(Debug, Clone, Default)]
-pub struct Compare {
-    /// The other scenes, with their names.
-    pub with: Vec<(String, Simulation)>,
-    /// The name of the first scene, which is passed to `run`.
-    pub name: String,
-    /// Each run continues until its motion repeats, at most up to this time in s.
-    pub until_settled: Option<f64>,
-}
-
-impl Compare {
-    /// Rates all scenes, the first one first.
-    pub fn run(&self, simulation: &Simulation, progress: &Progress) -> Result<Vec<Rated>, Error> {
-        needs_a_sine(simulation.document())?;
-        let first = (self.name.clone(), simulation);
-        let others = self.with.iter().map(|(name, other)| (name.clone(), other));
-        let mut all = Vec::new();
-        for (name, other) in std::iter::once(first).chain(others) {
-            let changed = in_environment(other.document(), simulation.document());
-            let other = other.with_document(changed, progress)?;
-            check_until(self.until_settled, other.document(), other.model())?;
-            let (document, mechanism) = (other.document().clone(), other.mechanism().clone());
-            all.push(Alternative { name, scene: document.scene, files: document.files, mechanism });
-        }
-        let rate = |pool: &Pool, task: &Task| alternatives(&all, self.until_settled, pool, task);
-        let rated = progress.shared(comparison_parts(&all), rate)?;
-        rated.ok_or(Error::Cancelled)
-    }
-
-    /// The rated scenes as a table, one row per scene, with the columns named at [`Compare`].
-    pub fn table(rated: &[Rated]) -> Table {
-        comparison_table(rated)
-    }
-}
-
-/// Returns frequency in Hz and amplitude in g of a sine or cosine; other excitations are refused.
-pub fn needs_a_sine(environment: &Document) -> Result<(f64, f64), Error> {
-    let problem = match (&environment.scene.excitation, environment.scene.harmonic()) {
-        (Excitation::Force { .. }, _) => {
-            "its excitation is a Force, which shakes scenes of different masses differently: name a scene \
-             with a Sine or Cosine first, or by --environment"
-        }
-        (_, Some(drive)) => return Ok((drive.frequency_hz, drive.amplitude_g())),
-        _ => {
-            "its excitation is no Sine; amplitude and frequency of one are searched: name a scene with a \
-             Sine first, or by --environment"
-        }
-    };
-    Err(Error::unfit(environment, problem))
-}
-
-/// A scene at rest, with the excitation and the run settings of another one.
-pub fn in_environment(document: &Document, environment: &Document) -> Document {
-    let mut changed = document.clone();
-    // thresholds and bands of a cosine are searched in g and Hz
-    let drive = environment.scene.harmonic().map(|drive| drive.sine());
-    changed.scene.excitation = drive.unwrap_or_else(|| environment.scene.excitation.clone());
-    changed.scene.run = environment.scene.run;
-    changed.scene.start = Start::Rest;
-    changed.scene.sweep.clear(); // the other excitation may not have its fields
-    changed
-}
 
 /// The best design for an environment: the values of one to four fields that maximise a result of the run.
 ///
@@ -170,6 +75,7 @@ impl Default for Best {
 #[derive(Debug, Clone)]
 pub struct BestAnswer {
     /// The parsed question.
+    #[doc(hidden)]
     pub question: BestQuestion,
     /// The best design.
     pub design: BestDesign,
@@ -195,15 +101,35 @@ impl Best {
 
     /// Searches for the best design.
     pub fn run(&self, simulation: &Simulation, progress: &Progress) -> Result<BestAnswer, Error> {
-        let question = self.question(simulation.document())?;
-        let search = |pool: &Pool, task: &Task| best(&question, pool, task, &mut |_| ());
-        match progress.shared(scan_runs(&question), search)? {
+        let document = simulation.document();
+        self.search(self.question(document)?, document, progress, &mut |_| ())
+    }
+
+    /// Searches for the best design of a scene whose fields of the design need not be valid; `preview` gets
+    /// the best design so far in words.
+    #[doc(hidden)]
+    pub fn search(
+        &self,
+        question: BestQuestion,
+        document: &Document,
+        progress: &Progress,
+        preview: &mut (dyn FnMut(String) + Send),
+    ) -> Result<BestAnswer, Error> {
+        let (fields, maximised) = (names(&question), question.maximise.name);
+        let found = progress.shared(scan_runs(&question), |pool, task| {
+            best(&question, pool, task, &mut |design| {
+                let (at, value) = (place(&fields, &design.at), quantity(design.value, maximised));
+                preview(format!("{at}: {maximised} {value}"));
+            })
+        })?;
+        match found {
             Ok(design) => Ok(BestAnswer { question, design }),
-            Err(why) => Err(self.no_best(why, &question, simulation.document())),
+            Err(why) => Err(self.no_best(why, &question, document)),
         }
     }
 
     /// Parses and checks the texts of the question.
+    #[doc(hidden)]
     pub fn question(&self, document: &Document) -> Result<BestQuestion, Error> {
         let question = BestQuestion {
             over: ranges(&self.over, document)?,
@@ -223,7 +149,7 @@ impl Best {
     }
 
     /// The error for a search without a result.
-    pub fn no_best(&self, why: NoBest, question: &BestQuestion, document: &Document) -> Error {
+    fn no_best(&self, why: NoBest, question: &BestQuestion, document: &Document) -> Error {
         match why {
             NoBest::Cancelled => Error::Cancelled,
             NoBest::Invalid(faults) => Error::faults_of(document, faults),
@@ -335,8 +261,17 @@ fn ranges(over: &[String], document: &Document) -> Result<Vec<DesignRange>, Erro
         let problem = format!("{} fields; at most {MOST_FIELDS} are searched together", ranges.len());
         return Err(Error::argument("over", over.join(", "), problem));
     }
+    let places: f64 = ranges.iter().map(|range| range.intervals as f64 + 1.0).product();
+    if places > MAX_PLACES {
+        let problem =
+            format!("makes {places} places of the scan; at most {MAX_PLACES} fit: give longer steps");
+        return Err(Error::argument("over", over.join(", "), problem));
+    }
     Ok(ranges)
 }
+
+/// Largest number of places of a scan: each is kept, and so many take 1 GB of memory.
+const MAX_PLACES: f64 = 1e7;
 
 const TRANSDUCER_COLUMNS: [&str; 3] = ["mean_load_power_w", "mean_coil_power_w", "voltage_rms_v"];
 
@@ -443,8 +378,9 @@ fn environments(given: &[String], document: &Document) -> Result<Vec<Environment
         }
     }
     if all.len() > MAX_ENVIRONMENTS {
-        let problem = format!("{} of them; at most {MAX_ENVIRONMENTS} are run", all.len());
-        return Err(Error::argument("environment", "", problem));
+        let given = format!("{} of them", all.len());
+        let problem = format!("at most {MAX_ENVIRONMENTS} are run; give fewer");
+        return Err(Error::argument("environment", given, problem));
     }
     Ok(all)
 }

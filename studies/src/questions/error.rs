@@ -234,12 +234,16 @@ impl From<FunctionError> for Error {
     fn from(error: FunctionError) -> Self {
         use FunctionError as Wrong;
         let (name, value) = match &error {
+            Wrong::Cancelled => return Self::Cancelled,
             Wrong::Range(low, high) => ("range", format!("{}:{}", number_text(*low), number_text(*high))),
             Wrong::Tolerance(tolerance) => ("tolerance", number_text(*tolerance)),
             Wrong::Break(at) => ("breaks", number_text(*at)),
             Wrong::NotFinite(_, force) => ("force", number_text(*force)),
             Wrong::Pieces(pieces, ..) => ("pieces", pieces.to_string()),
-            Wrong::Step(_) | Wrong::Rough(_) | Wrong::Samples(_) | Wrong::Fit(_) => ("force", String::new()),
+            Wrong::Step(at) | Wrong::Rough(at) => {
+                ("force", format!("a function, near {} m", number_text(*at)))
+            }
+            Wrong::Samples(_) | Wrong::Fit(_) => ("force", "samples".to_owned()),
         };
         Self::argument(name, value, error)
     }
@@ -253,7 +257,7 @@ impl From<DriveError> for Error {
             Wrong::Tolerance(tolerance) => ("tolerance", number_text(*tolerance)),
             Wrong::NotFinite(_, value) | Wrong::TooLarge(_, value) => ("acceleration", number_text(*value)),
             Wrong::Samples(count) => ("acceleration", format!("{count} samples")),
-            Wrong::Unresolved(..) => ("acceleration", String::new()),
+            Wrong::Unresolved(at, _) => ("acceleration", format!("a function, at {} s", number_text(*at))),
         };
         Self::argument(name, value, error)
     }
@@ -261,19 +265,22 @@ impl From<DriveError> for Error {
 
 impl From<GridError> for Error {
     fn from(error: GridError) -> Self {
-        Self::argument("over", "", error)
+        let value = match &error {
+            GridError::NoAxes => "none".to_owned(),
+            GridError::TooMany(cells) => format!("{cells} cells"),
+        };
+        Self::argument("over", value, error)
     }
 }
 
 /// Longest `until_settled` in s, which is the longest duration of a run.
 const MAX_UNTIL_SETTLED: f64 = 1e9;
 
-/// Checks that runs of `model` can continue up to `until` s; `text` is this time as it was given.
-pub fn check_until_settled(until: f64, text: &str, document: &Document, model: &Model) -> Result<(), Error> {
+/// Checks that runs of `model` can continue up to `until` s.
+pub(super) fn check_until_settled(until: f64, document: &Document, model: &Model) -> Result<(), Error> {
     let duration = model.duration();
-    let wrong = |problem: String| {
-        Err(Error::argument("until_settled", text, format!("{}: {problem}", document.name)))
-    };
+    let wrong =
+        |problem: String| Err(Error::number("until_settled", until, format!("{}: {problem}", document.name)));
     if !model.can_settle() {
         return match model.forcing_period() {
             Some(period) if model.repeats() => wrong(format!(
@@ -294,7 +301,7 @@ pub fn check_until_settled(until: f64, text: &str, document: &Document, model: &
         ));
     }
     if until > MAX_UNTIL_SETTLED {
-        return Err(Error::argument("until_settled", text, format!("at most {MAX_UNTIL_SETTLED:e} s")));
+        return Err(Error::number("until_settled", until, format!("at most {MAX_UNTIL_SETTLED:e} s")));
     }
     Ok(())
 }

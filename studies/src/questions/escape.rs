@@ -20,9 +20,13 @@ use crate::study::{
 /// Method: the rate is the number of escapes over the time observed in all runs, those without an escape
 /// included, which is the estimate of largest likelihood for exponential waiting times; its interval is that
 /// of chi-squared quantiles (Garwood 1936; Epstein and Sobel 1953; Cox 1953). The median is that of Kaplan
-/// and Meier (1958). Kramers' rate is that of [`kramers_rate`](crate::study::kramers_rate), missing where it
-/// does not hold. Run number i, from 0, has the seed of the scene plus i. The relative width of the interval
-/// falls with the square root of the number of escapes.
+/// and Meier (1958). Run number i, from 0, has the seed of the scene plus i. The relative width of the
+/// interval falls with the square root of the number of escapes.
+///
+/// Kramers' rate is (sqrt(g^2/4 + w_b^2) - g/2)/w_b * w_0/(2 pi) * exp(-E/k_B T) with the rates w_0 of the
+/// well and w_b of the barrier, g = c/m and the height E of the barrier over the well (Kramers 1940; Hänggi,
+/// Talkner and Borkovec 1990, equation 4.33), times a factor that leads over to weak damping. It is missing
+/// where it does not hold, and `kramers_fails` says why.
 ///
 /// Errors: [`Error::Argument`] for a wrong number of runs or time; [`Error::Cells`] for cells without noise,
 /// with one well, or whose start lies on the barrier.
@@ -73,17 +77,23 @@ impl Escape {
 
     /// Runs the cells.
     pub fn run(&self, simulation: &Simulation, progress: &Progress) -> Result<Table, Error> {
-        let document = simulation.document();
-        let grid = grid_or_one(&self.over, simulation)?;
-        let options = self.options(document, &grid)?;
+        self.in_cells(simulation.document(), &grid_or_one(&self.over, simulation)?, progress)
+    }
+
+    /// Runs the cells of `grid` in place of those of `over`. The scene itself, whose values of the fields are
+    /// never run, needs no model.
+    #[doc(hidden)]
+    pub fn in_cells(&self, document: &Document, grid: &Grid, progress: &Progress) -> Result<Table, Error> {
+        let options = self.options(document, grid)?;
         let (scene, files) = (&document.scene, &document.files);
         let runs = grid.cells() * options.runs;
         let found =
-            progress.shared(runs, |pool, task| escape_table(scene, files, &grid, &options, pool, task))?;
+            progress.shared(runs, |pool, task| escape_table(scene, files, grid, &options, pool, task))?;
         found.map_err(|end| no_table(document, end))
     }
 
     /// The runs of each cell of `grid`; an error if an argument is wrong.
+    #[doc(hidden)]
     pub fn options(&self, document: &Document, grid: &Grid) -> Result<EscapeOptions, Error> {
         let within = self.within.unwrap_or(document.scene.run.duration_s);
         check_runs(self.runs, within, grid)?;
@@ -147,26 +157,31 @@ impl Default for ProbableThreshold {
 impl ProbableThreshold {
     /// Searches the thresholds.
     pub fn run(&self, simulation: &Simulation, progress: &Progress) -> Result<Table, Error> {
-        let document = simulation.document();
-        let grid = grid_or_one(&self.over, simulation)?;
-        let (scan, chance) = (self.scan(document)?, self.chance(document, &grid)?);
-        refuse_searched(&grid, &scan)?;
+        self.in_cells(simulation.document(), &grid_or_one(&self.over, simulation)?, progress)
+    }
+
+    /// Like [`Escape::in_cells`].
+    #[doc(hidden)]
+    pub fn in_cells(&self, document: &Document, grid: &Grid, progress: &Progress) -> Result<Table, Error> {
+        let (scan, chance) = (self.scan(document, grid)?, self.chance(document, grid)?);
         let (scene, files) = (&document.scene, &document.files);
         let found = progress.shared(grid.cells() * chance.runs, |pool, task| {
-            probable_threshold_table(scene, files, &grid, &scan, &chance, pool, task)
+            probable_threshold_table(scene, files, grid, &scan, &chance, pool, task)
         })?;
         found.map_err(|end| no_table(document, end))
     }
 
     /// The range that is searched, and its resolution.
-    pub fn scan(&self, document: &Document) -> Result<Scan, Error> {
-        let field = self.field.clone();
-        let scan = Threshold { field, resolution: self.resolution, ..Threshold::default() }.scan(document)?;
+    #[doc(hidden)]
+    pub fn scan(&self, document: &Document, grid: &Grid) -> Result<Scan, Error> {
+        let (field, resolution) = (self.field.clone(), self.resolution);
+        let scan = Threshold { field, resolution, ..Threshold::default() }.scan(document, grid)?;
         let step = scan.values.windows(2).map(|pair| pair[1] - pair[0]).next().unwrap_or(scan.resolution);
         Ok(Scan { resolution: self.resolution.unwrap_or(step), ..scan })
     }
 
     /// Probability, runs and time of each cell of `grid`; an error if one of them is wrong.
+    #[doc(hidden)]
     pub fn chance(&self, document: &Document, grid: &Grid) -> Result<Chance, Error> {
         let within = self.within.unwrap_or(document.scene.run.duration_s);
         check_runs(self.runs, within, grid)?;
@@ -202,16 +217,8 @@ fn check_runs(runs: u64, within: f64, grid: &Grid) -> Result<(), Error> {
     Ok(())
 }
 
-/// Refuses a grid over the field that is searched.
-pub fn refuse_searched(grid: &Grid, scan: &Scan) -> Result<(), Error> {
-    match grid.axes().iter().any(|axis| axis.field == scan.field) {
-        true => Err(Error::argument("over", &scan.field, "the threshold is over it; sweep another field")),
-        false => Ok(()),
-    }
-}
-
 /// The error of a question whose table was not computed.
-pub fn no_table(document: &Document, end: NoThresholds) -> Error {
+pub(super) fn no_table(document: &Document, end: NoThresholds) -> Error {
     match end {
         NoThresholds::Cancelled => Error::Cancelled,
         NoThresholds::Wrong(cells) => Error::cells_of(document, cells),

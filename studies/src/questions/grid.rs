@@ -4,19 +4,19 @@
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 
-use super::escape::grid_or_one;
+use super::error::check_until_settled;
+use super::escape::{grid_or_one, no_table};
 use super::motion::may_have_circuit;
 use super::orbits::phase;
-use super::{Error, Progress, Simulation, Sweep, check_until_settled, no_table, refuse_searched};
-use crate::dynamics::Model;
+use super::{Error, Progress, Simulation, Sweep};
+use crate::dynamics::{Model, Summary};
 use crate::mechanics::{ForceCurve, Mechanism};
-use crate::numeric::number_text;
 use crate::scene::Mechanism::Linear;
 use crate::scene::{Axis, Damping, Document, Scene, Start, Stops, Transducer, is_whole};
 use crate::study::{
-    ExponentCells, ExponentOptions, GridStudy, IMPACTS, MAX_SECTION, NoExponents, Onset, Question, Scan,
-    SectionAt, SectionOptions, Sections, Table, Task, drive_fault, exponents, exponents_row, section,
-    suits_melnikov, threshold_table, with_melnikov,
+    ExponentCells, ExponentOptions, Exponents as ExponentsAnswer, Grid, GridStudy, IMPACTS, MAX_SECTION,
+    NoExponents, Onset, Question, Scan, SectionAt, SectionOptions, Sections, Table, drive_fault, exponents,
+    section, suits_melnikov, threshold_table, with_melnikov,
 };
 
 /// Fields, each with its values.
@@ -105,29 +105,52 @@ pub struct Section {
 impl Section {
     /// Computes the section, or that of each cell.
     pub fn run(&self, simulation: &Simulation, progress: &Progress) -> Result<Table, Error> {
-        let document = simulation.document();
-        let SectionOptions { periods, carry, .. } = self.options;
+        let table = match self.over.is_empty() {
+            true => self.of_one(simulation, progress)?.0,
+            false => self.in_cells(simulation.document(), simulation.grid(&self.over)?, progress)?,
+        };
+        Ok(table.without(IMPACTS))
+    }
+
+    /// The sections of the cells of a grid, with the column of impacts; see [`cells`](Self::cells).
+    #[doc(hidden)]
+    pub fn in_cells(&self, document: &Document, grid: Grid, progress: &Progress) -> Result<Table, Error> {
+        all_rows(&self.cells(document, grid, progress)?, document, progress)
+    }
+
+    /// The section of the scene itself with the column of impacts that a picture needs, and the summary of
+    /// its run.
+    #[doc(hidden)]
+    pub fn of_one(&self, simulation: &Simulation, progress: &Progress) -> Result<(Table, Summary), Error> {
+        self.check()?;
+        if let Some(carry) = self.options.carry {
+            return Err(Error::argument("carry", carry.name(), "walks a field: name one by over"));
+        }
+        let (document, run) = (simulation.document(), self.options.run_of(simulation.model()));
+        check_until(self.options.until_settled, document, &run)?;
+        let found = section(simulation.model(), simulation.scene(), &self.options, progress.stop());
+        let found = found.map_err(|fault| Error::faults_of(document, vec![fault]))?;
+        if progress.is_stopped() { Err(Error::Cancelled) } else { Ok(found) }
+    }
+
+    /// The sections of the cells of a grid, not yet run, for a program that writes rows as they come. The
+    /// scene itself, whose values of the fields are never run, needs no model.
+    #[doc(hidden)]
+    pub fn cells(&self, document: &Document, grid: Grid, progress: &Progress) -> Result<Sections, Error> {
+        self.check()?;
+        let study = Sections::new(&document.scene, &document.files, grid).with(self.options);
+        settles(study, self.options.until_settled, document, progress)
+    }
+
+    fn check(&self) -> Result<(), Error> {
         if let SectionAt::Phase(degrees) = self.options.at {
             phase(degrees)?;
         }
-        if let Some((skip, keep)) = periods.filter(|(skip, keep)| *skip > MAX_SKIP || !KEPT.contains(keep)) {
+        let wrong = |(skip, keep): &(u64, u64)| *skip > MAX_SKIP || !KEPT.contains(keep);
+        self.options.periods.filter(wrong).map_or(Ok(()), |(skip, keep)| {
             let problem = format!("skip at most {MAX_SKIP} forcing periods, and keep 1 to {MAX_SECTION}");
-            return Err(Error::argument("skip", format!("{skip}, keep = {keep}"), problem));
-        }
-        if self.over.is_empty() {
-            if let Some(carry) = carry {
-                return Err(Error::argument("carry", carry.name(), "walks a field: name one by over"));
-            }
-            let run = self.options.run_of(simulation.model());
-            check_until(self.options.until_settled, document, &run)?;
-            let found = section(simulation.model(), simulation.scene(), &self.options, progress.stop());
-            let (table, _) = found.map_err(|fault| Error::faults_of(document, vec![fault]))?;
-            let stopped = progress.stop().load(std::sync::atomic::Ordering::Relaxed);
-            return if stopped { Err(Error::Cancelled) } else { Ok(table.without(IMPACTS)) };
-        }
-        let grid = simulation.grid(&self.over)?;
-        let study = Sections::new(&document.scene, &document.files, grid).with(self.options);
-        Ok(all_rows(&study, self.options.until_settled, document, progress)?.without(IMPACTS))
+            Err(Error::argument("skip", format!("{skip}, keep = {keep}"), problem))
+        })
     }
 }
 
@@ -169,27 +192,47 @@ const AVERAGED: RangeInclusive<u32> = 1..=10_000_000;
 impl Exponents {
     /// Computes the exponents.
     pub fn run(&self, simulation: &Simulation, progress: &Progress) -> Result<Table, Error> {
-        let document = simulation.document();
-        let periods = self.options.periods;
-        if !AVERAGED.contains(&periods) {
-            return Err(Error::argument("periods", periods, format!("give 1 to {}", AVERAGED.end())));
-        }
         if self.over.is_empty() {
-            if let Some(fault) = drive_fault(simulation.model(), simulation.scene()) {
-                return Err(Error::faults_of(document, vec![fault]));
-            }
-            check_until(self.options.until_settled, document, simulation.model())?;
-            let found = exponents(simulation.model(), &self.options, progress.stop());
-            return match found {
-                Ok(found) => Ok(exponents_row(&found)),
-                Err(NoExponents::Cancelled) => Err(Error::Cancelled),
-                Err(problem) => Err(Error::failed(document, problem)),
-            };
+            return Ok(self.of_one(simulation, progress)?.table());
         }
-        let grid = simulation.grid(&self.over)?;
+        let (document, grid) = (simulation.document(), simulation.grid(&self.over)?);
+        all_rows(&self.cells(document, grid, progress)?, document, progress)
+    }
+
+    /// The exponents of the scene itself, and how they were computed.
+    pub fn of_one(&self, simulation: &Simulation, progress: &Progress) -> Result<ExponentsAnswer, Error> {
+        self.check()?;
+        let document = simulation.document();
+        if let Some(fault) = drive_fault(simulation.model(), simulation.scene()) {
+            return Err(Error::faults_of(document, vec![fault]));
+        }
+        check_until(self.options.until_settled, document, simulation.model())?;
+        exponents(simulation.model(), &self.options, progress.stop()).map_err(|problem| match problem {
+            NoExponents::Cancelled => Error::Cancelled,
+            _ => Error::failed(document, problem),
+        })
+    }
+
+    /// The exponents of the cells of a grid, not yet computed; see [`Section::cells`].
+    #[doc(hidden)]
+    pub fn cells(
+        &self,
+        document: &Document,
+        grid: Grid,
+        progress: &Progress,
+    ) -> Result<ExponentCells, Error> {
+        self.check()?;
         let options = ExponentOptions { circuits: may_have_circuit(document, grid.axes()), ..self.options };
         let study = ExponentCells::new(&document.scene, &document.files, grid).with(options);
-        all_rows(&study, self.options.until_settled, document, progress)
+        settles(study, self.options.until_settled, document, progress)
+    }
+
+    fn check(&self) -> Result<(), Error> {
+        let periods = self.options.periods;
+        match AVERAGED.contains(&periods) {
+            true => Ok(()),
+            false => Err(Error::argument("periods", periods, format!("give 1 to {}", AVERAGED.end()))),
+        }
     }
 }
 
@@ -233,7 +276,8 @@ pub struct Threshold {
     pub until_settled: Option<f64>,
     /// Whether the column `melnikov_g` is added, of a cosine or force in SI `melnikov_m_per_s2` or
     /// `melnikov_n`: Melnikov's threshold, in closed form up to quadrature
-    /// ([`melnikov_threshold`](crate::study::melnikov_threshold)). It needs the drive's amplitude as field.
+    /// (Melnikov 1963; Guckenheimer and Holmes 1983, section 4.5): the first order in damping and drive of
+    /// the amplitude above which irregular motions that cross exist. It needs the drive's amplitude as field.
     pub melnikov: bool,
 }
 
@@ -245,8 +289,8 @@ impl Default for Threshold {
 }
 
 /// Why there is no Melnikov's threshold of a field.
-pub const NO_MELNIKOV: &str = "it is an amplitude of one sine: take a Sine, Cosine or Force, and search its \
-                               amplitude, such as excitation.amplitude_g";
+const NO_MELNIKOV: &str = "Melnikov's threshold (--melnikov) is an amplitude of one sine: take a Sine, \
+                           Cosine or Force, and search its amplitude, such as excitation.amplitude_g";
 
 /// The field and range of the default question.
 const DEFAULT_FIELD: &str = "excitation.amplitude_g=0:2";
@@ -257,30 +301,25 @@ const DEFAULT_STEPS: f64 = 200.0;
 impl Threshold {
     /// Searches the thresholds.
     pub fn run(&self, simulation: &Simulation, progress: &Progress) -> Result<Table, Error> {
-        let document = simulation.document();
-        let mut scan = self.scan(document)?;
-        if self.melnikov && !suits_melnikov(&document.scene, &scan.field) {
-            return Err(Error::argument("melnikov", &scan.field, NO_MELNIKOV));
-        }
-        let grid = grid_or_one(&self.over, simulation)?;
-        refuse_searched(&grid, &scan)?;
-        if self.until_settled.is_some() {
-            let mut first = document.scene.clone();
-            grid.apply(0, &mut first);
-            check_until(self.until_settled, document, &drive_alone(document, first)?)?;
-            scan.until_settled = self.until_settled;
-        }
+        self.in_cells(simulation.document(), &grid_or_one(&self.over, simulation)?, progress)
+    }
+
+    /// Like [`Escape::in_cells`](super::Escape::in_cells).
+    #[doc(hidden)]
+    pub fn in_cells(&self, document: &Document, grid: &Grid, progress: &Progress) -> Result<Table, Error> {
+        let scan = self.scan(document, grid)?;
         let values = grid.cells() * scan.values.len() as u64;
         let (scene, files) = (&document.scene, &document.files);
         let found = progress.shared(values, |pool, task| {
-            let table = threshold_table(scene, files, &grid, &scan, self.of, pool, task)?;
-            if self.melnikov { with_melnikov(table, scene, files, &grid, pool, task) } else { Ok(table) }
+            let table = threshold_table(scene, files, grid, &scan, self.of, pool, task)?;
+            if self.melnikov { with_melnikov(table, scene, files, grid, pool, task) } else { Ok(table) }
         })?;
         found.map_err(|end| no_table(document, end))
     }
 
-    /// The values of the scan, and the resolution of the threshold.
-    pub fn scan(&self, document: &Document) -> Result<Scan, Error> {
+    /// The values of the scan in the cells of `grid`, and the resolution of the threshold.
+    #[doc(hidden)]
+    pub fn scan(&self, document: &Document, grid: &Grid) -> Result<Scan, Error> {
         if self.of == Onset::Release && document.scene.stops == Stops::None {
             let remedy = "the scene has no stops to release the mass from; give it some, such as \
                           stops=Rigid(travel_limit_mm: 1.5, restitution: 0.36)";
@@ -339,26 +378,49 @@ impl Threshold {
                 return Err(Error::number("resolution", value, problem));
             }
         };
-        Ok(Scan { field: axis.field, values, resolution, until_settled: None })
+        if self.melnikov && !suits_melnikov(&document.scene, &axis.field) {
+            return Err(wrong(NO_MELNIKOV.to_owned()));
+        }
+        if grid.axes().iter().any(|swept| swept.field == axis.field) {
+            return Err(Error::argument("over", axis.field, "the threshold is over it; sweep another field"));
+        }
+        if self.until_settled.is_some() {
+            let mut first = document.scene.clone();
+            grid.apply(0, &mut first);
+            check_until(self.until_settled, document, &drive_alone(document, first)?)?;
+        }
+        Ok(Scan { field: axis.field, values, resolution, until_settled: self.until_settled })
     }
 }
 
 /// Checks the time up to which runs of `model` may continue, if one is given.
 pub(super) fn check_until(until: Option<f64>, document: &Document, model: &Model) -> Result<(), Error> {
-    until.map_or(Ok(()), |until| check_until_settled(until, &number_text(until), document, model))
+    until.map_or(Ok(()), |until| check_until_settled(until, document, model))
 }
 
-/// Checks the time up to which runs may continue, with the model of the first cell, and all cells; then runs
-/// these and returns all rows.
-pub(super) fn all_rows<Q: Question>(
-    study: &GridStudy<Q>,
+/// The study, once the time up to which its runs may continue is checked with the model of the first cell.
+pub(super) fn settles<Q: Question>(
+    study: GridStudy<Q>,
     until: Option<f64>,
     document: &Document,
     progress: &Progress,
-) -> Result<Table, Error> {
-    let silent = Task { tick: &|| (), cancel: progress.stop() };
+) -> Result<GridStudy<Q>, Error> {
+    if until.is_some()
+        && let Some(model) = study.first_model(&progress.silent())
+    {
+        check_until(until, document, &model)?;
+    }
     // the faults of a first cell without a model are found with those of the others
-    study.first_model(&silent).map_or(Ok(()), |model| check_until(until, document, &model))?;
+    Ok(study)
+}
+
+/// Checks all cells; then runs these and returns all rows.
+pub(super) fn all_rows<Q: Question>(
+    study: &GridStudy<Q>,
+    document: &Document,
+    progress: &Progress,
+) -> Result<Table, Error> {
+    let silent = progress.silent();
     let mut all = study.empty_table();
     progress.pool(|pool| {
         study.validate(pool, &silent).map_err(|cell| Error::cells_of(document, vec![cell]))?;
@@ -376,7 +438,7 @@ pub(super) fn all_rows<Q: Question>(
 
 /// A model for the check of `until_settled`, which depends only on the drive and the run of `scene`: a mass
 /// on a linear spring with these. So the check needs no mechanism, which a grid or a design may replace.
-pub fn drive_alone(document: &Document, scene: Scene) -> Result<Model, Error> {
+pub(super) fn drive_alone(document: &Document, scene: Scene) -> Result<Model, Error> {
     let alone = Scene {
         mass_g: 1.0,
         mechanism: Linear { n_per_m: 1.0 },

@@ -15,17 +15,17 @@
 //! | [`ProbableThreshold`] | the value of a field at which a share of runs under noise crosses | [`Table`] |
 //! | [`Escape`] | how often a motion under noise leaves its well, beside Kramers' rate | [`Table`] |
 //! | [`Exponents`] | Lyapunov exponents: whether the motion is chaotic | [`Table`] |
-//! | [`Orbit`] | the periodic orbit near the motion, with its multipliers | `study::Orbit` |
-//! | [`Branch`] | how an orbit continues over a field, with folds, flips and grazings | `study::Branch` |
-//! | [`Locus`] | the curve of a fold, flip or grazing over two fields | `study::Locus` of each |
-//! | [`Spectrum`] | which frequencies the motion holds | `study::Spectrum` |
+//! | [`Orbit`] | the periodic orbit near the motion, with its multipliers | [`OrbitAnswer`] |
+//! | [`Branch`] | how an orbit continues over a field, with folds, flips and grazings | [`BranchAnswer`] |
+//! | [`Locus`] | the curve of a fold, flip or grazing over two fields | [`LocusAnswer`] |
+//! | [`Spectrum`] | which frequencies the motion holds | [`SpectrumAnswer`] |
 //! | [`Basins`] | which attractor each start goes to, and the share of each | [`BasinsAnswer`] |
-//! | [`Compare`] | how designs rate under one sine | a [`Rated`] per scene |
+//! | [`Compare`] | how designs rate under one sine | [`CompareAnswer`] |
 //! | [`Best`] | which design is the best for an environment, and with which margins | [`BestAnswer`] |
 //! | [`Identify`] | damping, restitution or force of a measured record | [`IdentifyAnswer`] |
 //!
-//! Answers of other types than [`Table`] have a method `table`; of `study::Spectrum` it is a field.
-//! `docs/output.md` of the repository has the meaning of every column, `docs/studies.md` pictures and costs.
+//! Each answer that is no [`Table`] has a method `table`. `docs/output.md` of the repository has the meaning
+//! of every column, `docs/studies.md` pictures and costs.
 //!
 //! # Units
 //!
@@ -59,10 +59,12 @@
 //!
 //! A run of a grid that ends early is no error: the column `outcome` says why, and the others continue.
 
+mod compare;
 mod design;
 mod error;
 mod escape;
 mod grid;
+mod lesson;
 mod motion;
 mod orbits;
 mod progress;
@@ -70,20 +72,33 @@ mod record;
 mod simulation;
 mod sweep;
 
-pub use design::{Best, BestAnswer, Compare, in_environment, needs_a_sine};
-pub use error::{Error, FaultAt, check_until_settled};
-pub use escape::{Escape, ProbableThreshold, no_table, refuse_searched};
-pub use grid::{Exponents, NO_MELNIKOV, Section, Threshold, drive_alone};
-pub use motion::{Basins, BasinsAnswer, Curve, Spectrum, may_have_circuit};
-pub use orbits::{Branch, Locus, Orbit, branches_remarks, check_fields};
+pub use compare::{Compare, CompareAnswer};
+pub use design::{Best, BestAnswer};
+pub use error::{Error, FaultAt};
+pub use escape::{Escape, ProbableThreshold};
+pub use grid::{Exponents, Section, Threshold};
+#[doc(hidden)]
+pub use lesson::check_lessons;
+pub use motion::{Basins, BasinsAnswer, Curve, FlexuresAnswer, Spectrum};
+pub use orbits::{Branch, BranchesAnswer, Locus, LocusAnswer, Orbit};
 pub use progress::Progress;
-pub use record::{Identify, IdentifyAnswer, WhatToIdentify, columns_read};
+#[doc(hidden)]
+pub use record::columns_read;
+pub use record::{Identify, IdentifyAnswer, WhatToIdentify};
 pub use simulation::Simulation;
-pub use sweep::{Sweep, assign as assign_uncertain, column_names, draws as uncertain_draws};
+pub use sweep::Sweep;
+#[doc(hidden)]
+pub use sweep::{SweepCells, assign as assign_uncertain};
 
+pub use crate::mechanics::flexure::State as FlexureState;
 pub use crate::scene::Uncertain;
 
+#[doc(hidden)]
+pub use crate::study::BestQuestion;
 pub use crate::study::{
-    Answer, BestDesign, BestQuestion, Carry, Column, EvenRange, ExponentOptions, Grid, Identified, Onset,
-    Rated, Recorded, Sampling, SectionAt, SectionOptions, Signal, Table, Until, Values,
+    Answer, Attractor, BestDesign, Branch as BranchAnswer, BranchEnd, BranchEvent, Carry, Column, Estimate,
+    EvenRange, ExponentOptions, Exponents as ExponentsAnswer, FieldRange, Found, Grid, Identified, Identity,
+    Locus as OneLocus, LocusEnd, LocusEvent, Onset, Optimum, Orbit as OrbitAnswer, Rated, Recorded, Sampling,
+    SectionAt, SectionOptions, Shares, Signal, Spectrum as SpectrumAnswer, Spread, Table, Tried, Until,
+    Values,
 };

@@ -2,11 +2,16 @@
 
 use super::grid::check_until;
 use super::{Error, Progress, Simulation};
+use std::sync::Arc;
+
+use crate::mechanics::Mechanism;
+use crate::mechanics::flexure::State;
 use crate::numeric::{Taper, number_text};
 use crate::scene::{Axis, Document, Transducer};
 use crate::study::{
-    self, Answer, CURVE_POINTS, EvenRange, NoBasins, NoSpectrum, Signal, SpectrumOptions, Starts,
-    StartsError, Table, Task, curve, default_positions, spectrum,
+    self, Answer, CURVE_POINTS, EvenRange, NoBasins, NoSpectrum, Signal, Spectrum as SpectrumAnswer,
+    SpectrumOptions, Starts, StartsError, StatesError, Table, curve, default_positions, full_curve, shapes,
+    spectrum, states, stress_warning,
 };
 
 /// Force, potential and stiffness of the mechanism over displacement.
@@ -36,10 +41,82 @@ pub struct Curve {
 impl Curve {
     /// The table `x_m,force_n,potential_j,stiffness_n_per_m`.
     pub fn run(&self, simulation: &Simulation) -> Result<Table, Error> {
-        let default = || default_positions(simulation.scene(), simulation.mechanism(), CURVE_POINTS as usize);
-        let positions = self.positions.clone().unwrap_or_else(default);
-        let found = curve(simulation.mechanism(), positions);
+        self.of_mechanism(simulation.document(), simulation.mechanism())
+    }
+
+    /// The same of a scene that may have no model, such as one without a well.
+    #[doc(hidden)]
+    pub fn of_mechanism(&self, document: &Document, mechanism: &Mechanism) -> Result<Table, Error> {
+        let default = || default_positions(&document.scene, mechanism, CURVE_POINTS as usize);
+        let found = curve(mechanism, self.positions.clone().unwrap_or_else(default));
         found.map_err(|problem| Error::number("positions", problem.x, problem))
+    }
+
+    /// The flexures of the mechanism at the positions, each solved anew.
+    ///
+    /// Errors: [`Error::Argument`] for a position outside the curve; [`Error::Unfit`] if the mechanism is not
+    /// made of flexures; [`Error::Failed`] if there is no solution at a position; [`Error::Cancelled`].
+    ///
+    /// ```
+    /// use interwell_studies::questions::{Curve, Progress, Simulation};
+    ///
+    /// // At the middle the buckling flexures are straight: their bump has vanished, and they push hardest.
+    /// let question = Curve { positions: Some(vec![0.0, 1e-3]) };
+    /// let flexures = question.flexures(&Simulation::preset("paper")?, &Progress::none())?;
+    /// let axial = flexures.table();
+    /// let axial = axial.numbers("axial_n").unwrap();
+    /// assert!(axial[0].abs() > axial[1].abs());
+    /// # Ok::<(), interwell_studies::questions::Error>(())
+    /// ```
+    pub fn flexures(&self, simulation: &Simulation, progress: &Progress) -> Result<FlexuresAnswer, Error> {
+        self.flexures_of(simulation.document(), simulation.mechanism(), progress)
+    }
+
+    /// The same of a scene that may have no model.
+    #[doc(hidden)]
+    pub fn flexures_of(
+        &self,
+        document: &Document,
+        mechanism: &Arc<Mechanism>,
+        progress: &Progress,
+    ) -> Result<FlexuresAnswer, Error> {
+        let default = || default_positions(&document.scene, mechanism, CURVE_POINTS as usize);
+        let positions = self.positions.clone().unwrap_or_else(default);
+        match states(mechanism, &positions, &progress.silent()) {
+            Ok(states) => Ok(FlexuresAnswer { states, mechanism: Arc::clone(mechanism) }),
+            Err(StatesError::Cancelled) => Err(Error::Cancelled),
+            Err(StatesError::Outside(problem)) => Err(Error::number("positions", problem.x, problem)),
+            Err(problem @ StatesError::NoFlexures) => Err(Error::unfit(document, problem)),
+            Err(problem @ StatesError::Unsolved(_)) => Err(Error::failed(document, problem)),
+        }
+    }
+}
+
+/// The answer of [`Curve::flexures`]: the flexures at some positions of the mass.
+#[derive(Debug, Clone)]
+pub struct FlexuresAnswer {
+    /// The state of the flexures at each position, in SI units.
+    pub states: Vec<State>,
+    mechanism: Arc<Mechanism>,
+}
+
+impl FlexuresAnswer {
+    /// One row per position: the columns of [`Curve`], then `axial_n` (the axial force of all buckling
+    /// flexures), `bump_m` (the height of their buckled shape) and `max_stress_pa` (the largest bending
+    /// stress of any flexure).
+    pub fn table(&self) -> Table {
+        full_curve(&self.mechanism, &self.states)
+    }
+
+    /// The centre lines, point by point: `x_m`, `flexure` (`parallel` or `buckling`, each of which stands for
+    /// its group), `s_m` (the length from its clamp in the frame), `px_m`, `py_m` (coordinates in the frame).
+    pub fn shapes(&self) -> Table {
+        shapes(&self.states)
+    }
+
+    /// A sentence if the bending stress exceeds the limit of the scene (`yield_gpa`) at some positions.
+    pub fn warning(&self) -> Option<String> {
+        stress_warning(self.mechanism.flexures.as_deref()?, &self.states)
     }
 }
 
@@ -75,7 +152,7 @@ pub fn may_have_circuit(document: &Document, axes: &[Axis]) -> bool {
 ///
 /// // The base moves with one sine of 1.5 g at 3 Hz.
 /// let question = Spectrum { of: Signal::BaseAcceleration, ..Spectrum::default() };
-/// let table = question.run(&Simulation::preset("nominal-cubic")?, &Progress::none())?.table;
+/// let table = question.run(&Simulation::preset("nominal-cubic")?, &Progress::none())?.table();
 /// let frequencies = table.numbers("frequency_hz").unwrap();
 /// let line = frequencies.iter().position(|frequency| (frequency - 3.0).abs() < 1e-9).unwrap();
 /// assert!((table.numbers("amplitude").unwrap()[line] - 1.5 * 9.806_65).abs() < 1e-9);
@@ -101,13 +178,12 @@ impl Default for Spectrum {
 
 impl Spectrum {
     /// Runs the scene and transforms its settled window.
-    pub fn run(&self, simulation: &Simulation, progress: &Progress) -> Result<study::Spectrum, Error> {
+    pub fn run(&self, simulation: &Simulation, progress: &Progress) -> Result<SpectrumAnswer, Error> {
         let document = simulation.document();
         check_until(self.until_settled, document, simulation.model())?;
         let Self { of: signal, taper, rate_hz, until_settled } = *self;
         let options = SpectrumOptions { signal, taper, rate_hz, until_settled };
-        let task = Task { tick: &|| (), cancel: progress.stop() };
-        spectrum(simulation.model(), &options, &task).map_err(|problem| match problem {
+        spectrum(simulation.model(), &options, &progress.silent()).map_err(|problem| match problem {
             NoSpectrum::Cancelled => Error::Cancelled,
             NoSpectrum::EndedEarly { .. } => Error::failed(document, problem),
             NoSpectrum::NoWindow(..) => Error::unfit(document, problem),
@@ -160,6 +236,7 @@ pub struct Basins {
 #[derive(Debug)]
 pub struct BasinsAnswer {
     /// The starts, and what is known of each.
+    #[doc(hidden)]
     pub basins: study::Basins,
     /// The attractors, and the attractor of each start.
     pub answer: Answer,
@@ -172,7 +249,9 @@ impl Basins {
         Self { x_mm: even(x_mm), v: even(v), random: None }
     }
 
-    fn starts(&self) -> Result<Starts, Error> {
+    /// The starts; an error if an argument is wrong.
+    #[doc(hidden)]
+    pub fn starts(&self) -> Result<Starts, Error> {
         let wrong = |name: &'static str, value: String| {
             move |problem: StartsError| Error::argument(name, value, problem)
         };
@@ -196,10 +275,25 @@ impl Basins {
     /// Follows the starts, then once more those whose answer may be uncertain. Progress counts the two phases
     /// separately.
     pub fn run(&self, simulation: &Simulation, progress: &Progress) -> Result<BasinsAnswer, Error> {
-        let (document, starts) = (simulation.document(), self.starts()?);
-        let count = starts.count() as u64;
-        let basins = study::Basins::new(simulation.scene(), simulation.mechanism().clone(), starts);
-        let mut basins = basins.map_err(|problem| no_basins(document, problem, self.x_mm))?;
+        let begun = self.begin(self.starts()?, simulation.document(), simulation.mechanism())?;
+        Self::follow(begun, progress)
+    }
+
+    /// The starts before any is followed, of a scene whose own start need not be possible.
+    #[doc(hidden)]
+    pub fn begin(
+        &self,
+        starts: Starts,
+        document: &Document,
+        mechanism: &Arc<Mechanism>,
+    ) -> Result<study::Basins, Error> {
+        let begun = study::Basins::new(&document.scene, Arc::clone(mechanism), starts);
+        begun.map_err(|problem| no_basins(document, problem, self.x_mm))
+    }
+
+    #[doc(hidden)]
+    pub fn follow(mut basins: study::Basins, progress: &Progress) -> Result<BasinsAnswer, Error> {
+        let count = basins.starts().count() as u64;
         let answer = progress.pool(|pool| {
             let mut answer = progress.task(Some(count), |task| {
                 while !basins.is_whole() && basins.run_level(pool, task) {}

@@ -5,8 +5,9 @@ use crate::dynamics::Model;
 use crate::numeric::number_text;
 use crate::scene::{Axis, Document, FieldPath, Scene, is_whole};
 use crate::study::{
-    self, BranchEnd, BranchEvent, BranchOptions, Family, FieldRange, NoBasins, NoOrbit, Table, branch, loci,
-    orbit, orbit_table, switched,
+    Branch as BranchAnswer, BranchEnd, BranchEvent, BranchOptions, Family, FieldRange, Locus as OneLocus,
+    NoBasins, NoOrbit, Orbit as OrbitAnswer, Table, branch, branches_table, loci, loci_table, orbit,
+    orbit_table, switched,
 };
 
 /// The periodic orbit near the settled motion of a run, stable or not, with its Floquet multipliers.
@@ -48,7 +49,7 @@ pub struct Orbit {
 
 impl Orbit {
     /// Finds the orbit by Newton's method.
-    pub fn run(&self, simulation: &Simulation, progress: &Progress) -> Result<study::Orbit, Error> {
+    pub fn run(&self, simulation: &Simulation, progress: &Progress) -> Result<OrbitAnswer, Error> {
         check_period(self.period)?;
         can_have_orbits(simulation.document(), simulation.model())?;
         let found = orbit(simulation.model(), phase(self.phase_deg)?, self.period, progress.stop());
@@ -56,7 +57,7 @@ impl Orbit {
     }
 }
 
-impl study::Orbit {
+impl OrbitAnswer {
     /// One row: period, state, multipliers and what happens on the motion.
     pub fn table(&self) -> Table {
         orbit_table(std::slice::from_ref(self))
@@ -114,22 +115,33 @@ impl Branch {
     }
 
     /// Follows the branch. The value of the field in the scene is replaced by the first value of the range.
-    pub fn run(&self, simulation: &Simulation, progress: &Progress) -> Result<study::Branch, Error> {
-        self.with_switches(0, simulation, progress).map(|mut branches| branches.swap_remove(0))
+    pub fn run(&self, simulation: &Simulation, progress: &Progress) -> Result<BranchAnswer, Error> {
+        self.with_switches(0, simulation, progress).map(|mut answer| answer.branches.swap_remove(0))
     }
 
     /// Follows the branch, and to this number of levels, at most 10, the branches that begin at its flips and
-    /// breakings of the symmetry ([`switched`](crate::study::switched)).
+    /// breakings of the symmetry.
+    ///
+    /// ```
+    /// use interwell_studies::questions::{Branch, Progress, Simulation};
+    ///
+    /// // A period is doubled near 0.0557 g: the branch of twice the period begins there.
+    /// let question = Branch::over("excitation.amplitude_g", 0.056, 0.0555);
+    /// let simulation = Simulation::preset("impact-oscillator")?;
+    /// let answer = question.with_switches(1, &simulation, &Progress::none())?;
+    /// assert!(answer.branches.len() > 1);
+    /// # Ok::<(), interwell_studies::questions::Error>(())
+    /// ```
     pub fn with_switches(
         &self,
         levels: u32,
         simulation: &Simulation,
         progress: &Progress,
-    ) -> Result<Vec<study::Branch>, Error> {
+    ) -> Result<BranchesAnswer, Error> {
         if levels > MAX_LEVELS {
             return Err(Error::argument("switch", levels, format!("give 0 to {MAX_LEVELS}")));
         }
-        check_fields(simulation.scene(), [(["field", "range"], &self.field_range())])?;
+        check_fields(simulation.scene(), [(FIRST, &self.field_range())])?;
         let options = self.options()?;
         let from = self.range.0;
         let first = simulation.with_changes(&[(self.field.clone(), from.to_string())], progress)?;
@@ -140,7 +152,9 @@ impl Branch {
             let first = branch(&family, &self.field, self.range, &options, task)?;
             switched(&family, first, self.range, levels, &options, task)
         });
-        found.map_err(|error| no_orbit(document, error, &format!("at {} = {from}: ", self.field)))
+        let found =
+            found.map_err(|error| no_orbit(document, error, &format!("at {} = {from}: ", self.field)));
+        Ok(BranchesAnswer { branches: found?, range: self.range })
     }
 
     fn field_range(&self) -> FieldRange {
@@ -167,23 +181,19 @@ const STEPS: std::ops::RangeInclusive<f64> = 1e-4..=0.05;
 const MAX_LEVELS: u32 = 10;
 const COUNTS: std::ops::RangeInclusive<usize> = 1..=1_000_000;
 
-/// Checks fields that take all values of a range, each with the arguments that give the field and the range;
-/// both may be the same one, `FIELD=FROM:TO`.
-pub fn check_fields<'a>(
+/// The arguments that give the field of a branch and its range.
+const FIRST: [&str; 2] = ["field", "range"];
+
+/// Checks fields that take all values of a range, each with the arguments that give the field and the range.
+fn check_fields<'a>(
     scene: &Scene,
     fields: impl IntoIterator<Item = ([&'a str; 2], &'a FieldRange)>,
 ) -> Result<(), Error> {
     let mut known: Vec<&str> = Vec::new();
     for ([of_field, of_range], FieldRange { field, range: (from, to) }) in fields {
         let ends = || format!("{}:{}", number_text(*from), number_text(*to));
-        let wrong_range = |problem: String| match of_field == of_range {
-            true => Error::argument(of_range, format!("{field}={}", ends()), problem),
-            false => Error::argument(of_range, ends(), problem),
-        };
-        let wrong_field = |problem: String| match of_field == of_range {
-            true => wrong_range(problem),
-            false => Error::argument(of_field, field, problem),
-        };
+        let wrong_range = |problem: String| Error::argument(of_range, ends(), problem);
+        let wrong_field = |problem: String| Error::argument(of_field, field, problem);
         let is_known = FieldPath::new(field).get(scene).is_some();
         let found = Axis::listed(field, vec![*from, *to], scene);
         found.map_err(|problem| if is_known { wrong_range(problem) } else { wrong_field(problem) })?;
@@ -209,17 +219,33 @@ pub fn check_fields<'a>(
     Ok(())
 }
 
-/// The remarks of each branch, with its number if there are several.
-pub fn branches_remarks(branches: &[study::Branch], range: (f64, f64)) -> Vec<String> {
-    let several = branches.len() > 1;
-    let of_branch = |(number, branch): (u64, &study::Branch)| {
-        let remark = move |line| if several { format!("branch {number}: {line}") } else { line };
-        branch.remarks(range).into_iter().map(remark)
-    };
-    (1..).zip(branches).flat_map(of_branch).collect()
+/// The answer of [`Branch::with_switches`]: the branch, and those that begin at its events.
+#[derive(Debug, Clone)]
+pub struct BranchesAnswer {
+    /// The branches, each after the one on which it begins; the first is the branch that was asked for.
+    pub branches: Vec<BranchAnswer>,
+    range: (f64, f64),
 }
 
-impl study::Branch {
+impl BranchesAnswer {
+    /// One row per orbit: `branch` (its number from 1) and `from` (the number of the branch on which it
+    /// begins), then the columns of [`Branch`].
+    pub fn table(&self) -> Table {
+        branches_table(&self.branches)
+    }
+
+    /// The remarks of each branch, with its number if there are several.
+    pub fn remarks(&self) -> Vec<String> {
+        let several = self.branches.len() > 1;
+        let of_branch = |(number, branch): (u64, &BranchAnswer)| {
+            let remark = move |line| if several { format!("branch {number}: {line}") } else { line };
+            branch.remarks(self.range).into_iter().map(remark)
+        };
+        (1..).zip(&self.branches).flat_map(of_branch).collect()
+    }
+}
+
+impl BranchAnswer {
     /// Remarks that have no column in the table: events that were not located and, unless the branch reached
     /// the end of its range, where and why it ended.
     pub fn remarks(&self, (from, to): (f64, f64)) -> Vec<String> {
@@ -245,10 +271,9 @@ impl study::Branch {
 /// Loci in two fields: where the orbits of a branch fold, double their period, break their symmetry or graze
 /// a stop.
 ///
-/// The table of the answer ([`loci_table`](crate::study::loci_table)) has one row per orbit, in order along
-/// each locus: `locus` (its number from 1), both fields in their units, the columns of [`Orbit`], and
-/// `event`: empty, `cusp`, `fold-flip`, `grazing-fold`, `grazing-flip`, `grazing-symmetry` or
-/// `grazing-grazing`.
+/// The table of the answer has one row per orbit, in order along each locus: `locus` (its number from 1),
+/// both fields in their units, the columns of [`Orbit`], and `event`: empty, `cusp`, `fold-flip`,
+/// `grazing-fold`, `grazing-flip`, `grazing-symmetry` or `grazing-grazing`.
 ///
 /// Method: the branch is followed at the first value of the second field. From each of its events of this
 /// kind a locus is continued towards the other value, by pseudo-arclength in the state and both fields, with
@@ -259,15 +284,14 @@ impl study::Branch {
 /// Errors: those of [`Branch`], for both fields; [`Error::Failed`] if the branch has no such event.
 ///
 /// ```
-/// use interwell_studies::questions::{Branch, Locus, Progress, Simulation};
-/// use interwell_studies::study::{BranchEvent, FieldRange};
+/// use interwell_studies::questions::{Branch, BranchEvent, FieldRange, Locus, Progress, Simulation};
 ///
 /// // The swing without impacts of a linear oscillator grazes the stop at an amplitude in closed form.
 /// let simulation = Simulation::preset("impact-oscillator")?;
 /// let second = FieldRange { field: "excitation.frequency_hz".into(), range: (0.1, 0.116) };
 /// let branch = Branch { period: Some(1), ..Branch::over("excitation.amplitude_g", 0.05, 0.07) };
-/// let loci = Locus { branch, of: BranchEvent::Grazing, second }.run(&simulation, &Progress::none())?;
-/// for [amplitude_g, frequency_hz] in &loci[0].values {
+/// let found = Locus { branch, of: BranchEvent::Grazing, second }.run(&simulation, &Progress::none())?;
+/// for [amplitude_g, frequency_hz] in &found.loci[0].values {
 ///     let w = std::f64::consts::TAU * frequency_hz;
 ///     let reached = amplitude_g * 9.806_65 / (1.0 - w * w).hypot(0.2 * w);
 ///     assert!((reached - 1.0).abs() < 1e-8);
@@ -286,9 +310,9 @@ pub struct Locus {
 
 impl Locus {
     /// Follows the branch, and the loci from it.
-    pub fn run(&self, simulation: &Simulation, progress: &Progress) -> Result<Vec<study::Locus>, Error> {
+    pub fn run(&self, simulation: &Simulation, progress: &Progress) -> Result<LocusAnswer, Error> {
         let Self { branch: over, of, second } = self;
-        let names = [["field", "range"], ["second", "second_range"]];
+        let names = [FIRST, ["second", "second_range"]];
         check_fields(simulation.scene(), names.into_iter().zip([&over.field_range(), second]))?;
         let begin = [(&second.field, second.range.0), (&over.field, over.range.0)];
         let begin = begin.map(|(field, value)| (field.clone(), value.to_string()));
@@ -302,12 +326,13 @@ impl Locus {
             if !found.events.contains(&Some(*of)) {
                 return Err(Error::failed(document, self.lacking(&found)));
             }
-            loci(&family, &found, over.range, (*of, second), &options, task).map_err(failed)
+            let found = loci(&family, &found, over.range, (*of, second), &options, task);
+            Ok(LocusAnswer { loci: found.map_err(failed)? })
         })
     }
 
     /// The message that a branch has no event of this kind: which events it has, and where and why it ends.
-    fn lacking(&self, found: &study::Branch) -> String {
+    fn lacking(&self, found: &BranchAnswer) -> String {
         let Self { branch: Branch { field, range: (from, to), .. }, of, second } = self;
         let mut others: Vec<&str> = found.events.iter().flatten().map(|event| event.name()).collect();
         others.sort_unstable();
@@ -328,12 +353,27 @@ impl Locus {
     }
 }
 
-impl study::Locus {
-    /// Where and why the locus with this number ended.
-    pub fn remark(&self, number: usize) -> Option<String> {
-        let [first, second] = &self.fields;
-        let [at, and] = self.values.last()?;
-        Some(format!("locus {number} ends at {first} = {at}, {second} = {and}: {}", self.end.name()))
+/// The answer of [`Locus::run`].
+#[derive(Debug, Clone)]
+pub struct LocusAnswer {
+    /// The loci, each from one event of the branch, in the order of the events.
+    pub loci: Vec<OneLocus>,
+}
+
+impl LocusAnswer {
+    /// One row per orbit, with the columns named at [`Locus`].
+    pub fn table(&self) -> Table {
+        loci_table(&self.loci)
+    }
+
+    /// Where and why each locus ended.
+    pub fn remarks(&self) -> Vec<String> {
+        let remark = |(number, locus): (u64, &OneLocus)| {
+            let [first, second] = &locus.fields;
+            let [at, and] = locus.values.last()?;
+            Some(format!("locus {number} ends at {first} = {at}, {second} = {and}: {}", locus.end.name()))
+        };
+        (1..).zip(&self.loci).filter_map(remark).collect()
     }
 }
 

@@ -1,11 +1,13 @@
 //! Progress reports, cancellation and the number of threads of a question.
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::sync::{Mutex, PoisonError};
+use std::time::Duration;
 
 use super::Error;
 use crate::study::Task;
-use crate::system::threads::{Pool, processors};
+use crate::system::threads::{Pool, processors, spawn};
 
 /// A callback for progress: it gets the number of finished parts and, if it is known, that of all parts. Any
 /// thread may call it.
@@ -26,9 +28,9 @@ type Report<'a> = &'a (dyn Fn(u64, Option<u64>) + Sync);
 /// let simulation = Simulation::preset("nominal-cubic")?;
 /// let sweep = Sweep::over("excitation.amplitude_g", 0.5..=1.5, 5);
 /// let (stop, cells) = (AtomicBool::new(false), AtomicU64::new(0));
-/// let count = |_: u64, all: Option<u64>| {
+/// let count = |done: u64, all: Option<u64>| {
 ///     assert_eq!(all, Some(5));
-///     cells.fetch_add(1, Ordering::Relaxed);
+///     cells.fetch_max(done, Ordering::Relaxed);
 /// };
 /// let progress = Progress::none().reporting_to(&count).stopped_by(&stop).threads(2);
 /// sweep.run(&simulation, &progress)?;
@@ -48,6 +50,9 @@ pub struct Progress<'a> {
 /// The flag of questions that cannot be cancelled; it is never set.
 static NEVER: AtomicBool = AtomicBool::new(false);
 
+/// How often the flag is looked at beside work that does not look at it.
+const INTERVAL: Duration = Duration::from_millis(20);
+
 /// The thread pool of the last question, kept because starting threads takes longer than answering a short
 /// question.
 static POOL: Mutex<Option<Pool>> = Mutex::new(None);
@@ -60,8 +65,8 @@ impl Progress<'static> {
 }
 
 impl<'a> Progress<'a> {
-    /// Calls `report` after each finished part. A question with several phases, such as
-    /// [`Basins`](super::Basins), counts each phase from 1.
+    /// Calls `report` with 0 at the beginning, and after each finished part with their number. A question
+    /// with several phases, such as [`Basins`](super::Basins), counts each of them from 0.
     #[must_use]
     pub fn reporting_to<'b>(self, report: Report<'b>) -> Progress<'b>
     where
@@ -90,9 +95,41 @@ impl<'a> Progress<'a> {
         self.stop
     }
 
+    /// Whether that flag is set.
+    pub(super) fn is_stopped(&self) -> bool {
+        self.stop.load(Ordering::Relaxed)
+    }
+
+    /// A task that counts nothing.
+    pub(super) fn silent(&self) -> Task<'a> {
+        Task { tick: &|| (), cancel: self.stop }
+    }
+
+    /// The answer of `work`, which does not look at the flag, from a thread of its own.
+    pub(super) fn unless_stopped<T: Send + 'static>(
+        &self,
+        work: impl FnOnce() -> Result<T, Error> + Send + 'static,
+    ) -> Result<T, Error> {
+        let (sender, receiver) = channel();
+        if !spawn(move || drop(sender.send(work()))) {
+            return Err(Error::argument("threads", 1, "the system gives no thread: close something"));
+        }
+        while !self.is_stopped() {
+            match receiver.recv_timeout(INTERVAL) {
+                Ok(answer) => return answer,
+                Err(RecvTimeoutError::Timeout) => {}
+                Err(RecvTimeoutError::Disconnected) => break,
+            }
+        }
+        Err(Error::Cancelled)
+    }
+
     /// Runs `work` with a task that counts its parts; `all` is their number, if it is known.
     pub(super) fn task<R>(&self, all: Option<u64>, work: impl FnOnce(&Task) -> R) -> R {
         let done = AtomicU64::new(0);
+        if let Some(report) = self.report {
+            report(0, all);
+        }
         let tick = || {
             if let Some(report) = self.report {
                 report(done.fetch_add(1, Ordering::Relaxed) + 1, all);

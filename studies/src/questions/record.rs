@@ -2,7 +2,6 @@
 
 use std::fmt::Display;
 use std::path::Path;
-use std::sync::atomic::Ordering;
 
 use super::{Error, Progress};
 use crate::numeric::number_text;
@@ -118,11 +117,12 @@ impl Identify {
         Self { of, time, column, position, base, between, impact_times: false, stops_mm, points: None }
     }
 
-    /// Reads the record at `path` and identifies the quantity. The flag of `progress` is checked when the
-    /// file has been read.
+    /// Reads the record at `path` and identifies the quantity. Once it is cancelled, what it has begun is
+    /// left to a thread that nobody waits for.
     pub fn run(&self, path: &Path, progress: &Progress) -> Result<IdentifyAnswer, Error> {
         self.check()?;
-        self.answer(path, progress)
+        let (question, path) = (self.clone(), path.to_owned());
+        progress.unless_stopped(move || question.answer(&path))
     }
 
     /// Refuses options that do not belong to the quantity, and impossible values.
@@ -195,7 +195,7 @@ impl Identify {
         Ok(())
     }
 
-    fn answer(&self, path: &Path, progress: &Progress) -> Result<IdentifyAnswer, Error> {
+    fn answer(&self, path: &Path) -> Result<IdentifyAnswer, Error> {
         let request = |quantities: &[Quantity], [column, unit]: &[Option<String>; 2], names| {
             ColumnRequest::by_options(quantities, column, unit, names)
         };
@@ -209,8 +209,7 @@ impl Identify {
             WhatToIdentify::Force => {
                 let names = ["--position", "--position-unit"];
                 let positions = request(&[Quantity::Displacement], &self.position, names);
-                let (record, columns) =
-                    read(path, &[positions, values_request(&[Quantity::Force])], progress)?;
+                let (record, columns) = read(path, &[positions, values_request(&[Quantity::Force])])?;
                 let [x, values] = record.channels;
                 let points = self.points.map(|points| points as usize);
                 let found = force(&x.values, &values.values, points);
@@ -218,13 +217,13 @@ impl Identify {
             }
             WhatToIdentify::Damping => {
                 let any = [Quantity::Displacement, Quantity::Velocity, Quantity::Acceleration];
-                let (record, columns) = read(path, &[times, values_request(&any)], progress)?;
+                let (record, columns) = read(path, &[times, values_request(&any)])?;
                 let [times, values] = self.cut(record, path)?.channels;
                 let found = damping(&times.values, &values);
                 answer(found, Some(Timing::of(&times.values)), times.values, values, columns)
             }
             WhatToIdentify::Restitution if self.impact_times => {
-                let (record, columns) = read(path, &[times], progress)?;
+                let (record, columns) = read(path, &[times])?;
                 let [times] = self.cut(record, path)?.channels;
                 let found = restitution_of_times(&times.values);
                 let values = Channel { quantity: Quantity::Displacement, values: Vec::new(), ..times };
@@ -234,11 +233,11 @@ impl Identify {
                 let values = values_request(&[Quantity::Displacement]);
                 let ([times, values], base, columns) = if self.base[0].is_some() {
                     let base = request(&[Quantity::Acceleration], &self.base, ["--base", "--base-unit"]);
-                    let (record, columns) = read(path, &[times, values, base], progress)?;
+                    let (record, columns) = read(path, &[times, values, base])?;
                     let [times, values, base] = self.cut(record, path)?.channels;
                     ([times, values], Some(base.values), columns)
                 } else {
-                    let (record, columns) = read(path, &[times, values], progress)?;
+                    let (record, columns) = read(path, &[times, values])?;
                     (self.cut(record, path)?.channels, None, columns)
                 };
                 let places = self.stops_mm.map(|place| place.map(|mm| mm * 1e-3));
@@ -266,15 +265,8 @@ impl Identify {
     }
 }
 
-fn read<const N: usize>(
-    path: &Path,
-    requests: &[ColumnRequest; N],
-    progress: &Progress,
-) -> Result<(Measured<N>, String), Error> {
+fn read<const N: usize>(path: &Path, requests: &[ColumnRequest; N]) -> Result<(Measured<N>, String), Error> {
     let record = read_measured(path, requests).map_err(|problem| about(path, problem))?;
-    if progress.stop().load(Ordering::Relaxed) {
-        return Err(Error::Cancelled);
-    }
     let columns = columns_read(&record);
     Ok((record, columns))
 }

@@ -10,7 +10,10 @@ use crate::dynamics::{Model, Outcome, Request, Run};
 use crate::mechanics::{ForceCurve, Mechanism};
 use crate::numeric::number_text;
 use crate::scene::{Axis, Document, Excitation, Files, Scene};
-use crate::study::{Grid, Keep, Recorded, Sampling, sample_times, simulate};
+use crate::study::{
+    Comparison, Grid, Keep, MeasuredMotion, NoComparison, Recorded, Sampling, Table, Trace, can_cross,
+    compare, contact, inspect, sample_times, simulate, simulate_with_trace,
+};
 
 /// A checked scene with its model, which every question takes.
 ///
@@ -162,15 +165,66 @@ impl Simulation {
         until_settled: Option<f64>,
         progress: &Progress,
     ) -> Result<Recorded, Error> {
+        let keep = self.to_keep(sampling, until_settled)?;
+        self.kept(&keep, progress)
+    }
+
+    /// What [`record`](Self::record) keeps; an error if an argument is wrong.
+    #[doc(hidden)]
+    pub fn to_keep(&self, sampling: &Sampling, until_settled: Option<f64>) -> Result<Keep, Error> {
         check_until(until_settled, &self.document, &self.model)?;
         let times = sample_times(&self.document.scene, &self.model, sampling, until_settled)
             .map_err(|problem| Error::number(problem.argument(), problem.value(), problem))?;
-        let keep = Keep { times, events: true, until_settled };
-        let recorded = simulate(&self.model, &keep, Some(progress.stop()));
-        match recorded.summary.outcome {
-            Outcome::Cancelled { .. } => Err(Error::Cancelled),
-            _ => Ok(recorded),
-        }
+        Ok(Keep { times, events: true, until_settled })
+    }
+
+    /// A run of which this is kept.
+    #[doc(hidden)]
+    pub fn kept(&self, keep: &Keep, progress: &Progress) -> Result<Recorded, Error> {
+        uncancelled(simulate(&self.model, keep, Some(progress.stop())))
+    }
+
+    /// The same with what a picture of it needs, over a window in s if one is given.
+    #[doc(hidden)]
+    pub fn traced(
+        &self,
+        keep: &Keep,
+        window: Option<(f64, f64)>,
+        progress: &Progress,
+    ) -> Result<(Recorded, Trace), Error> {
+        let (recorded, trace) = simulate_with_trace(&self.model, keep, window, Some(progress.stop()));
+        Ok((uncancelled(recorded)?, trace))
+    }
+
+    /// Compares a measured motion with a run of the scene.
+    #[doc(hidden)]
+    pub fn compared(&self, motion: &MeasuredMotion, progress: &Progress) -> Result<Comparison, Error> {
+        compare(&self.document.scene, &self.model, motion, progress.stop()).map_err(|problem| match problem {
+            NoComparison::Cancelled => Error::Cancelled,
+            NoComparison::Apart { .. } => Error::unfit(&self.document, problem),
+        })
+    }
+
+    /// What the scene models and leaves out, how accurate its force curve is, and where it rests and leaves a
+    /// stop, each a sentence.
+    pub fn describe(&self) -> Vec<String> {
+        inspect(&self.document.scene, &self.model)
+    }
+
+    /// Whether a barrier between two wells lies between the stops, so that a motion can cross it.
+    pub fn can_cross(&self) -> bool {
+        can_cross(&self.document.scene, self.mechanism())
+    }
+
+    /// One impact on the compliant stops over the impact speed, in closed form, beside a rigid stop of this
+    /// restitution: `speed_m_per_s`, `restitution`, `rigid_restitution`, `contact_time_s`, `depth_m`,
+    /// `peak_force_n`, `peak_pressure_pa`. Gives [`Error::Unfit`] if the stops are not compliant.
+    pub fn impact(&self, rigid_restitution: f64) -> Result<Table, Error> {
+        contact(&self.model, rigid_restitution).ok_or_else(|| {
+            let problem = "its stops are not compliant; give it some, such as stops=Hertz(travel_limit_mm: \
+                           1.5, radius_mm: 5, young_gpa: 69, loss_s_per_m: 10.4)";
+            Error::unfit(&self.document, problem)
+        })
     }
 
     /// The scene with its source text and the changes to it.
@@ -213,5 +267,13 @@ impl Simulation {
         };
         let axes = over.iter().map(axis).collect::<Result<Vec<Axis>, Error>>()?;
         Ok(Grid::new(self.document.check_axes(axes, "over")?)?)
+    }
+}
+
+/// The run, unless it was cancelled.
+fn uncancelled(recorded: Recorded) -> Result<Recorded, Error> {
+    match recorded.summary.outcome {
+        Outcome::Cancelled { .. } => Err(Error::Cancelled),
+        _ => Ok(recorded),
     }
 }

@@ -1,6 +1,6 @@
 //! Sweeps: a run for each cell of a grid, with bands where inputs are uncertain.
 
-use super::grid::{Over, all_rows};
+use super::grid::{Over, all_rows, settles};
 use super::{Error, Progress, Simulation};
 use crate::numeric::number_text;
 use crate::scene::{
@@ -84,29 +84,58 @@ impl Sweep {
         }
     }
 
-    /// The draws of the uncertain inputs for a grid over a simulation with their [values](Self::nominal).
-    pub fn draws(&self, simulation: &Simulation, grid: &Grid) -> Result<Draws, Error> {
-        draws(&self.uncertain, simulation.document(), grid, self.carry)
-    }
-
     /// Runs the cells.
     pub fn run(&self, simulation: &Simulation, progress: &Progress) -> Result<Table, Error> {
         let simulation = self.nominal(simulation, progress)?;
-        let (document, grid) = (simulation.document(), simulation.grid(&self.over)?);
+        let document = simulation.document();
+        let cells = self.cells(document, simulation.grid(&self.over)?, None, progress)?;
+        Ok(cells.rows(document, progress)?.only(&cells.written))
+    }
+
+    /// The cells of a grid, not yet run; see [`Section::cells`](super::Section::cells). The document has the
+    /// [values](Self::nominal) of the uncertain inputs, and `shown` is a column that a picture needs.
+    #[doc(hidden)]
+    pub fn cells(
+        &self,
+        document: &Document,
+        grid: Grid,
+        shown: Option<&str>,
+        progress: &Progress,
+    ) -> Result<SweepCells, Error> {
         let columns = column_names(&self.columns, &grid, self.carry)?;
-        let draws = self.draws(&simulation, &grid)?;
-        let written = draws.columns(&columns);
-        let study = study::Sweep::new(&document.scene, &document.files, grid);
-        let until_settled = self.until_settled;
-        let fields = columns.iter().filter_map(|name| SummaryField::find(name)).collect();
+        let draws = draws(&self.uncertain, document, &grid, self.carry)?;
+        let (written, until_settled) = (draws.columns(&columns), self.until_settled);
+        let chosen = columns[grid.columns().len() + usize::from(self.carry.is_some())..].to_vec();
+        let shown = shown.filter(|name| !columns.iter().any(|column| column == name));
+        let fields = columns.iter().map(String::as_str).chain(shown).filter_map(SummaryField::find).collect();
         let options = SweepOptions { columns: fields, until_settled, carry: self.carry, draws };
-        Ok(all_rows(&study.with(options), until_settled, document, progress)?.only(&written))
+        let sweep = study::Sweep::new(&document.scene, &document.files, grid).with(options);
+        Ok(SweepCells { sweep: settles(sweep, until_settled, document, progress)?, chosen, written })
+    }
+}
+
+/// A sweep whose arguments are checked.
+#[doc(hidden)]
+#[derive(Debug)]
+pub struct SweepCells {
+    /// The sweep.
+    pub sweep: study::Sweep,
+    /// The columns after those of the fields and of the direction, without bands.
+    pub chosen: Vec<String>,
+    /// The columns that are written.
+    pub written: Vec<String>,
+}
+
+impl SweepCells {
+    /// All rows, with all columns that were computed.
+    pub fn rows(&self, document: &Document, progress: &Progress) -> Result<Table, Error> {
+        all_rows(&self.sweep, document, progress)
     }
 }
 
 /// The names of the columns of a sweep: the swept fields, the direction of a walk, and the chosen columns,
 /// without those of bands.
-pub fn column_names(chosen: &[String], grid: &Grid, carry: Option<Carry>) -> Result<Vec<String>, Error> {
+fn column_names(chosen: &[String], grid: &Grid, carry: Option<Carry>) -> Result<Vec<String>, Error> {
     let mut names = grid.columns().to_vec();
     names.extend(carry.map(|_| DIRECTION.to_owned()));
     match chosen {

@@ -44,6 +44,8 @@ const SIZES: [&str; 3] = ["length_mm", "thickness_mm", "gap_mm"];
 const FREQUENCY: &str = "excitation.frequency_hz";
 
 /// Results of one scene.
+///
+/// It is a row of the comparison as numbers: amplitudes in g, frequencies in Hz, the summary in SI units.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rated {
     /// The scene.

@@ -30,12 +30,16 @@ pub struct OutsideCurve {
 /// The table `x_m,force_n,potential_j,stiffness_n_per_m` at these positions in m, in their order.
 pub fn curve(mechanism: &Mechanism, positions: Vec<f64>) -> Result<Table, OutsideCurve> {
     check_positions(mechanism, &positions)?;
+    Ok(rows(mechanism, &positions))
+}
+
+fn rows(mechanism: &Mechanism, positions: &[f64]) -> Table {
     let curve = &mechanism.curve;
-    Ok(Table::new()
-        .each("x_m", &positions, |x| *x)
-        .each("force_n", &positions, |x| curve.force(*x))
-        .each("potential_j", &positions, |x| curve.potential(*x))
-        .each("stiffness_n_per_m", &positions, |x| curve.stiffness(*x)))
+    Table::new()
+        .each("x_m", positions, |x| *x)
+        .each("force_n", positions, |x| curve.force(*x))
+        .each("potential_j", positions, |x| curve.potential(*x))
+        .each("stiffness_n_per_m", positions, |x| curve.stiffness(*x))
 }
 
 fn check_positions(mechanism: &Mechanism, positions: &[f64]) -> Result<(), OutsideCurve> {
@@ -116,16 +120,10 @@ pub enum StatesError {
     Cancelled,
 }
 
-/// The flexures of a mechanism, if the positions in m are on its curve.
-pub fn flexures_at<'a>(mechanism: &'a Mechanism, positions: &[f64]) -> Result<&'a Flexures, StatesError> {
-    let flexures = mechanism.flexures.as_deref().ok_or(StatesError::NoFlexures)?;
-    check_positions(mechanism, positions)?;
-    Ok(flexures)
-}
-
 /// The states of the flexures at these positions in m, in this order; each is solved anew.
 pub fn states(mechanism: &Mechanism, positions: &[f64], task: &Task) -> Result<Vec<State>, StatesError> {
-    let flexures = flexures_at(mechanism, positions)?;
+    let flexures = mechanism.flexures.as_deref().ok_or(StatesError::NoFlexures)?;
+    check_positions(mechanism, positions)?;
     let state = |x: &f64| {
         task.check_cancelled().map_err(|_| StatesError::Cancelled)?;
         let state = flexures.state(*x)?;
@@ -138,10 +136,11 @@ pub fn states(mechanism: &Mechanism, positions: &[f64], task: &Task) -> Result<V
 /// The table of [`curve`] at the positions of `states`, with `axial_n,bump_m,max_stress_pa`: the axial force
 /// of all buckling flexures, the height of their buckled shape, and the largest bending stress of any
 /// flexure.
-pub fn full_curve(mechanism: &Mechanism, states: &[State]) -> Result<Table, OutsideCurve> {
-    let table = curve(mechanism, states.iter().map(|state| state.x).collect())?;
+pub fn full_curve(mechanism: &Mechanism, states: &[State]) -> Table {
+    let positions: Vec<f64> = states.iter().map(|state| state.x).collect();
+    let table = rows(mechanism, &positions);
     let table = table.each("axial_n", states, |state| state.axial).each("bump_m", states, |state| state.bump);
-    Ok(table.each("max_stress_pa", states, |state| state.max_stress))
+    table.each("max_stress_pa", states, |state| state.max_stress)
 }
 
 /// The table `x_m,flexure,s_m,px_m,py_m`: the centre lines of each state, point by point; `flexure` is

@@ -21,6 +21,9 @@ pub enum GridError {
 }
 
 /// The axes of a sweep; a cell has an index, from which its place on each axis follows.
+///
+/// The last axis changes fastest. A question makes it from its fields, `Simulation::grid` for a picture; a
+/// grid has at most 1e8 cells.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Grid {
     axes: Vec<Axis>,

@@ -1,8 +1,6 @@
 //! Description of a scene: what it models and omits, the accuracy of its force curve, its equilibria, its
 //! release from a stop, and the speeds of its impacts.
 
-use std::sync::Arc;
-
 use super::amplitudes::{can_cross, frees_at};
 use super::contact::strikes_in_words;
 use super::small_amplitude_frequency;
@@ -10,13 +8,13 @@ use crate::dynamics::Model;
 use crate::mechanics::flexure::{Accuracy, Geometry, Group};
 use crate::mechanics::{Equilibrium, ForceExtremum, Kink, Landscape, Mechanism};
 use crate::numeric::short;
-use crate::scene::{Damping, Excitation, Fault, Scene};
+use crate::scene::{Damping, Excitation, Scene};
 
-/// The description of a scene in lines, or all faults that are found only when the model is built.
+/// The description of a scene with its model in lines.
 ///
 /// Numbers here are rounded to four digits for reading; `curve --landscape` has them all.
-pub fn inspect(scene: &Scene, mechanism: &Arc<Mechanism>) -> Result<Vec<String>, Vec<Fault>> {
-    let model = Model::build(scene, Arc::clone(mechanism))?;
+pub fn inspect(scene: &Scene, model: &Model) -> Vec<String> {
+    let mechanism = model.mechanism();
     let mut lines = model.describe();
     if let (Excitation::Force { amplitude_n, .. }, Some(drive)) = (&scene.excitation, scene.harmonic()) {
         let (size, frequency) = (short(amplitude_n.abs()), drive.frequency_in_words());
@@ -36,7 +34,7 @@ pub fn inspect(scene: &Scene, mechanism: &Arc<Mechanism>) -> Result<Vec<String>,
     for (i, part) in (1..).zip(&mechanism.parts) {
         lines.extend(force(part).into_iter().map(|line| format!("part {i}: {line}")));
     }
-    lines.extend(damping(scene, &model));
+    lines.extend(damping(scene, model));
     lines.extend(landscape(&mechanism.landscape, model.mass()));
     if mechanism.landscape.barrier.is_some() && !can_cross(scene, mechanism) {
         lines.push("the barrier does not lie between the stops, so that nothing crosses it".to_owned());
@@ -45,8 +43,8 @@ pub fn inspect(scene: &Scene, mechanism: &Arc<Mechanism>) -> Result<Vec<String>,
         let (amplitude, unit) = (short(drive.amplitude_of(acceleration)), drive.unit());
         format!("at rest on its right stop the mass is released from {amplitude} {unit} on")
     }));
-    lines.extend(strikes_in_words(&model, scene));
-    Ok(lines)
+    lines.extend(strikes_in_words(model, scene));
+    lines
 }
 
 fn force(mechanism: &Mechanism) -> Vec<String> {

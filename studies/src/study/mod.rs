@@ -70,28 +70,29 @@ mod watch;
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-pub use alternatives::{Alternative, Rated, SEARCHED_SPAN, alternatives, comparison_parts, comparison_table};
+pub use alternatives::{Alternative, Rated, alternatives};
+pub(crate) use alternatives::{SEARCHED_SPAN, comparison_parts, comparison_table};
 pub use amplitudes::{Thresholds, can_cross, stops_that_cross, thresholds};
-pub use basins::{Answer, Attractor, Basins, EvenRange, MAX_STARTS, NoBasins, Shares, Starts, StartsError};
+pub(crate) use basins::StartsError;
+pub use basins::{Answer, Attractor, Basins, EvenRange, NoBasins, Shares, Starts};
 pub use best::{
-    BestDesign, BestQuestion, Constraint, DesignRange, Environment, INTERVALS, MOST_FIELDS, NoBest, Optimum,
-    SAMPLES, Spread, Tried, Variation, best, names, place, quantity, scan_places, scan_runs,
+    BestDesign, BestQuestion, Constraint, DesignRange, Environment, INTERVALS, NoBest, Optimum, SAMPLES,
+    Spread, Tried, Variation, best, names, place, quantity,
 };
-pub use contact::{Strikes, contact, strikes, yield_speed, yield_warning};
+pub(crate) use best::{MOST_FIELDS, scan_places, scan_runs};
+pub(crate) use contact::yield_speed;
+pub use contact::{contact, strikes, yield_warning};
 pub use curve::{
-    CURVE_PICTURE_POINTS, CURVE_POINTS, OutsideCurve, StatesError, curve, default_positions, even_positions,
-    flexures_at, full_curve, metres, shapes, small_amplitude_frequency, states, stop_positions,
-    stress_warning,
+    CURVE_PICTURE_POINTS, CURVE_POINTS, OutsideCurve, curve, default_positions, even_positions, metres,
+    shapes, states, stop_positions,
 };
-pub use escape::{
-    Chance, EscapeOptions, NoKramers, Until, depopulation, escape_table, kramers_rate,
-    probable_threshold_table,
-};
-pub use exponents::{
-    Estimate, ExponentCells, ExponentOptions, Exponents, NoExponents, average_exponents, drive_fault,
-    exponents, exponents_row,
-};
-pub use fields::{InJson, RMS_VELOCITY, Read, SUMMARY_FIELDS, SummaryField};
+pub(crate) use curve::{StatesError, full_curve, small_amplitude_frequency, stress_warning};
+pub use escape::{Chance, NoKramers, Until, depopulation, kramers_rate};
+pub(crate) use escape::{EscapeOptions, escape_table, probable_threshold_table};
+pub use exponents::{Estimate, ExponentOptions, Exponents, NoExponents, average_exponents, exponents};
+pub(crate) use exponents::{ExponentCells, drive_fault};
+pub(crate) use fields::InJson;
+pub use fields::{RMS_VELOCITY, Read, SUMMARY_FIELDS, SummaryField};
 pub use grid::{Grid, GridError, Levels, MAX_CELLS, STRIDES};
 pub use grid_study::{GridStudy, Question, Row};
 pub use identify::{
@@ -102,11 +103,11 @@ pub use lesson::{
     Lack, LessonFinding, LessonReport, Subject, Unjudged, Value, check_lesson, goal_lack, options_that_hold,
     result_fields,
 };
-pub use map::{Edges, first_crossing, first_crossing_edge, line_meets, release_line};
-pub use measured::{
-    Comparison, ForceComparison, MeasuredMotion, NoComparison, OffTheCurve, compare, compare_force,
-};
-pub use melnikov::{melnikov_threshold, suits_melnikov, with_melnikov};
+pub use map::{Edges, first_crossing, release_line};
+pub(crate) use map::{first_crossing_edge, line_meets};
+pub use measured::{Comparison, ForceComparison, MeasuredMotion, NoComparison, compare, compare_force};
+pub use melnikov::melnikov_threshold;
+pub(crate) use melnikov::{suits_melnikov, with_melnikov};
 pub use models::ModelUse;
 pub use orbit::{
     Branch, BranchEnd, BranchEvent, BranchOptions, FieldRange, Locus, LocusEnd, LocusEvent, NoOrbit, Orbit,
@@ -118,15 +119,18 @@ pub use simulate::{
     Keep, Recorded, Sampling, TimesError, ended_remedy, events_table, sample_times, samples_table, simulate,
 };
 pub use slice::{Shard, Slice};
-pub use spectrum::{NoSpectrum, Signal, Spectrum, SpectrumOptions, spectrum};
-pub use sweep::{
-    Cell, CellFaults, DIRECTION, STANDARD as STANDARD_COLUMNS, Sweep, SweepEnd, SweepOptions, Tally,
-};
+pub(crate) use spectrum::NoSpectrum;
+pub use spectrum::{Signal, Spectrum, SpectrumOptions, spectrum};
+pub(crate) use sweep::CellFaults;
+pub use sweep::{Cell, DIRECTION, STANDARD as STANDARD_COLUMNS, Sweep, SweepEnd, SweepOptions, Tally};
 pub use table::{Column, Table, Values, label_and_unit, with_unit};
-pub use thresholds::{Found, NoThresholds, Onset, Scan, Verdict, threshold, threshold_table};
+pub(crate) use thresholds::NoThresholds;
+pub use thresholds::{Found, Onset, Scan, Verdict, threshold, threshold_table};
 pub use trace::{Trace, between, simulate_with_trace};
-pub use uncertain::{Draws, MAX_DRAWS, share_in_range};
-pub use walk::{Carry, Direction, Family, NoModel, Visit, up_and_down};
+pub(crate) use uncertain::share_in_range;
+pub use uncertain::{Draws, MAX_DRAWS};
+pub(crate) use walk::NoModel;
+pub use walk::{Carry, Direction, Family, Visit, up_and_down};
 pub use watch::{Watch, continued_scene, distances, ledger_over, watched_events};
 
 /// Progress and cancellation of a long study.

@@ -20,6 +20,8 @@ const KEPT: u64 = 1 << 21;
 pub const IMPACTS: &str = "impacts";
 
 /// Where a section is taken.
+///
+/// Sections at several phases show how the set of states is stretched and folded within a period.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum SectionAt {
     /// At this phase of the drive in degrees; for a sum of sines, 360 degrees are the common period.
@@ -29,6 +31,8 @@ pub enum SectionAt {
 }
 
 /// How a section is taken.
+///
+/// Without [`periods`](Self::periods) the section is that of the settled window of the scene's run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SectionOptions {
     /// Where it is taken.

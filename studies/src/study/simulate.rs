@@ -8,6 +8,10 @@ use crate::numeric::{Decimal, greatest_common_divisor, short};
 use crate::scene::{Excitation, Harmonic, Scene, TOLERANCES};
 
 /// When to sample.
+///
+/// At most 1e7 samples fit. They are read off the integrator's polynomials and have no influence on its
+/// steps, so that a coarse sampling is as accurate as a fine one. At the instant of an event the state is
+/// that after it.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Sampling {
     /// Steps of a 60th of the forcing period or, without one, of a thousandth of the duration.
@@ -19,7 +23,7 @@ pub enum Sampling {
 }
 
 /// What to keep of a run besides its summary.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Keep {
     /// Sample times in s, in the order of the rows.
     pub times: Vec<f64>,
@@ -30,6 +34,9 @@ pub struct Keep {
 }
 
 /// One run with its samples and events, in SI units.
+///
+/// The tables have one row per sample and per event; [`summary`](Self::summary) is that of the whole run,
+/// whatever was sampled.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recorded {
     /// `t_s,x_m,v_m_per_s,base_accel_m_per_s2,phase`, with a transducer also `voltage_v,current_a,power_w`.

@@ -49,10 +49,13 @@ pub struct SpectrumOptions {
 }
 
 /// A spectrum, and how it was computed. SI.
+///
+/// It is the answer of the question `Spectrum`; [`table`](Self::table) has its lines,
+/// [`describe`](Self::describe) what it was made from in one sentence.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Spectrum {
     /// `frequency_hz,amplitude,psd`, one-sided, from 0 to half the rate, with one row per line.
-    pub table: Table,
+    pub(crate) table: Table,
     /// The signal.
     pub signal: Signal,
     /// How the samples were weighted.
@@ -72,6 +75,11 @@ pub struct Spectrum {
 }
 
 impl Spectrum {
+    /// `frequency_hz,amplitude,psd`, one-sided, from 0 to half the rate, with one row per line.
+    pub fn table(&self) -> &Table {
+        &self.table
+    }
+
     /// Its settings and samples, in one line.
     pub fn describe(&self) -> String {
         let periods = match self.periods {

@@ -10,6 +10,8 @@ use serde::{Deserialize, Deserializer, Serialize};
 use crate::scene::unit_ending;
 
 /// Values of one column, all of one type.
+///
+/// The type of a column is the same in every table of a question, whatever its values are.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Values {
     /// Real numbers. NaN and plus infinity are missing values; minus infinity is the logarithm of nothing.
@@ -86,6 +88,8 @@ collected! {
 }
 
 /// One column: its name and its values.
+///
+/// [`unit`](Self::unit) and [`label`](Self::label) take the name apart.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Column {
     /// Name with the unit in it, as in the header of a CSV file: `rms_velocity_m_per_s`.

@@ -36,6 +36,9 @@ pub struct Scan {
 }
 
 /// A threshold.
+///
+/// Values are in the unit of the searched field. The motions that begin at a threshold need not go on above
+/// it: [`windows`](Self::windows) counts where they end and begin again.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Found {
     /// The smallest value with the motion; `None` if no value of the scan has it.

@@ -91,7 +91,7 @@ fn with_stops_no_fixed_step_comes_below_what_is_said_of_them() {
 #[test]
 fn the_page_counts_the_hard_cases() {
     let page = include_str!("../../../docs/accuracy.md");
-    let count = interwell::study::accuracy::HARD_CASES.len();
+    let count = interwell_studies::study::accuracy::HARD_CASES.len();
     assert!(page.contains(&format!("has {count} hard cases")), "{count}");
 }
 

@@ -2,7 +2,7 @@
 
 use interwell::questions::{Best, Progress, Simulation, Sweep};
 use interwell::scene::{find_name, unit_ending};
-use interwell::study::SUMMARY_FIELDS;
+use interwell_studies::study::SUMMARY_FIELDS;
 
 use super::{headless, refused, stdout};
 use crate::support::Draw;

@@ -3,7 +3,7 @@
 
 use interwell::dynamics::{Model, Outcome, Phase, Request, Side};
 use interwell::numeric::short;
-use interwell::study::ended_remedy;
+use interwell_studies::study::ended_remedy;
 
 use super::*;
 

@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicBool;
 
 use interwell::dynamics::{Model, Regime, Request};
 use interwell::scene::{Document, FieldPath};
-use interwell::study::{Task, settled, thresholds};
+use interwell_studies::study::{Task, settled, thresholds};
 
 use crate::cli::{column, headless};
 use crate::support::*;

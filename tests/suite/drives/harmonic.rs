@@ -3,9 +3,9 @@
 use std::f64::consts::TAU;
 
 use interwell::dynamics::{Request, STANDARD_GRAVITY};
-use interwell::questions::{Onset, Progress, Simulation, Sweep, Threshold, in_environment, needs_a_sine};
+use interwell::questions::{Compare, Onset, Progress, Simulation, Sweep, Threshold};
 use interwell::scene::{Document, Excitation, Files, Scene, check};
-use interwell::study::{Watch, continued_scene};
+use interwell_studies::study::{Watch, continued_scene};
 use proptest::prelude::*;
 
 use crate::cli::stdout;
@@ -233,14 +233,17 @@ fn a_sum_repeats_where_all_frequencies_are_of_one_unit() {
 fn a_comparison_takes_a_cosine_as_its_sine_and_refuses_a_force() {
     let environment = |drive: &str| changed("paper", &[&format!("excitation={drive}")]);
     let cosine = environment("Cosine(amplitude_m_per_s2: 3, frequency_rad_per_s: 20, phase_deg: 30)");
-    let (frequency_hz, amplitude_g) = needs_a_sine(&cosine).unwrap();
-    assert_eq!((frequency_hz, amplitude_g), (20.0 / TAU, 3.0 / STANDARD_GRAVITY));
-    let compared = in_environment(&Document::load("balanced").unwrap(), &cosine).scene;
-    let sine = compared.harmonic().unwrap();
-    assert!(matches!(compared.excitation, Excitation::Sine { .. }));
-    assert_eq!((sine.frequency_hz, sine.amplitude()), (frequency_hz, amplitude_g));
+    let balanced = Simulation::preset("balanced").unwrap();
+    let compared = |environment: &Document| {
+        let environment = Some(Simulation::new(environment).unwrap());
+        Compare { environment, ..Compare::default() }.scenes(&balanced, &Progress::none())
+    };
+    let (_, scene) = compared(&cosine).unwrap().remove(0);
+    let sine = scene.scene().harmonic().unwrap();
+    assert!(matches!(scene.scene().excitation, Excitation::Sine { .. }));
+    assert_eq!((sine.frequency_hz, sine.amplitude()), (20.0 / TAU, 3.0 / STANDARD_GRAVITY));
     near(sine.phase_deg, 120.0, 1e-13);
-    let refused = needs_a_sine(&environment("Force(amplitude_n: 1, frequency_rad_per_s: 20)"));
+    let refused = compared(&environment("Force(amplitude_n: 1, frequency_rad_per_s: 20)"));
     let said = refused.unwrap_err().to_string();
     assert!(said.contains("is a Force") && said.contains("`environment`"), "{said}");
 }

@@ -2,8 +2,8 @@
 
 use std::f64::consts::TAU;
 
-use interwell::study::{NoKramers, depopulation, kramers_rate};
 use interwell::{Escape, Progress, Simulation};
+use interwell_studies::study::{NoKramers, depopulation, kramers_rate};
 
 use super::double_well;
 use crate::support::{Draw, near_relative};

@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use interwell::dynamics::Model;
 use interwell::questions::{Progress, Simulation, Threshold};
-use interwell::study::melnikov_threshold;
+use interwell_studies::study::melnikov_threshold;
 
 use crate::support::{Draw, build, documented, model, near_relative};
 

@@ -7,7 +7,7 @@ use std::sync::atomic::AtomicBool;
 use interwell::dynamics::{EventKind, Model, Regime, STANDARD_GRAVITY, Side};
 use interwell::mechanics::Mechanism as Built;
 use interwell::scene::{Damping, Excitation, Files, Mechanism, Scene, Start, Stops};
-use interwell::study::{Onset, Scan, Task, can_cross, inspect, threshold, thresholds};
+use interwell_studies::study::{Onset, Scan, Task, can_cross, inspect, threshold, thresholds};
 
 use super::scenes::*;
 use crate::support::{Draw, near};
@@ -237,7 +237,7 @@ fn nothing_crosses_a_barrier_that_is_not_between_the_stops() {
         assert!(summary.total_impacts > 0);
         assert_eq!(summary.total_crossings > 0, crosses, "{left:?} {right:?} {summary:?}");
         assert_eq!(can_cross(&s, model.mechanism()), crosses);
-        let words = inspect(&s, model.mechanism()).unwrap().join("\n");
+        let words = inspect(&s, &model).join("\n");
         assert_eq!(words.contains("the barrier does not lie between the stops"), !crosses, "{words}");
         if !crosses {
             assert_eq!(thresholds(&s, model.mechanism(), &task), None);

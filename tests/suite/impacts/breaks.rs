@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use interwell::dynamics::{EventKind, Outcome, Phase};
 use interwell::mechanics::{ForceCurve, Piece};
 use interwell::scene::Scene;
-use interwell::study::accuracy::exact::Corner;
+use interwell_studies::study::accuracy::exact::Corner;
 
 use super::scenes::*;
 

@@ -11,7 +11,7 @@ use std::sync::atomic::AtomicBool;
 use interwell::dynamics::{Model, Outcome, Regime, Request, STANDARD_GRAVITY, Summary};
 use interwell::scene::Document;
 use interwell::scene::lesson::{LESSONS, LessonDocument, Step};
-use interwell::study::{Onset, Scan, Task, result_fields, threshold};
+use interwell_studies::study::{Onset, Scan, Task, result_fields, threshold};
 
 use super::super::support::*;
 

@@ -4,7 +4,7 @@ use std::sync::atomic::AtomicBool;
 
 use interwell::dynamics::{EventKind, Model};
 use interwell::scene::{Channel, Document, Files, Quantity};
-use interwell::study::{Comparison, Keep, MeasuredMotion, NoComparison, compare, simulate};
+use interwell_studies::study::{Comparison, Keep, MeasuredMotion, NoComparison, compare, simulate};
 
 use super::Noise;
 use crate::cli::{headless, refused};
@@ -52,7 +52,7 @@ fn with_displacements(
 
 fn row(found: &Comparison, quantity: &str) -> [f64; 4] {
     let words = match &found.table.column("quantity").unwrap().values {
-        interwell::study::Values::Words(words) => words.clone(),
+        interwell_studies::study::Values::Words(words) => words.clone(),
         _ => Vec::new(),
     };
     let at = words.iter().position(|word| *word == quantity).unwrap();

@@ -1,7 +1,7 @@
 //! A measured force beside the force curve: the numbers of the difference, and the command.
 
 use interwell::mechanics::{ForceCurve, Landscape, Mechanism};
-use interwell::study::{Table, Values, compare_force};
+use interwell_studies::study::{Table, Values, compare_force};
 
 use super::Noise;
 use crate::cli::{headless, refused};

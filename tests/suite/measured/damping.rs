@@ -3,7 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use interwell::scene::{Channel, Quantity};
-use interwell::study::{Unidentified, damping};
+use interwell_studies::study::{Unidentified, damping};
 
 use super::{Noise, SEEDS, covered, hold_95_of_100, holds, number};
 use crate::cli::{column, headless};

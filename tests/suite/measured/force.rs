@@ -2,7 +2,7 @@
 
 use interwell::mechanics::Mechanism;
 use interwell::output::{header, rows};
-use interwell::study::{FORCE_POINTS, Unidentified, force};
+use interwell_studies::study::{FORCE_POINTS, Unidentified, force};
 
 use super::{Noise, SEEDS, covered, hold_95_of_100, holds, number};
 use crate::properties::harness::multiplied;
@@ -191,5 +191,9 @@ fn a_curve_has_as_many_points_as_its_samples_allow() {
     for more in points + 1..=FORCE_POINTS {
         assert_eq!(force(&x, &measured, Some(more)), Err(Unidentified::FewSamples(x.len(), more)));
     }
-    assert_eq!(force(&x[..9], &measured[..9], None), Err(Unidentified::FewSamples(9, 4)));
+    let too_few = Unidentified::FewSamples(9, 4);
+    for points in [None, Some(4), Some(101)] {
+        assert_eq!(force(&x[..9], &measured[..9], points), Err(too_few.clone()));
+    }
+    assert!(too_few.to_string().contains("record more") && !too_few.to_string().contains("--points"));
 }

@@ -5,7 +5,7 @@ use std::ops::Range;
 use interwell::dynamics::Model;
 use interwell::mechanics::Mechanism;
 use interwell::scene::Document;
-use interwell::study::{Identified, Keep, Unidentified, restitution, simulate};
+use interwell_studies::study::{Identified, Keep, Unidentified, restitution, simulate};
 
 use super::{Noise, holds, number};
 use crate::cli::{headless, refused};
@@ -188,7 +188,8 @@ fn the_intervals_of_shaken_records_hold_the_restitution() {
             "left" => drawn.left.unwrap_or_else(|| panic!("no left stop: {}", drawn.about)),
             _ => drawn.right.unwrap_or_else(|| panic!("no right stop: {}", drawn.about)),
         };
-        let interwell::study::Values::Words(sides) = &found.rows.column("side").unwrap().values else {
+        let interwell_studies::study::Values::Words(sides) = &found.rows.column("side").unwrap().values
+        else {
             panic!()
         };
         let [low, high] =

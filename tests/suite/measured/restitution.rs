@@ -1,6 +1,6 @@
 //! Restitution of bounces, exact and with noise and jitter of known size.
 
-use interwell::study::{Unidentified, restitution, restitution_of_times};
+use interwell_studies::study::{Unidentified, restitution, restitution_of_times};
 
 use super::{Noise, SEEDS, covered, holds, number};
 

@@ -1,6 +1,6 @@
 //! Scenes with another way to a low barrier than stops.
 
-use interwell::study::{Onset, thresholds};
+use interwell_studies::study::{Onset, thresholds};
 
 use super::super::support::*;
 use super::*;

@@ -3,7 +3,7 @@
 use interwell::dynamics::{EventKind, Regime, Side};
 use interwell::mechanics::Mechanism;
 use interwell::scene::TABLES;
-use interwell::study::Onset;
+use interwell_studies::study::Onset;
 
 use super::super::support::*;
 use super::*;

@@ -3,7 +3,7 @@
 use interwell::dynamics::{EventKind, Phase, STANDARD_GRAVITY, Side};
 
 use interwell::numeric::Scalar;
-use interwell::study::accuracy::exact::{first_hit, impact_time, rest_time};
+use interwell_studies::study::accuracy::exact::{first_hit, impact_time, rest_time};
 
 use crate::support::*;
 

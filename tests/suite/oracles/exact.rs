@@ -1,7 +1,9 @@
 //! The closed forms themselves, against each other and against known values.
 
 use interwell::numeric::{DoubleDouble, Number, Scalar};
-use interwell::study::accuracy::exact::{Coupled, Forcing, Oscillator, elliptic_k, exp, sin_cos, sine_turns};
+use interwell_studies::study::accuracy::exact::{
+    Coupled, Forcing, Oscillator, elliptic_k, exp, sin_cos, sine_turns,
+};
 
 fn dd(value: f64) -> DoubleDouble {
     DoubleDouble::of(value)

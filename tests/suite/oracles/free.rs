@@ -4,7 +4,7 @@ use std::f64::consts::SQRT_2;
 
 use interwell::dynamics::{EventKind, Phase, Side};
 use interwell::numeric::Scalar;
-use interwell::study::accuracy::exact::UnitWell;
+use interwell_studies::study::accuracy::exact::UnitWell;
 
 use crate::support::*;
 

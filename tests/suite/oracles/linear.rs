@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use interwell::dynamics::{EventKind, Model, STANDARD_GRAVITY, Sample, Side};
 use interwell::numeric::{DoubleDouble, Number};
-use interwell::study::accuracy::exact::{Forcing, Oscillator};
+use interwell_studies::study::accuracy::exact::{Forcing, Oscillator};
 
 use crate::support::*;
 

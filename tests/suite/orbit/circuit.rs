@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use std::sync::atomic::AtomicBool;
 
 use interwell::dynamics::{EventKind, Model, STANDARD_GRAVITY};
-use interwell::study::{BranchEvent, ExponentOptions, average_exponents, exponents};
+use interwell_studies::study::{BranchEvent, ExponentOptions, average_exponents, exponents};
 use nalgebra::{Complex, Matrix3};
 
 use super::{at, document, find, over_amplitude};
@@ -90,7 +90,7 @@ impl Oscillator {
     }
 }
 
-fn exponents_of(model: &Model) -> interwell::study::Exponents {
+fn exponents_of(model: &Model) -> interwell_studies::study::Exponents {
     let options = ExponentOptions { periods: 50, ..ExponentOptions::default() };
     exponents(model, &options, &AtomicBool::new(false)).unwrap()
 }

@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use interwell::dynamics::{MapState, Model, STANDARD_GRAVITY, Side};
 use interwell::mechanics::Mechanism;
 use interwell::scene::{Document, Excitation, Files, Scene, Stops};
-use interwell::study::{
+use interwell_studies::study::{
     Branch, BranchEnd, BranchEvent, BranchOptions, Family, Orbit, Task, branch, orbit, settled,
 };
 use proptest::prelude::*;

@@ -1,7 +1,7 @@
 //! Branches that end, turn or leap: none does unsaid.
 
 use interwell::dynamics::{EventKind, MapState, Side};
-use interwell::study::{BranchEnd, BranchEvent, Orbit};
+use interwell_studies::study::{BranchEnd, BranchEvent, Orbit};
 
 use super::{at, over_amplitude};
 use crate::cli::{headless, refused, stdout};

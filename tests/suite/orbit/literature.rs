@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use interwell::dynamics::EventKind;
 use interwell::numeric::bisect;
-use interwell::study::BranchEvent;
+use interwell_studies::study::BranchEvent;
 
 use super::one_stop::OneStop;
 use super::{at, find, over, two};

@@ -10,7 +10,7 @@ use std::sync::atomic::AtomicBool;
 use interwell::dynamics::STANDARD_GRAVITY;
 use interwell::mechanics::Mechanism;
 use interwell::scene::Document;
-use interwell::study::{
+use interwell_studies::study::{
     BranchEvent, BranchOptions, Family, FieldRange, Locus, LocusEnd, LocusEvent, Task, branch, loci,
     loci_table,
 };

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 
 use interwell::dynamics::STANDARD_GRAVITY;
 use interwell::scene::Document;
-use interwell::study::{BranchEnd, BranchEvent};
+use interwell_studies::study::{BranchEnd, BranchEvent};
 
 use super::{at, over_amplitude, response, two};
 use crate::support::{changed, near, near_relative};
@@ -95,7 +95,7 @@ impl OneStop {
     }
 
     /// The branch over amplitudes in g, whose motions with one impact have the multipliers of the formula.
-    fn branch(&self, range: (f64, f64)) -> interwell::study::Branch {
+    fn branch(&self, range: (f64, f64)) -> interwell_studies::study::Branch {
         let found = over_amplitude(&self.document(), range, Some(1));
         assert_eq!(found.end, BranchEnd::Range);
         for orbit in &found.orbits {

@@ -6,7 +6,7 @@ use std::sync::atomic::AtomicBool;
 
 use interwell::mechanics::Mechanism;
 use interwell::scene::Document;
-use interwell::study::{
+use interwell_studies::study::{
     Branch, BranchEnd, BranchEvent, BranchOptions, Family, Task, branch, branches_table, switched,
 };
 
@@ -125,7 +125,7 @@ fn a_breaking_of_the_symmetry_leads_to_motions_without_it() {
     assert!(!asymmetric.is_empty());
     near_relative(asymmetric[0].values[0], broken[0], 1e-2);
     for branch in &asymmetric {
-        let is_broken = |orbit: &interwell::study::Orbit| {
+        let is_broken = |orbit: &interwell_studies::study::Orbit| {
             let [first, _] = two(orbit);
             orbit.period == 1 && first.re.is_finite()
         };

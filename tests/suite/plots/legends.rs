@@ -2,7 +2,7 @@
 
 use interwell::output::{Look, Marks, Ranges, Role, RunPanel, Theme, run_chart};
 use interwell::scene::PRESETS;
-use interwell::study::{Keep, simulate_with_trace};
+use interwell_studies::study::{Keep, simulate_with_trace};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng as _, SeedableRng as _};
 

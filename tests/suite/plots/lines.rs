@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicBool;
 
 use interwell::mechanics::Mechanism;
 use interwell::scene::Document;
-use interwell::study::{Grid, Sweep, Table, Task, Values, first_crossing, release_line};
+use interwell_studies::study::{Grid, Sweep, Table, Task, Values, first_crossing, release_line};
 
 fn swept(document: &Document, over: &[&str]) -> (Grid, Table) {
     let grid = Grid::new(document.axes(over).unwrap()).unwrap();

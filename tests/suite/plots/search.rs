@@ -1,7 +1,7 @@
 //! The picture of `best`: every design that was tried, the one that was found, and broken constraints.
 
 use interwell::output::{Chart, Marks, Ranges, best_chart};
-use interwell::study::{BestDesign, BestQuestion, DesignRange, Table};
+use interwell_studies::study::{BestDesign, BestQuestion, DesignRange, Table};
 
 use super::*;
 use crate::best::{at_most, found_by, linear, question};

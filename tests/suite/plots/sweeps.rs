@@ -1,7 +1,7 @@
 //! Pictures of sweeps: rest, missing values and categories, in all of them by the same words.
 
 use interwell::output::{Cut, Marks, NoPicture, Overlay, Ranges, SweepPicture, View, sweep_chart};
-use interwell::study::{Grid, Table};
+use interwell_studies::study::{Grid, Table};
 
 use super::*;
 use crate::shared::changed;

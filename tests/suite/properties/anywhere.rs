@@ -5,10 +5,10 @@ use std::sync::atomic::AtomicBool;
 
 use interwell::dynamics::{Model, Request, Run};
 use interwell::scene::{Excitation, Files, Scene, Start, Stops};
-use interwell::study::accuracy::methods::Scheme;
-use interwell::study::accuracy::scene::{step_size, trust};
-use interwell::study::*;
 use interwell::system::threads::Pool;
+use interwell_studies::study::accuracy::methods::Scheme;
+use interwell_studies::study::accuracy::scene::{step_size, trust};
+use interwell_studies::study::*;
 use proptest::prelude::*;
 
 use super::harness::{Verdict, hold};
@@ -105,7 +105,7 @@ fn every_study_takes_stops_anywhere() {
         };
         let until_settled = Some(model.duration() + 20.0 * period);
 
-        prop_assert!(inspect(&scene, &mechanism).is_ok());
+        prop_assert!(!inspect(&scene, &model).is_empty());
         let positions = default_positions(&scene, &mechanism, 101);
         let ends = (positions[0], positions[100]);
         let (low, high) = mechanism.curve.domain();

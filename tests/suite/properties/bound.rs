@@ -27,7 +27,7 @@ const MOST: f64 = 1e4;
 const LINEAR: f64 = 1e-2;
 
 /// What one step may do to the state by rounding, relative to the scales: the accuracy study's own bound.
-const STEP_ERROR: f64 = interwell::study::accuracy::STEP_ERROR;
+const STEP_ERROR: f64 = interwell_studies::study::accuracy::STEP_ERROR;
 
 /// Bounds of error / (K tolerance + rounding): of the median and of the worst. Measured on eight thousand
 /// scenes: 0.0023 and 0.39, on the thousand that are drawn each day 0.0024 and 0.10; at a hundred times the

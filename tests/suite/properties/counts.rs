@@ -5,7 +5,7 @@ use std::cell::Cell;
 use std::sync::atomic::AtomicBool;
 
 use interwell::dynamics::{EventKind, Model, Outcome, Request, Summary};
-use interwell::study::{SectionAt, SectionOptions, orbit, section};
+use interwell_studies::study::{SectionAt, SectionOptions, orbit, section};
 use proptest::prelude::*;
 
 use super::harness::hold_for;

@@ -4,7 +4,7 @@ use std::sync::atomic::AtomicBool;
 
 use interwell::output;
 use interwell::scene::{Axis, FieldPath, Files, Mechanism, Scene, corners, numeric_fields};
-use interwell::study::{Grid, Sweep, Task};
+use interwell_studies::study::{Grid, Sweep, Task};
 use proptest::prelude::*;
 
 use super::harness::{hold_for, text};

@@ -7,8 +7,8 @@ use std::sync::atomic::AtomicBool;
 use interwell::dynamics::{Model, Regime, Request, STANDARD_GRAVITY, Summary};
 use interwell::mechanics::Mechanism;
 use interwell::scene::{Document, FieldPath, Files, Scene};
-use interwell::study::{Alternative, Found, Onset, Scan, Task, alternatives, threshold, thresholds};
 use interwell::system::threads::Pool;
+use interwell_studies::study::{Alternative, Found, Onset, Scan, Task, alternatives, threshold, thresholds};
 use proptest::prelude::*;
 
 use super::harness::hold_for;

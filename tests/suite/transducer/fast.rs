@@ -1,7 +1,7 @@
 //! Circuits far faster than the motion: what is said of them, and what is given in their place.
 
 use interwell::dynamics::Outcome;
-use interwell::study::ended_remedy;
+use interwell_studies::study::ended_remedy;
 
 use crate::support::*;
 

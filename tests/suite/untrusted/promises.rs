@@ -15,7 +15,7 @@ use interwell::scene::{
     self, Document, Excitation, FieldPath, Files, MAX_AXIS_VALUES, MAX_ROWS, Record, Start, arguments,
     read_columns, write,
 };
-use interwell::study::{Grid, MAX_CELLS};
+use interwell_studies::study::{Grid, MAX_CELLS};
 
 /// What messages call the scene.
 const NAME: &str = "s.ron";

@@ -29,6 +29,11 @@ pub(in crate::dynamics) const MAX_PERIODS: f64 = 9e15;
 const PROBES: i32 = 60;
 
 /// A scene prepared for a run.
+///
+/// It holds all quantities in SI units, the force curve and the excitation as they are integrated, and
+/// nothing is left to check: [`build`](Self::build) gives all faults of a scene at once. [`run`](Self::run)
+/// takes one run, [`run_all`](Self::run_all) many side by side with the same bits. A program that starts from
+/// a scene file has it from `questions::Simulation`.
 #[derive(Debug, Clone)]
 pub struct Model {
     pub(in crate::dynamics) mass: f64,

@@ -25,6 +25,10 @@ impl Phase {
 }
 
 /// The state at a requested time; at the instant of an event, the state after the event.
+///
+/// The values are those of the polynomial of the integrator's step at that time, and not interpolated between
+/// steps. The force on the mass and the potential follow from `x` by
+/// [`ForceCurve`](crate::mechanics::ForceCurve).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sample {
     /// Time in s, as requested.
@@ -107,6 +111,8 @@ impl EventKind {
 }
 
 /// One event of a run.
+///
+/// Its velocities are those just before and just after it, which are equal where nothing strikes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Event {
     /// Time in s.

@@ -13,6 +13,9 @@ pub use outcome::{Outcome, Place, Regime};
 pub use summary::{First, Firsts, Harvest, Ledger, Summary};
 
 /// The results that a run should keep.
+///
+/// The default keeps the summary alone, which is the fastest. What is kept has no influence on the motion:
+/// the numbers of the summary have the same bits with and without samples and events.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Request<'a> {
     /// Times in s at which to sample, ascending, within 0..=duration.
@@ -37,6 +40,9 @@ pub struct Request<'a> {
 }
 
 /// Everything a run returns.
+///
+/// A run never fails: if it cannot go on, [`Summary::outcome`] says why and when, and samples and events
+/// reach up to there. What was not requested is empty.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Run {

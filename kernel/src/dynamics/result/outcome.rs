@@ -3,6 +3,10 @@
 use serde::{Deserialize, Serialize};
 
 /// Regime of the motion over the settled window.
+///
+/// The verdict is that of the settled window alone: a mass that crosses during the transient and then stays
+/// in one well is intrawell. Under a drive that repeats, crossings repeat if the states once a forcing period
+/// do.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Regime {
     /// The mass never left the stop or the equilibrium.
@@ -34,6 +38,9 @@ impl Regime {
 }
 
 /// How a run ended.
+///
+/// An end before the duration is a result and not an error, so that a sweep goes on. Budgets of steps and
+/// impacts end a run that would take far longer than others of its length.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum Outcome {
     /// It reached its duration.

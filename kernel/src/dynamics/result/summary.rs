@@ -65,6 +65,26 @@ pub struct Firsts {
 }
 
 /// Statistics of a run; those of the settled window come first.
+///
+/// Values are in SI units. Those of the settled window are averages and counts over whole forcing periods
+/// where the drive has them; they are `None`, or 0 for a count, if the run ended before the window began, as
+/// [`outcome`](Self::outcome) says. Energies are in the ledger, which a [`Request`](super::Request) asks for.
+///
+/// ```
+/// use std::sync::Arc;
+/// use interwell_kernel::dynamics::{Model, Outcome, Request};
+/// use interwell_kernel::mechanics::Mechanism;
+/// use interwell_kernel::scene::Document;
+///
+/// let document = Document::preset("nominal-cubic")?;
+/// let mechanism = Mechanism::build(&document.scene.mechanism, &document.files).unwrap();
+/// let model = Model::build(&document.scene, Arc::new(mechanism)).unwrap();
+/// let summary = model.run(&Request { ledger: true, ..Request::default() }).summary;
+/// assert_eq!(summary.outcome, Outcome::Done);
+/// // what the base does is lost in impacts and damping, or kept
+/// assert!(summary.ledger.unwrap().energy_residual < 1e-9);
+/// # Ok::<(), interwell_kernel::scene::SceneError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Summary {

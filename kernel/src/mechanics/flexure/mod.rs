@@ -135,6 +135,8 @@ pub struct CentreLine {
 }
 
 /// State of the mechanism held at one x.
+///
+/// It is solved anew at this position and not taken from the force curve.
 #[derive(Debug, Clone, PartialEq)]
 pub struct State {
     /// Position in m.

@@ -11,7 +11,7 @@ use crate::app::task::{Each, Question, Uncompared};
 use crate::mechanics::Mechanism;
 use crate::scene::lesson::{Lesson, LessonDocument, Step};
 use crate::scene::{Document, Scene};
-use crate::study::{Subject, Task, Unjudged, goal_lack, options_that_hold};
+use interwell_studies::study::{Subject, Task, Unjudged, goal_lack, options_that_hold};
 
 /// A step of a lesson, and the scene that is judged in it.
 #[derive(Debug, Clone, Serialize, Deserialize)]

@@ -16,7 +16,7 @@ use crate::app::task::{Background, Uncompared, Wake};
 use crate::app::words::lesson::bold_words;
 use crate::scene::lesson::{Choice, Condition, LESSONS, Lesson, LessonDocument, Step};
 use crate::scene::{Document, Scene, Source, Start, arguments};
-use crate::study::Lack;
+use interwell_studies::study::Lack;
 
 use super::Session;
 use judged::Judged;

@@ -2,7 +2,7 @@
 
 use crate::app::words::numbers::{below, decimal, round_up};
 use crate::scene::{Excitation, FieldPath, Scene, Start, Stops, SweepAxis, field_info, numeric_fields};
-use crate::study::{label_and_unit, with_unit};
+use interwell_studies::study::{label_and_unit, with_unit};
 
 /// Ends and step of the travel limit in mm on the prototype's map, for scenes of its size.
 const LIMITS_MM: (f64, f64, f64) = (0.5, 7.0, 0.125);

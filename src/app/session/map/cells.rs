@@ -9,7 +9,7 @@ use crate::mechanics::Mechanism;
 use crate::numeric::short;
 use crate::output::{Chart, Cut, NoPicture, Overlay, Ranges, SweepPicture, View, csv, sweep_chart};
 use crate::scene::{FieldPath, Scene, SceneError};
-use crate::study::{
+use interwell_studies::study::{
     Cell, Edges, Grid, Levels, STRIDES, SummaryField, Sweep, Table, first_crossing, release_line,
 };
 

@@ -18,7 +18,9 @@ use crate::app::session::prepared::SceneWithFiles;
 use crate::app::task::{Background, Each, Question, Uncompared, pool};
 use crate::app::words::fields::{in_words, name_and_unit};
 use crate::scene::{Axis, FieldPath, Scene, Stops, SweepAxis};
-use crate::study::{Cell, Grid, RMS_VELOCITY, STANDARD_COLUMNS, SummaryField, Sweep, SweepOptions, Task};
+use interwell_studies::study::{
+    Cell, Grid, RMS_VELOCITY, STANDARD_COLUMNS, SummaryField, Sweep, SweepOptions, Task,
+};
 
 pub use crate::numeric::short;
 pub use axes::{ground, is_amplitude, label, over, part, start};

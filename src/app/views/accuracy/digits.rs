@@ -5,8 +5,10 @@ use eframe::egui::{self, Grid, RichText, Ui};
 use crate::app::ui::style::Style;
 use crate::app::ui::widgets::tell;
 use crate::output::{Chart, cost_panel};
-use crate::study::Table;
-use crate::study::accuracy::scene::{AtTolerance, Tolerances, duration, length_mm, moment, small_length};
+use interwell_studies::study::Table;
+use interwell_studies::study::accuracy::scene::{
+    AtTolerance, Tolerances, duration, length_mm, moment, small_length,
+};
 
 use super::super::ViewContext;
 use super::super::pane::fresh_pane_ui;

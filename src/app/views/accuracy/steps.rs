@@ -5,9 +5,9 @@ use eframe::egui::{self, ComboBox, TextStyle, Ui, UiBuilder};
 use crate::app::session::accuracy::Accuracy;
 use crate::output::{Chart, steps_panel};
 use crate::scene::read_number;
-use crate::study::Table;
-use crate::study::accuracy::methods::Scheme;
-use crate::study::accuracy::scene::{StepSize, duration, step_name};
+use interwell_studies::study::Table;
+use interwell_studies::study::accuracy::methods::Scheme;
+use interwell_studies::study::accuracy::scene::{StepSize, duration, step_name};
 
 use super::super::pane::pane_ui;
 use super::super::{View, ViewContext};

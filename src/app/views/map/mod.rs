@@ -16,7 +16,7 @@ use crate::app::words::numbers::{UNKNOWN, three};
 use crate::app::words::status::speed;
 use crate::dynamics::{Regime, Summary};
 use crate::output::{Cell as DrawnCell, Marks, PlotAxis, RMS, View as MapShape, suited_unit, words_of};
-use crate::study::{Read, SummaryField, label_and_unit};
+use interwell_studies::study::{Read, SummaryField, label_and_unit};
 
 use super::labels::haloed;
 use super::pane::{Pane, kept_pane_ui};

@@ -9,7 +9,7 @@ use crate::app::ui::widgets::{choices_ui, tell};
 use crate::app::words::columns::{COLUMNS, title};
 use crate::output::words_of;
 use crate::scene::{Start, SweepAxis};
-use crate::study::SummaryField;
+use interwell_studies::study::SummaryField;
 
 use super::super::axes::{field_ui, range_id, range_row_ui};
 use super::super::memory::MapLook;

@@ -2,7 +2,7 @@
 
 use crate::dynamics::{First, Firsts, Model, Outcome, Place, Regime, STANDARD_GRAVITY, Summary};
 use crate::scene::{Excitation, Scene, Stops};
-use crate::study::Thresholds;
+use interwell_studies::study::Thresholds;
 
 use super::super::numbers::{as_set, between, grams, length_beside, limit_mm, power, seconds, speed, times};
 use super::super::wells::wells_between;

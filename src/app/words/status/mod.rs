@@ -8,7 +8,7 @@ mod driven;
 mod remedy;
 
 use crate::dynamics::{Model, Outcome, Phase, Sample};
-use crate::study::{Standing, ended_remedy, standing};
+use interwell_studies::study::{Standing, ended_remedy, standing};
 
 pub use super::kind::Kind;
 pub use super::numbers::{as_set, mm_beside, seconds, speed};

@@ -2,7 +2,7 @@
 
 use crate::dynamics::{Regime, STANDARD_GRAVITY, Summary};
 use crate::scene::{Scene, Stops};
-use crate::study::{Found, Thresholds};
+use interwell_studies::study::{Found, Thresholds};
 
 use super::super::capital;
 use super::super::numbers::{grams, grams_apart, grams_up};

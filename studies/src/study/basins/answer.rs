@@ -42,6 +42,9 @@ impl Shares {
 }
 
 /// One attractor.
+///
+/// It is a motion that settles, at rest or periodic, or an irregular motion; two motions that mirror each
+/// other are two attractors.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Attractor {
     /// The regime of the motion.
@@ -82,6 +85,8 @@ impl Attractor {
 }
 
 /// Results of a map of basins so far.
+///
+/// Starts that reach no attractor, or whose run ends early, have no number, and are counted.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Answer {
     /// The attractors in the order of their numbers, which begin at 1.

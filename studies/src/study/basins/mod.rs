@@ -31,7 +31,7 @@ use crate::scene::{Damping, Excitation, Fault, Scene, Start, Stops};
 use crate::study::{Levels, STRIDES};
 pub use answer::{Answer, Attractor, Shares};
 use rounds::{PATIENCE, Rounds};
-pub use starts::{EvenRange, MAX_STARTS, Starts, StartsError};
+pub use starts::{EvenRange, Starts, StartsError};
 use stroboscopic::Effort;
 
 /// Why a scene has no basins.

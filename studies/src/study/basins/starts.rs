@@ -25,6 +25,8 @@ pub enum StartsError {
 }
 
 /// The values of one axis of a grid: `count` even values from `from` to `to` inclusive.
+///
+/// Both ends are values themselves: -5 to 5 with a count of 101 has steps of 0.1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EvenRange {
     /// First value, in mm or m/s.

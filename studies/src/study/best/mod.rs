@@ -85,7 +85,7 @@ pub struct Variation {
 /// A search for the best design.
 #[derive(Debug, Clone)]
 pub struct BestQuestion {
-    /// The fields of the design, 1 to [`MOST_FIELDS`].
+    /// The fields of the design, 1 to 4.
     pub over: Vec<DesignRange>,
     /// The result whose mean over the environments is to be largest; a number or a count.
     pub maximise: &'static SummaryField,
@@ -108,6 +108,8 @@ pub const MOST_FIELDS: usize = 4;
 pub const INTERVALS: [usize; MOST_FIELDS] = [256, 32, 12, 8];
 
 /// A design and its results.
+///
+/// The values of the fields are in their units and in the order of the question's fields.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Optimum {
     /// The fields' values.
@@ -140,6 +142,10 @@ pub struct Spread {
 }
 
 /// The best design.
+///
+/// Results jump where the motion changes its kind, so that the best place may stand at the edge of a jump:
+/// [`margins`](Self::margins) say how far that is, in the units of the fields, and
+/// [`stepped_back`](Self::stepped_back) which design beside it loses less.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct BestDesign {
     /// The place.
@@ -157,7 +163,7 @@ pub struct BestDesign {
     pub stepped_back: Option<(Optimum, Spread)>,
     /// Whether all designs that were tried have the same value.
     pub flat: bool,
-    /// The designs that were tried, in order: first those of the scan, [`scan_places`] of them, then those
+    /// The designs that were tried, in order: first those of the scan, `scan_places` of them, then those
     /// nearer to the best ones and those beside the optimum. Samples of the fields that vary are left out.
     pub tried: Vec<Tried>,
 }

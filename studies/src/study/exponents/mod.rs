@@ -120,11 +120,6 @@ pub fn drive_fault(model: &Model, scene: &Scene) -> Option<Fault> {
     if suits { None } else { without_a_period(model, scene, "an exponent") }
 }
 
-/// The exponents of one motion as a table of one row.
-pub fn exponents_row(found: &Exponents) -> Table {
-    with_columns(Table::new(), &[Some(*found)], found.third.is_some())
-}
-
 fn with_columns(mut table: Table, found: &[Found], has_circuit: bool) -> Table {
     let number = |of: fn(&Exponents) -> f64| move |cell: &Found| cell.as_ref().map(of);
     let estimate =
@@ -144,6 +139,9 @@ fn with_columns(mut table: Table, found: &[Found], has_circuit: bool) -> Table {
 }
 
 /// How exponents are computed.
+///
+/// More periods reduce the standard errors of a motion without a period as one over the square root of their
+/// number, and cost in proportion; a motion that repeats needs none.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ExponentOptions {
     /// Number of forcing periods over which exponents of a motion without a period are averaged, at least 1.
@@ -184,6 +182,10 @@ impl Estimate {
 }
 
 /// The exponents of a motion.
+///
+/// [`table`](Self::table) has them as one row, [`describe`](Self::describe) says how they were computed. A
+/// positive first exponent that [is clearly above 0](Self::is_irregular) is what makes a motion chaotic: two
+/// motions that begin side by side then part by exp(first t).
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Exponents {
@@ -222,6 +224,32 @@ impl Exponents {
         let third = model.has_electrical_state().then(|| Estimate::exact(nothing));
         let exact_sum = model.compliant().is_none().then_some(nothing);
         Self { first, second, third, sum: nothing, exact_sum, period, span }
+    }
+
+    /// The exponents as a table of one row.
+    pub fn table(&self) -> Table {
+        with_columns(Table::new(), &[Some(*self)], self.third.is_some())
+    }
+
+    /// How they were computed and what they say, in a sentence; `forced` is whether the drive has a period.
+    pub fn describe(&self, forced: bool) -> String {
+        let (unit, units) = match forced {
+            true => ("forcing period", "forcing periods"),
+            false => ("period of small oscillations", "periods of small oscillations"),
+        };
+        let multipliers = "the exponents are those of its multipliers";
+        let over = format!("averages over {} {units}", self.span.0);
+        match self.period {
+            _ if self.rests() => "the mass rests on a stop, after which nothing is left of a change: all \
+                                  exponents are minus infinity, written -inf"
+                .to_owned(),
+            Some(1) => format!("the motion repeats in every {unit}; {multipliers}"),
+            Some(n) => format!("the motion repeats after {n} {units}; {multipliers}"),
+            None if self.is_irregular() => {
+                format!("{over}, in which the motion is irregular: the first exponent is clearly above 0")
+            }
+            None => format!("{over}, in which no growth tells that the motion is irregular"),
+        }
     }
 
     fn estimates(&self) -> [Option<Estimate>; 3] {

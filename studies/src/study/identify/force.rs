@@ -9,7 +9,7 @@ use crate::study::{Table, Values};
 /// Number of points of a curve by default, if the samples are enough for them.
 pub const FORCE_POINTS: usize = 101;
 /// Least number of points, those of a cubic.
-const LEAST_POINTS: usize = 4;
+pub(super) const LEAST_POINTS: usize = 4;
 
 /// Reversal of the position that ends a pull in one direction, as a share of the range.
 const TURN: f64 = 0.1;
@@ -92,8 +92,10 @@ pub fn force(x: &[f64], force: &[f64], points: Option<usize>) -> Result<Identifi
         Some(points) => curve(points.max(LEAST_POINTS)),
         None => (LEAST_POINTS..=FORCE_POINTS).rev().find_map(curve),
     };
-    let (curve, rests) = found
-        .ok_or_else(|| Unidentified::FewSamples(x.len(), points.unwrap_or_default().max(LEAST_POINTS)))?;
+    let (curve, rests) = found.ok_or_else(|| {
+        let fewer = points.filter(|_| curve(LEAST_POINTS).is_some());
+        Unidentified::FewSamples(x.len(), fewer.unwrap_or(LEAST_POINTS))
+    })?;
     let forces = |pull: &Pull, direction: usize| -> Values {
         match pull.is_empty() {
             true => curve.positions.iter().map(|_| f64::NAN).collect(),

@@ -18,6 +18,8 @@ use peaks::MIN_SAMPLES;
 use restitution::ENOUGH;
 
 /// A number with its interval.
+///
+/// The interval holds if the errors of the samples are independent of each other.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Identity {
     /// Its name, with the unit in it.
@@ -52,6 +54,9 @@ fn with_interval<R>(table: Table, names: [&str; 3], rows: &[R], of: impl Fn(&R) 
 }
 
 /// The quantities identified from a record.
+///
+/// [`summary`](Self::summary) has the numbers that a scene takes, such as `damping_ratio`, each with its
+/// interval, and [`remarks`](Self::remarks) what speaks against them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Identified {
     /// The rows: over amplitude, impact or position.
@@ -155,7 +160,13 @@ pub enum Unidentified {
     #[error("the position does not change")]
     Still,
     /// Too few samples for the points of a curve.
-    #[error("{0} samples are too few for {1} points of a curve: take fewer by --points")]
+    #[error(
+        "{0} samples are too few for {1} points of a curve: {remedy}",
+        remedy = match *.1 > force::LEAST_POINTS {
+            true => "take fewer by --points",
+            false => "it has at least that many, each with samples of every direction beside it: record more",
+        }
+    )]
     FewSamples(usize, usize),
 }
 

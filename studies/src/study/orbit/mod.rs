@@ -54,6 +54,10 @@ const SAME: f64 = 1e-6;
 const TOLERANCE: f64 = 1e-14;
 
 /// A periodic orbit.
+///
+/// It is the answer of the question `Orbit`, and a point of a branch. Its state is in m and m/s, that of a
+/// circuit in A or V. [`multipliers`](Self::multipliers) are the eigenvalues of its Jacobian: it is stable if
+/// all lie within the unit circle.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Orbit {
@@ -355,6 +359,9 @@ words! {
 }
 
 /// A branch: its orbits in order, each with the value of the field and an event, if any.
+///
+/// It is the answer of the question `Branch`. Values are in the unit of the field; around a fold they turn
+/// back.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Branch {

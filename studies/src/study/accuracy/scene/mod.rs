@@ -1,8 +1,8 @@
 //! Accuracy of the run of one scene, and its cost.
 //!
 //! Three questions, each a function of a model: the error of its run and the time up to which its path can be
-//! trusted ([`trust`]); the cost of every digit ([`tolerances`]); and the effect of a fixed step, as used in
-//! games and small applets ([`step_size`]). Nothing here needs an exact answer: the error is the difference
+//! trusted (`trust`); the cost of every digit (`tolerances`); and the effect of a fixed step, as used in
+//! games and small applets (`step_size`). Nothing here needs an exact answer: the error is the difference
 //! from a far more accurate run.
 
 mod step_size;

@@ -51,6 +51,8 @@ words! {
 }
 
 /// A locus over two fields: its orbits in order, each with both values and an event, if any.
+///
+/// It is a part of the answer of the question `Locus`. Values are in the units of the fields.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Locus {
@@ -85,6 +87,8 @@ pub fn loci_table(loci: &[Locus]) -> Table {
 }
 
 /// A field, and the value from which it is followed towards another.
+///
+/// The values are in the unit of the field, which is given by its dotted path.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FieldRange {
     /// The field.
