@@ -41,7 +41,7 @@ pub fn curve_chart(table: &Table, mechanism: &Mechanism, stops: (f64, f64), rang
     let axes = (across.clone(), up);
     let upper = force_panel(mechanism, axes, force, stops_mm, ("", of_force.clone()));
     let energy = |mm: f64| (curve.potential(mm * 1e-3) - zero) * potential;
-    let mut lower = curve_panel((across.clone(), below), landscape, stops_mm, ("", of_potential), &energy);
+    let mut lower = curve_panel((across.clone(), below), landscape, stops_mm, ("", of_potential), energy);
     lower.equilibria(landscape, |equilibrium| energy(equilibrium.x * 1e3));
     let mut words = subtitle(landscape);
     words.extend(wall(&of_force, &upper, force));
