@@ -109,7 +109,7 @@ pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let key = (Identity(Arc::clone(&model)), [span.low, span.high, low, high], other.clone(), style);
     let pane = kept_pane_ui(ui, &style, Place::in_line(ui, area, Sense::DRAG, (0.0, 0.0)), key, || {
         let across = PlotAxis::between(span.low * 1e3, span.high * 1e3, DISPLACEMENT);
-        let up = PlotAxis::between(low * per_joule, high * per_joule, &axis_name(bottom(&model).1, unit));
+        let up = PlotAxis::between(low * per_joule, high * per_joule, &axis_name("energy", unit));
         still(&level, span, (across, up), &other)
     });
     let Some(frame) = pane.frame(0) else { return };

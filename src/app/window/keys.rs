@@ -19,9 +19,11 @@ const GROUPS: [&[&str]; 2] = [&["Time", "Hands", "Lesson"], &["Views", "Scene"]]
 /// Width in points from which the two columns are side by side.
 const SIDE_BY_SIDE: f32 = 880.0;
 /// Width in points of the list, of its column of keys, and between two columns of commands.
-const LIST: f32 = 1140.0;
+const LIST: f32 = 1220.0;
 const KEYS: f32 = 150.0;
 const BETWEEN: f32 = 24.0;
+/// Width in points that what a key does has at least.
+const LEAST_TEXT: f32 = 60.0;
 
 /// The commands of the pressed keys; none while text is edited. To be called only while no dialog is open.
 pub fn pressed(ctx: &Context, filled: bool) -> Vec<Command> {
@@ -90,7 +92,7 @@ const ROW: f32 = 20.0;
 /// Rows of `width` points under a heading; a long text is wrapped.
 fn group_ui(ui: &mut Ui, group: &str, projector: bool, width: f32) {
     ui.label(RichText::new(group).heading());
-    ui.spacing_mut().interact_size.y = ROW;
+    (ui.spacing_mut().interact_size.y, ui.spacing_mut().item_spacing.y) = (ROW, 2.0);
     let left = Layout::left_to_right(Align::Center);
     for (keys, does) in rows(ui.ctx(), group, projector) {
         ui.horizontal_top(|ui| {
@@ -98,7 +100,7 @@ fn group_ui(ui: &mut Ui, group: &str, projector: bool, width: f32) {
                 ui.set_min_width(KEYS);
                 ui.label(keys)
             });
-            let text = ui.available_width().min(width - KEYS);
+            let text = ui.available_width().min(width - KEYS).max(LEAST_TEXT);
             ui.allocate_ui(vec2(text, ROW), |ui| ui.add(Label::new(does).wrap()));
         });
     }

@@ -142,7 +142,7 @@ fn up_and_down() {
     let faster = walk(&format!("--set excitation.frequency_hz=6 {settings}"), "0.5:1.3:0.05");
     let [up, down] = least_that_cross(&faster);
     assert_eq!((up, down), (1.05, 0.7));
-    told.says("in its well up to 1.0 g and crosses at 1.05 g");
+    told.says("in its well up to 1.0 g and crosses from 1.05 g on");
     told.says("It crosses down to 0.7 g, and no longer at 0.65 g. ");
     told.says("from 0.7 to 1.0 g both motions can last");
     told.says("it begins to cross at 1.05 g, on the way down it ends at 0.65 g");
