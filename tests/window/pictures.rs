@@ -96,12 +96,12 @@ fn wall(harness: &Harness<'static, Window>, name: &str) -> Rect {
 #[test]
 fn the_well_has_an_axis_of_energy_and_the_height_of_its_barrier() {
     let mut harness = showing("first-look", WIDE, &[View::Well]);
-    let [before, _] = axes(&harness, "potential above the well (mJ)");
+    let [before, _] = axes(&harness, "energy (mJ)");
     assert!(before.len() > 2, "{before:?}");
     assert!(is_painted(&harness, "barrier 0.92 mJ"), "{:?}", painted(&harness));
     // its scale holds while the preload moves, and afterwards
     set(&mut harness, "mechanism.preload_mm", 1.6);
-    let [after, _] = axes(&harness, "potential above the well (mJ)");
+    let [after, _] = axes(&harness, "energy (mJ)");
     assert_eq!(before, after);
     assert!(!is_painted(&harness, "barrier 0.92 mJ") && is_painted(&harness, "barrier 0."));
     // energy is counted from the bottom of the deepest well
@@ -109,7 +109,7 @@ fn the_well_has_an_axis_of_energy_and_the_height_of_its_barrier() {
     assert!(is_painted(&harness, &format!("barrier {:.2} mJ", height * 1e3)), "{height}");
     // another push has another scale
     set(&mut harness, "excitation.amplitude_g", 0.5);
-    assert_ne!(axes(&harness, "potential above the well (mJ)")[0], before);
+    assert_ne!(axes(&harness, "energy (mJ)")[0], before);
 }
 
 #[test]
@@ -171,9 +171,7 @@ fn axes_fit_what_they_show() {
         let (count, largest) = ends(view, name);
         assert!(count > 2 && (1.5..2.5).contains(&largest), "{}: {count} {largest}", view.name());
     }
-    for (view, name) in
-        [(View::Well, "potential above the well (mJ)"), (View::ForceCurve, "holding force (N)")]
-    {
+    for (view, name) in [(View::Well, "energy (mJ)"), (View::ForceCurve, "holding force (N)")] {
         let (count, largest) = ends(view, name);
         assert!(count > 2 && (6.0..9.0).contains(&largest), "{}: {count} {largest}", view.name());
     }
@@ -182,7 +180,7 @@ fn axes_fit_what_they_show() {
 #[test]
 fn every_axis_has_three_numbers_and_its_unit_in_its_name() {
     let names = [
-        (View::Well, ["potential above the well (mJ)", "mJ"]),
+        (View::Well, ["energy (mJ)", "mJ"]),
         (View::ForceCurve, ["holding force (N)", "N"]),
         (View::PhasePortrait, ["velocity (mm/s)", "mm/s"]),
         (View::Displacement, ["displacement (mm)", "mm"]),
@@ -469,7 +467,7 @@ fn numbers_of_travel_limits_stand_outside() {
         set(&mut harness, "stops.travel_limit_mm", limit);
         let all = painted(&harness);
         let written = format!("{limit:.2}");
-        let [_, below] = axes(&harness, "potential above the well (mJ)");
+        let [_, below] = axes(&harness, "energy (mJ)");
         // the field of the slider stands to the left of the picture
         let inside = |x: &f32| *x > below[0].1;
         let at = |text: &str| {
