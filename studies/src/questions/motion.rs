@@ -152,7 +152,8 @@ pub fn may_have_circuit(document: &Document, axes: &[Axis]) -> bool {
 ///
 /// // The base moves with one sine of 1.5 g at 3 Hz.
 /// let question = Spectrum { of: Signal::BaseAcceleration, ..Spectrum::default() };
-/// let table = question.run(&Simulation::preset("nominal-cubic")?, &Progress::none())?.table();
+/// let answer = question.run(&Simulation::preset("nominal-cubic")?, &Progress::none())?;
+/// let table = answer.table();
 /// let frequencies = table.numbers("frequency_hz").unwrap();
 /// let line = frequencies.iter().position(|frequency| (frequency - 3.0).abs() < 1e-9).unwrap();
 /// assert!((table.numbers("amplitude").unwrap()[line] - 1.5 * 9.806_65).abs() < 1e-9);

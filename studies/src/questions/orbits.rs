@@ -125,8 +125,8 @@ impl Branch {
     /// ```
     /// use interwell_studies::questions::{Branch, Progress, Simulation};
     ///
-    /// // A period is doubled near 0.0557 g: the branch of twice the period begins there.
-    /// let question = Branch::over("excitation.amplitude_g", 0.056, 0.0555);
+    /// // A period is doubled near 0.05503 g: the branch of twice the period begins there.
+    /// let question = Branch::over("excitation.amplitude_g", 0.056, 0.0548);
     /// let simulation = Simulation::preset("impact-oscillator")?;
     /// let answer = question.with_switches(1, &simulation, &Progress::none())?;
     /// assert!(answer.branches.len() > 1);
