@@ -1,6 +1,7 @@
 //! Pictures of sweeps: rest, missing values and categories, in all of them by the same words.
 
 use interwell::output::{Cut, Marks, NoPicture, Overlay, Ranges, SweepPicture, View, sweep_chart};
+use interwell::scene::Scene;
 use interwell_studies::study::{Grid, Table};
 
 use super::*;
@@ -12,6 +13,21 @@ const LEAVES: &str = "sweep paper-table --set stops=None --set run.settle_s=None
 
 fn has(texts: &[String], words: &str) -> bool {
     texts.iter().any(|text| text == words)
+}
+
+/// The picture of the RMS velocity of a sweep of a scene.
+fn picture<'a>(rows: &'a Table, grid: &'a Grid, scene: &'a Scene, view: View) -> SweepPicture<'a> {
+    SweepPicture {
+        rows,
+        grid,
+        scene,
+        until_settled: None,
+        quantity: "rms_velocity_m_per_s",
+        overlay: Overlay::default(),
+        view,
+        ranges: Ranges::default(),
+        draws: "",
+    }
 }
 
 #[test]
@@ -89,17 +105,7 @@ fn neighbouring_values_that_are_missing_are_hatched_spans() {
     let one = table(&rows[..4]);
     let both = table(&rows).each("direction", &rows, |(_, way)| *way);
     for (rows, count) in [(&one, 2), (&both, 4)] {
-        let picture = SweepPicture {
-            rows,
-            grid: &grid,
-            scene: &document.scene,
-            until_settled: None,
-            quantity: "rms_velocity_m_per_s",
-            overlay: Overlay::default(),
-            view: View::default(),
-            ranges: Ranges::default(),
-            draws: "",
-        };
+        let picture = picture(rows, &grid, &document.scene, View::default());
         let chart = sweep_chart(&picture).unwrap();
         let layer = chart.panels().flat_map(|panel| &panel.layers).find(|layer| layer.name == "ended early");
         let Marks::Spans(spans) = &layer.unwrap().marks else { panic!("{layer:?}") };
@@ -117,17 +123,8 @@ fn a_cut_and_rows_of_another_sweep_are_faults() {
     let of_limit = of_limit.each("rms_velocity_m_per_s", &rows, |row| row.1);
     let of_both = of_limit.clone().each("amplitude_g", &rows, |row| row.1);
     let fault = |rows, column: &str| {
-        let picture = SweepPicture {
-            rows,
-            grid: &grid,
-            scene: &document.scene,
-            until_settled: None,
-            quantity: "rms_velocity_m_per_s",
-            overlay: Overlay::default(),
-            view: View::Cuts(vec![Cut { column: column.to_owned(), value: 1.0 }]),
-            ranges: Ranges::default(),
-            draws: "",
-        };
+        let view = View::Cuts(vec![Cut { column: column.to_owned(), value: 1.0 }]);
+        let picture = picture(rows, &grid, &document.scene, view);
         sweep_chart(&picture).err()
     };
     assert_eq!(fault(&of_both, "amplitude_g"), None);
