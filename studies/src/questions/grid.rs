@@ -289,7 +289,7 @@ impl Default for Threshold {
 }
 
 /// Why there is no Melnikov's threshold of a field.
-const NO_MELNIKOV: &str = "Melnikov's threshold (--melnikov) is an amplitude of one sine: take a Sine, \
+const NO_MELNIKOV: &str = "Melnikov's threshold is an amplitude of one sine: take a Sine, \
                            Cosine or Force, and search its amplitude, such as excitation.amplitude_g";
 
 /// The field and range of the default question.
