@@ -332,7 +332,11 @@ fn the_tools_of_a_map_are_whole_and_its_quantities_are_in_groups() {
             true => &["From above", "Surface", "Cuts", "Range", "Trail", "Recompute"][..],
             false => &["map of RMS velocity", "Options"],
         };
-        let role = |name: &str| if name.starts_with("map") { Role::ComboBox } else { Role::Button };
+        let role = |name: &str| match name {
+            "Cuts" => Role::CheckBox,
+            name if name.starts_with("map") => Role::ComboBox,
+            _ => Role::Button,
+        };
         let names: Vec<(&str, Role)> = names.iter().map(|name| (*name, role(name))).collect();
         let places = names.iter().map(|tool| harness.get_by_role_and_label(tool.1, tool.0).rect());
         let places: Vec<Rect> = places.collect();

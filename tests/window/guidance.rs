@@ -84,7 +84,7 @@ fn the_hint_leads_on_and_ends() {
         .session
         .edit_once(|scene| scene.stops = Stops::Rigid { travel_limit_mm: 1.8, restitution: 0.36 });
     harness.run_steps(3);
-    harness.get_by_label("What stops do, and why:");
+    harness.get_by_label("What stops do:");
     harness.get_by_label("Dismiss").click();
     harness.run_steps(3);
     assert!(harness.query_by_label("Dismiss").is_none());

@@ -94,7 +94,7 @@ fn the_lesson_says_what_the_scene_does() {
     // wherever the stops stand now, it is told what holds for all of them
     for limit in [1.9, 4.0, 6.875, 12.0] {
         set(&mut harness, "stops.travel_limit_mm", limit);
-        harness.get_by_label("What stops do, and why:");
+        harness.get_by_label("What stops do:");
         let landscape = &harness.state().session.model().mechanism().landscape;
         let well = landscape.right_stable().unwrap().x;
         let hardest =
@@ -253,7 +253,7 @@ fn what_stands_in_rows_is_whole() {
     stops_on(&mut harness);
     harness.run_steps(60);
     set(&mut harness, "stops.travel_limit_mm", 2.25);
-    harness.get_by_label("What stops do, and why:");
+    harness.get_by_label("What stops do:");
     harness.get_by_label("shaking");
     let last = harness.get_by_label("crosses from").rect();
     assert!(last.bottom() < WIDE[1] - 60.0, "{last:?}");

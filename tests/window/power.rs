@@ -284,11 +284,12 @@ fn the_best_stops_are_found_and_taken() {
     let limit = session.best.limit_mm().unwrap();
     // outward of 2 mm the mass rests
     assert!((1.9..2.2).contains(&limit), "{limit}");
-    let words = session.best.words();
-    assert!(words.starts_with("Best stops: ±2."), "{words}");
-    for part in ["the RMS velocity is largest", "until its motion repeats", "further in and", "further out"] {
-        assert!(words.contains(part), "{part}: {words}");
+    let guide = session.best.guide();
+    assert!(guide.heading.starts_with("Best stops: ±2."), "{guide:?}");
+    for part in ["RMS velocity 5", "further in and", "further out."] {
+        assert!(guide.text.contains(part), "{part}: {guide:?}");
     }
+    assert!(guide.more.contains("until its motion repeats"), "{guide:?}");
     assert!(!session.is_at_best_stops());
     session.go_to_best_stops();
     assert!(session.is_at_best_stops() && number(&session, LIMIT) == Some(limit));
@@ -311,7 +312,7 @@ fn the_best_stops_are_found_and_taken() {
 fn a_search_is_ended_by_a_change_and_by_a_hand() {
     let mut session = settled("paper", &["run.duration_s=2000", "run.settle_s=1000", "run.recurrence=false"]);
     session.find_best_stops();
-    assert!(session.best.is_running() && session.best.words().starts_with("Looking for the best stops"));
+    assert!(session.best.is_running() && session.best.guide().text.starts_with("Looking for the best stops"));
     session.edit_once(|scene| scene.mass_g = 16.0);
     session.poll();
     session.follow_best();
@@ -326,8 +327,8 @@ fn with_a_load_the_power_is_made_large() {
     let mut session = settled("harvester", &["run.duration_s=4", "run.settle_s=2"]);
     session.find_best_stops();
     assert!(session.wait_for_best_stops(LONG));
-    let words = session.best.words();
-    assert!(words.contains("where the mean power into the load is largest, 0.4"), "{words}");
+    let words = session.best.guide().text;
+    assert!(words.starts_with("Mean power into the load 0.4"), "{words}");
     assert!((1.85..2.1).contains(&session.best.limit_mm().unwrap()), "{words}");
 }
 
@@ -337,13 +338,15 @@ fn what_has_no_best_stops_says_so() {
     let mut session = short(&["excitation=None"]);
     session.find_best_stops();
     assert!(session.wait_for_best_stops(LONG));
-    assert!(session.best.words().starts_with("No stops are best: the RMS velocity is 0.0 mm/s"));
+    let guide = session.best.guide();
+    assert_eq!(guide.heading, "No stops are best:");
+    assert!(guide.text.starts_with("the RMS velocity is 0.0 mm/s wherever they stand"), "{guide:?}");
     assert!(session.best.limit_mm().is_none() && !session.is_at_best_stops());
     session.switch_stops(false);
     assert!(!session.is_at_best_stops());
     let mut session = settled("uneven-stops", &[]);
     session.find_best_stops();
-    assert!(!session.best.is_running() && session.best.words().contains("both stand equally far out"));
+    assert!(!session.best.is_running() && session.best.guide().text.contains("both stand equally far out"));
     session.edit_once(|scene| scene.stops = Stops::Rigid { travel_limit_mm: 1.5, restitution: 0.36 });
     session.poll();
     session.follow_best();

@@ -1,10 +1,11 @@
 //! Hint line of the first minute: what to try next, and what the last try showed.
 
-use eframe::egui::{Align, Color32, FontFamily, Layout, RichText, Role, Ui, UiBuilder, vec2};
+use eframe::egui::{Align, FontFamily, Layout, RichText, Role, Ui, UiBuilder, vec2};
 
 use crate::app::session::Session;
-use crate::app::ui::style::{BODY, strong_family};
+use crate::app::ui::style::{BODY, Style, strong_family};
 use crate::app::ui::widgets::{fitting, tell};
+use crate::app::words::Guide;
 use crate::app::words::numbers::unbroken;
 use crate::app::words::status::{as_set, in_unit};
 use crate::dynamics::EventKind;
@@ -13,8 +14,8 @@ use crate::dynamics::EventKind;
 const TRIED_MM: f64 = 0.3;
 
 /// How stops between two wells act.
-const MIDDLE: &str = "a stop near the middle holds the mass high on the barrier: a weaker push carries it \
-                      over, but it travels less.";
+const MIDDLE: &str =
+    "near the middle they hold the mass high on the barrier: a weaker push carries it over, but less far.";
 
 /// What the line asks the user to try.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -80,9 +81,9 @@ impl Hint {
         session.amplitude_g().is_some_and(|g| g.abs() <= self.opened_g.abs() * (1.0 + 1e-9))
     }
 
-    /// Heading and text of the line: what happened, and what to try. Statements about the motion concern what
-    /// the present scene settles to; while that is not known, there are none.
-    pub fn text(&self, session: &Session) -> (&'static str, String) {
+    /// What the line says: what happened, and what to try. Statements about the motion concern what the present
+    /// scene settles to; while that is not known, there are none.
+    pub fn guide(&self, session: &Session) -> Guide {
         let opened = in_unit(session.scene(), as_set, self.opened_g);
         let crosses = session.crosses();
         let (as_opened, fair) = (self.is_as_opened(session), self.is_fair_comparison(session));
@@ -100,7 +101,7 @@ impl Hint {
                     _ => ("Now with stops.", "Go"),
                 };
                 let then = "switch the stops on: what is gained, what does it cost?";
-                return (first, format!("{now} back to {opened} and {then}"));
+                return Guide::new(first, format!("{now} back to {opened} and {then}"));
             }
             (Stage::Compare | Stage::Move { .. }, false, true, _) => {
                 ("Now with stops.", "Switch them on at this shaking: does it cross, and what does it cost?")
@@ -108,7 +109,7 @@ impl Hint {
             (Stage::Compare | Stage::Move { .. }, true, false, _) => {
                 let still = if crosses == Some(true) { " still" } else { "" };
                 let then = format!("Go back to {opened} and leave the stops on: does it{still} cross?");
-                return ("Now with less shaking.", then);
+                return Guide::new("Now with less shaking.", then);
             }
             (Stage::Compare, true, true, Some(true)) => ("Between these stops it will cross.", wait),
             (Stage::Compare, true, true, Some(false)) => {
@@ -124,12 +125,14 @@ impl Hint {
                     Some(_) => "Between these stops it crosses.",
                     None => "Now with stops.",
                 };
-                return (first, format!("Compare before and now. {outward}"));
+                return Guide::new(first, format!("Compare before and now. {outward}"));
             }
-            (Stage::Answer, ..) => return ("What stops do, and why:", answer(session)),
+            (Stage::Answer, ..) => {
+                return Guide { more: particulars(session), ..Guide::new("What stops do:", MIDDLE) };
+            }
             (Stage::Done, ..) => ("", ""),
         };
-        (first, then.to_owned())
+        Guide::new(first, then)
     }
 
     /// Whether only the shaking and the stops differ from the scene as it was opened.
@@ -147,20 +150,21 @@ impl Hint {
     }
 }
 
-/// Draws the guide line: a heading and a text in `color` at the left, in rows that fit, and at the right
-/// `buttons`, the last one first. Returns the answer of the buttons.
-pub fn guide_ui<R>(
-    ui: &mut Ui,
-    (heading, text, color): (&str, &str, Color32),
-    buttons: impl FnOnce(&mut Ui) -> R,
-) -> R {
+/// Draws the guide line at the left, in rows that fit, and at the right `buttons`, the last one first. Returns
+/// the answer of the buttons.
+pub fn guide_ui<R>(ui: &mut Ui, style: &Style, guide: &Guide, buttons: impl FnOnce(&mut Ui) -> R) -> R {
     let right_to_left = Layout::right_to_left(Align::Center);
     let row = ui.allocate_ui_with_layout(ui.available_size(), right_to_left, |ui| {
         let answer = buttons(ui);
         let room = ui.available_rect_before_wrap();
         let (strong, usual) = (strong_family(), FontFamily::Proportional);
-        let texts = [(heading, strong), ("  ", usual.clone()), (text, usual)];
-        let (size, taken) = fitting(ui, &texts, room.size(), BODY);
+        let whole = format!("{} {}", guide.text, guide.more);
+        let texts =
+            |text| [(guide.heading.as_str(), strong.clone()), ("  ", usual.clone()), (text, usual.clone())];
+        let one_row = vec2(room.width(), 0.0);
+        let has_room = fitting(ui, &texts(&whole), one_row, BODY).0 == BODY;
+        let text = if has_room { whole.trim_end() } else { &guide.text };
+        let (size, taken) = fitting(ui, &texts(text), room.size(), BODY);
         let top = ui.max_rect().center().y - 0.5 * taken;
         // a first row is as high as its place
         let place = room.with_min_y(top).with_max_y(top + size);
@@ -168,25 +172,27 @@ pub fn guide_ui<R>(
         ui.spacing_mut().interact_size.y = 0.0;
         let mut ui = ui.new_child(UiBuilder::new().max_rect(place).layout(rows));
         ui.spacing_mut().item_spacing = vec2(6.0, 0.0);
-        if !heading.is_empty() {
-            ui.label(RichText::new(heading).heading().size(size));
+        if !guide.heading.is_empty() {
+            ui.label(RichText::new(&guide.heading).heading().size(size));
         }
-        tell(&ui.label(RichText::new(unbroken(text)).size(size).color(color)), Role::Label, text);
+        let color = if guide.is_faint { style.faint() } else { style.ink() };
+        let label = ui.label(RichText::new(unbroken(text)).size(size).color(color));
+        // a screen reader says all of it
+        tell(&label, Role::Label, whole.trim());
+        if !has_room && !guide.more.is_empty() {
+            label.on_hover_text(&guide.more);
+        }
         answer
     });
     row.inner
 }
 
-/// How stops between these wells act, for any travel limit.
-fn answer(session: &Session) -> String {
-    let mut text = MIDDLE.to_owned();
-    if let Some(mm) = hardest_mm(session) {
-        text += &format!(" At ±{mm:.1} mm it presses hardest.");
-    }
-    if session.crosses() == Some(false) {
-        text += " Here this push does not carry it over.";
-    }
-    text
+/// What stops do in the present scene, for any travel limit.
+fn particulars(session: &Session) -> String {
+    let hardest = hardest_mm(session).map(|mm| format!("At \u{b1}{mm:.1} mm it presses hardest."));
+    let weak =
+        (session.crosses() == Some(false)).then(|| "Here this push does not carry it over.".to_owned());
+    hardest.into_iter().chain(weak).collect::<Vec<_>>().join(" ")
 }
 
 /// Distance in mm from the middle where the force outwards is largest; `None` if the two sides differ.

@@ -229,7 +229,9 @@ fn below_ui(ui: &mut Ui, lesson: &mut OpenLesson, session: &Session, style: &Sty
         }
         Step::Do { .. } => {
             let how = judged_by(lesson.lesson(), session.scene().start);
-            let (state, color) = match lesson.task(session) {
+            let task = lesson.task(session);
+            let is_met = matches!(task, TaskState::Met);
+            let (state, color) = match task {
                 TaskState::Met => ("Done.".to_owned(), style.accent()),
                 TaskState::Unjudged(why) => (format!("It cannot be judged: {why}"), style.ink()),
                 TaskState::Moving => (format!("Will be judged once you let go. {how}"), style.faint()),
@@ -237,7 +239,12 @@ fn below_ui(ui: &mut Ui, lesson: &mut OpenLesson, session: &Session, style: &Sty
                 TaskState::Judging => (format!("Being judged. {how}"), style.faint()),
             };
             ui.horizontal_wrapped(|ui| {
-                ui.label(RichText::new(state).color(color)).on_hover_text(how);
+                let state = ui.label(RichText::new(state).color(color));
+                if is_met {
+                    ui.label(RichText::new(how).color(style.faint()));
+                } else {
+                    state.on_hover_text(how);
+                }
                 if lesson.offered_hint().is_some() && lesson.hint().is_none() {
                     let name = if lesson.offers_hint() { "Would a hint help? (H)" } else { "Hint (H)" };
                     let button = ui.add(Button::new(name).small().selected(lesson.offers_hint()));

@@ -87,8 +87,14 @@ pub struct Lectured {
     pub place: Option<Rect>,
 }
 
-/// Shows the lecturer's notes in a separate window, made as `builder` says.
-pub fn lecturer_ui(ctx: &egui::Context, lesson: &OpenLesson, builder: ViewportBuilder) -> Lectured {
+/// Shows the lecturer's notes in a separate window, made as `builder` says. Its text is magnified by `scale`
+/// against the rest of the program.
+pub fn lecturer_ui(
+    ctx: &egui::Context,
+    lesson: &OpenLesson,
+    builder: ViewportBuilder,
+    scale: f32,
+) -> Lectured {
     let mut done = Lectured::default();
     ctx.show_viewport_immediate(ViewportId::from_hash_of("lecturer"), builder, |ui, class| {
         if class == ViewportClass::EmbeddedWindow {
@@ -96,7 +102,10 @@ pub fn lecturer_ui(ctx: &egui::Context, lesson: &OpenLesson, builder: ViewportBu
             done.is_closed |= ui.button("Close").clicked();
             return;
         }
-        CentralPanel::default_margins().show(ui, |ui| done.action = lecturer_notes_ui(ui, lesson));
+        CentralPanel::default_margins().show(ui, |ui| {
+            ui.style_mut().text_styles.values_mut().for_each(|font| font.size *= scale);
+            done.action = lecturer_notes_ui(ui, lesson);
+        });
         ui.input_mut(|input| {
             let view = input.viewport();
             done.is_closed |= view.close_requested();

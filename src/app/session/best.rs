@@ -6,7 +6,8 @@ use std::time::Duration;
 use serde::{Deserialize, Serialize};
 
 use crate::app::task::{Background, Each, Question, pool};
-use crate::app::words::best_stops::{looking, sentence};
+use crate::app::words::Guide;
+use crate::app::words::best_stops::{answer_guide, looking};
 use crate::app::words::fields::info;
 use crate::scene::{FieldPath, Stops, SweepAxis};
 use interwell_studies::study::{
@@ -105,18 +106,20 @@ impl BestStops {
         }
     }
 
-    /// What is known so far, in one or two sentences.
-    pub fn words(&self) -> String {
+    /// What is known so far.
+    pub fn guide(&self) -> Guide {
         if let Some(why) = self.refusal {
-            return why.to_owned();
+            return Guide::new("", why);
         }
-        let Some(search) = self.search.question() else { return String::new() };
+        let Some(search) = self.search.question() else { return Guide::default() };
         let (column, (runs, newest)) = (search.maximise.name, self.known());
         match newest {
-            Some(Part::Whole(answer)) => sentence(answer, column, &search.range, search.duration_s),
-            _ if !self.is_running() => "The search for the best stops ended without an answer.".to_owned(),
-            Some(Part::Preview(best)) => looking(runs, Some(best), column),
-            None | Some(Part::Run) => looking(runs, None, column),
+            Some(Part::Whole(answer)) => answer_guide(answer, column, &search.range, search.duration_s),
+            _ if !self.is_running() => {
+                Guide::new("", "The search for the best stops ended without an answer.")
+            }
+            Some(Part::Preview(best)) => Guide::new("", looking(runs, Some(best), column)),
+            None | Some(Part::Run) => Guide::new("", looking(runs, None, column)),
         }
     }
 }

@@ -107,7 +107,10 @@ fn still(model: &Model, span: Span, axes: (PlotAxis, PlotAxis), measured: Option
     // the legend names the lines before the marks
     let named = |role, name: &str| Layer::new(role, name, Marks::Path(Vec::new()));
     let push = model.is_shaken().then(|| named(Role::Push, "push"));
-    let first = [named(Role::Curve, "holds the mass there")].into_iter().chain(push).chain(measured);
+    let has_press = sides(model).into_iter().any(|(x, side)| is_pressed(model, x, side));
+    let release = has_press.then(|| named(Role::Stop, "frees the mass"));
+    let lines = [named(Role::Curve, "holds the mass there")].into_iter().chain(push).chain(release);
+    let first = lines.chain(measured);
     panel.layers.splice(0..0, first);
     Chart::stack(vec![panel], "", Table::new())
 }
@@ -142,27 +145,36 @@ fn lines(pane: &Pane) -> Vec<Vec<Pos2>> {
     layers.map(on_screen).collect()
 }
 
+/// The stops, each with the direction from the middle to it.
+fn sides(model: &Model) -> Vec<(f64, f32)> {
+    let (left, right) = model.stop_positions();
+    [(left, -1.0), (right, 1.0)].into_iter().filter_map(|(x, side)| Some((x?, side))).collect()
+}
+
+/// Whether the mechanism presses the mass onto the stop at `x`.
+fn is_pressed(model: &Model, x: f64, side: f32) -> bool {
+    model.mechanism().curve.force(x) * f64::from(side) < 0.0
+}
+
 /// Marks the force at each stop that the mass can rest on, and writes it with the push that frees the mass:
 /// beside the stop, clear of the lines of the curve.
 fn releases(painter: &Painter, context: &ViewContext<'_>, pane: &Pane, rect: Rect) {
     let (style, model) = (context.style, context.session.shown());
-    let (left, right) = model.stop_positions();
+    let sides = sides(model);
     let place = |x: f64, force: f64| pane.place(0, (x * 1e3, force)).unwrap_or(rect.min);
-    let sides = [(left, -1.0_f32), (right, 1.0)].into_iter().filter_map(|(x, side)| Some((x?, side)));
-    let wall = |(x, side): (f64, f32)| {
-        let face = place(x, 0.0).x;
+    let wall = |(x, side): &(f64, f32)| {
+        let face = place(*x, 0.0).x;
         Rect::from_two_pos(pos2(face, rect.top()), pos2(face + side * WALL, rect.bottom()))
     };
-    let places = sides.clone().map(wall).collect();
+    let places = sides.iter().map(wall).collect();
     let mut taken = Taken { lines: lines(pane), places, plate: Some(style.ground()) };
     let zero = place(0.0, 0.0).y;
     taken.lines.push(vec![pos2(rect.left(), zero), pos2(rect.right(), zero)]);
     for (x, side) in sides {
-        let force = model.mechanism().curve.force(x);
-        // only where the mechanism presses the mass onto the stop
-        if !(force * f64::from(side) < 0.0) {
+        if !is_pressed(model, x, side) {
             continue;
         }
+        let force = model.mechanism().curve.force(x);
         let at = place(x, force);
         let end = at - vec2(LINE * side, 0.0);
         painter.line_segment([at, end], style.stop_stroke());

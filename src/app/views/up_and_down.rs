@@ -21,6 +21,9 @@ use super::{Span, View, ViewContext};
 /// Height in points of the row of choices.
 const TOOLS: f32 = 30.0;
 
+/// Size in points of the sign that runs are still to come.
+const SPINNER: f32 = 14.0;
+
 /// Relative difference up to which two RMS velocities are the same.
 const SAME: f64 = 0.01;
 
@@ -77,8 +80,8 @@ fn tools_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axis: &SweepAxis) {
             }
         });
         button.on_hover_text("Ends and step of the walk.");
-        if context.session.explore.walks.found.is_running() {
-            ui.add(egui::Spinner::new().size(14.0)).on_hover_text("Runs are still to come.");
+        if context.session.explore.walks.found.is_running() && ui.available_width() > SPINNER {
+            ui.add(egui::Spinner::new().size(SPINNER)).on_hover_text("Runs are still to come.");
         }
     });
 }

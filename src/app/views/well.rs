@@ -278,7 +278,8 @@ fn energy_ends(ui: &Ui, context: &mut ViewContext<'_>, height: f32) -> (f64, f64
     let room = room_for_push(model.largest_base_acceleration());
     let curve = &model.mechanism().curve;
     let landscape = &model.mechanism().landscape;
-    let (tilt, zero, push) = (model.mass() * room, bottom(model).0, room);
+    let tilt = if model.is_shaken() { model.mass() * room } else { 0.0 };
+    let (zero, push) = (bottom(model).0, room);
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
     let mut show = |x: f64, tilted: bool| {
         let (v, side) = (curve.potential(x) - zero, if tilted { tilt * x.abs() } else { 0.0 });
@@ -294,7 +295,7 @@ fn energy_ends(ui: &Ui, context: &mut ViewContext<'_>, height: f32) -> (f64, f64
             let (left, right) = model.stop_positions();
             let domain = curve.domain();
             for x in [left.unwrap_or(context.span.low), right.unwrap_or(context.span.high)] {
-                show(x.clamp(domain.0, domain.1), model.is_shaken());
+                show(x.clamp(domain.0, domain.1), true);
             }
             show(0.0, false);
         }

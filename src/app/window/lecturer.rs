@@ -85,7 +85,9 @@ impl Window {
         let builder = ViewportBuilder::default().with_title("Lecturer's notes - interwell");
         let builder = builder.with_inner_size(size);
         let builder = at.into_iter().fold(builder, ViewportBuilder::with_position);
-        let shown = lecturer_ui(ctx, lesson, builder);
+        // the notes are read from near, not from the last row of a lecture hall
+        let scale = if self.settings.projector { 1.0 / ctx.zoom_factor() } else { 1.0 };
+        let shown = lecturer_ui(ctx, lesson, builder, scale);
         if let Some(rect) = shown.place.map(|rect| rect * ctx.zoom_factor()) {
             notes.place = Some(Place { at: rect.min.into(), size: rect.size().into() });
             notes.is_old = false;

@@ -2,7 +2,7 @@
 
 use std::sync::LazyLock;
 
-use eframe::egui::{self, Button, KeyboardShortcut, Modifiers, Response, Ui};
+use eframe::egui::{self, Button, KeyboardShortcut, Modifiers, Response, Separator, Ui};
 
 use crate::app::session::lesson::OpenLesson;
 use crate::app::session::player::SPEEDS;
@@ -22,6 +22,9 @@ const BACK: &str = "Back to the start";
 
 /// Height in points of an item.
 const ROW: f32 = 20.0;
+
+/// Height in points of a line between items.
+const LINE: f32 = 2.0;
 
 /// The menus of a window, and the commands that were chosen in this frame.
 pub(super) struct Menus<'a> {
@@ -88,7 +91,7 @@ impl Menus<'_> {
                     self.choose(ui, &response, || command.clone());
                 }
                 Part::Menu(name, parts) => drop(ui.menu_button(*name, |ui| self.parts_ui(ui, parts))),
-                Part::Line => drop(ui.separator()),
+                Part::Line => drop(ui.add(Separator::default().spacing(LINE))),
                 Part::Presets => self.presets_ui(ui),
                 Part::Recent => self.recent_ui(ui),
                 Part::Settings => self.settings_ui(ui),
@@ -142,8 +145,9 @@ impl Menus<'_> {
             let command = Command::Toggle(setting);
             let why = self.window.impossible(&command);
             let mut settings = self.window.settings;
-            let checkbox = egui::Checkbox::new(settings.of(setting), name);
-            let response = ui.add_enabled(why.is_none(), checkbox).on_hover_text(hover);
+            let on = settings.of(setting);
+            let response = ui.add_enabled_ui(why.is_none(), |ui| checkbox_ui(ui, on, name)).inner;
+            let response = response.on_hover_text(hover);
             if response.on_disabled_hover_text(why.unwrap_or_default()).clicked() {
                 self.chosen.push(command);
             }
@@ -155,7 +159,7 @@ impl Menus<'_> {
             scroll_ui(ui, |ui| {
                 for view in View::ALL {
                     let mut shown = self.window.tiling.shows(view);
-                    if ui.checkbox(&mut shown, view.name()).on_hover_text(view.about()).clicked() {
+                    if checkbox_ui(ui, &mut shown, view.name()).on_hover_text(view.about()).clicked() {
                         self.chosen.push(Command::Show(view, shown));
                     }
                 }
@@ -192,6 +196,16 @@ impl Menus<'_> {
             self.choose(ui, &item, || Command::OpenLesson(name));
         }
     }
+}
+
+/// A check box with the border that it has outside of menus: their style leaves an empty box invisible.
+fn checkbox_ui(ui: &mut Ui, on: &mut bool, name: &str) -> Response {
+    let widgets = ui.ctx().global_style().visuals.widgets.clone();
+    ui.scope(|ui| {
+        ui.visuals_mut().widgets = widgets;
+        ui.checkbox(on, name)
+    })
+    .inner
 }
 
 /// Contents that are scrolled if they are taller than the window.

@@ -17,6 +17,7 @@ pub use crate::app::ui::style::install as prepare;
 use crate::app::ui::style::{CONTROL, GAP, Style};
 use crate::app::ui::widgets::bare;
 use crate::app::views::{Drawn, ViewContext};
+use crate::app::words::Guide;
 use crate::app::words::lesson::numbered;
 use crate::scene::lesson::LESSONS;
 
@@ -263,26 +264,25 @@ impl Window {
     /// Returns the chosen command.
     fn guide_line_ui(&mut self, ui: &mut Ui, style: &Style) -> Option<Command> {
         let hinted = self.hint.is_shown(&self.session);
-        let (ink, faint) = (style.ink(), style.faint());
         if self.session.best.is_shown() && !self.ways && !self.covered {
-            let words = self.session.best.words();
-            guide_ui(ui, ("", &words, ink), |ui| controls::best_stops_answer_ui(ui, &mut self.session));
+            let guide = self.session.best.guide();
+            guide_ui(ui, style, &guide, |ui| controls::best_stops_answer_ui(ui, &mut self.session));
             return None;
         }
         if self.ways && !self.covered {
-            let ways = self.session.ways();
             let back = if hinted { "H: back to what to try" } else { "H closes this" };
-            guide_ui(ui, ("", &ways, ink), |ui| ui.label(RichText::new(back).color(faint)));
+            let back = RichText::new(back).color(style.faint());
+            guide_ui(ui, style, &Guide::new("", self.session.ways()), |ui| ui.label(back));
             return None;
         }
         let Some(next) = next_lesson(&self.lessons.records).filter(|_| hinted && !self.covered) else {
             let has_barrier = self.session.model().mechanism().landscape.barrier.is_some();
             let ways = if has_barrier { "H says what it would take to cross, " } else { "" };
-            guide_ui(ui, ("", &format!("{ways}F1 lists all keys."), faint), |_| ());
+            let keys = Guide { is_faint: true, ..Guide::new("", format!("{ways}F1 lists all keys.")) };
+            guide_ui(ui, style, &keys, |_| ());
             return None;
         };
-        let (heading, text) = self.hint.text(&self.session);
-        guide_ui(ui, (heading, &text, ink), |ui| {
+        guide_ui(ui, style, &self.hint.guide(&self.session), |ui| {
             let hover = "Look, predict, try and explain, step by step. The scene waits as it is.";
             let lesson = ui.link(numbered(next)).on_hover_text(hover).clicked();
             if ui.link("Dismiss").clicked() {

@@ -1,5 +1,6 @@
 //! Sentences about the best stops of a scene.
 
+use super::{Guide, capital};
 use crate::app::words::numbers::{power, three};
 use crate::app::words::status::speed;
 use crate::numeric::short;
@@ -20,40 +21,38 @@ pub fn looking(runs: u64, best: Option<&Optimum>, column: &str) -> String {
 
 /// The answer of a search with runs from rest. Each run lasts `duration_s` seconds or, if that is `None`,
 /// until its motion repeats.
-pub fn sentence(
+pub fn answer_guide(
     answer: &Result<BestDesign, NoBest>,
     column: &str,
     range: &DesignRange,
     duration_s: Option<f64>,
-) -> String {
+) -> Guide {
     let name = SummaryField::find(column).map_or(column, |field| field.label);
     let mm = |value: f64| format!("{} mm", short(value));
-    let between = format!("between ±{} and ±{}", short(range.low), mm(range.high));
-    let Ok(design) = answer else {
-        return format!("With stops anywhere {between} no run has a {name}.");
-    };
-    let (at, value) = (design.optimum.at[0], value_of(column, design.optimum.value));
+    let between = format!("between \u{b1}{} and \u{b1}{}", short(range.low), mm(range.high));
     let runs = match duration_s {
-        Some(duration) => format!("from rest, in runs of {} s", three(duration)),
+        Some(duration) => format!("Searched {between}, from rest, in runs of {} s.", three(duration)),
         None => format!(
-            "from rest, each run followed until its motion repeats, for at most {} forcing periods more",
+            "Searched {between}, from rest, each run followed until its motion repeats, for at most {} forcing \
+             periods more.",
             Basins::PATIENCE
         ),
     };
+    let guide = |heading: &str, text: String| Guide { more: runs, ..Guide::new(heading, text) };
+    let Ok(design) = answer else {
+        return guide("No best stops:", format!("with stops anywhere {between} no run has a {name}."));
+    };
+    let (at, value) = (design.optimum.at[0], value_of(column, design.optimum.value));
     if design.flat {
-        return format!("No stops are best: the {name} is {value} wherever they stand {between}, {runs}.");
+        return guide("No stops are best:", format!("the {name} is {value} wherever they stand {between}."));
     }
     let [low, high] = design.margins[0];
     let side = |margin: Option<f64>, way: &str, end: f64| match margin {
         Some(margin) => format!("{} further {way}", mm(margin)),
-        None => format!("nowhere further {way}, up to ±{}", mm(end)),
+        None => format!("nowhere further {way}, up to \u{b1}{}", mm(end)),
     };
     let border = if design.at_border[0] { " It is an end of the range that was searched." } else { "" };
-    format!(
-        "Best stops: ±{}, where the {name} is largest, {value}, {runs}. A tenth of it is lost {} and \
-         {}.{border}",
-        mm(at),
-        side(low, "in", range.low),
-        side(high, "out", range.high)
-    )
+    let (inward, outward) = (side(low, "in", range.low), side(high, "out", range.high));
+    let text = format!("{name} {value}; a tenth of it is lost {inward} and {outward}.{border}");
+    guide(&format!("Best stops: \u{b1}{}.", mm(at)), capital(&text))
 }

@@ -14,3 +14,20 @@ pub fn capital(text: &str) -> String {
     let mut letters = text.chars();
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
+
+/// What the guide line says.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Guide {
+    pub heading: String,
+    pub text: String,
+    /// Particulars: behind the text where they fit into its row, or else shown under the pointer.
+    pub more: String,
+    /// Whether the text matters less than the views.
+    pub is_faint: bool,
+}
+
+impl Guide {
+    pub fn new(heading: impl Into<String>, text: impl Into<String>) -> Self {
+        Self { heading: heading.into(), text: text.into(), ..Self::default() }
+    }
+}

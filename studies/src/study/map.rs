@@ -132,7 +132,8 @@ impl Edges {
 }
 
 /// The line of [`first_crossing`](super::first_crossing) over a map of `x` and `y`: along the edges of its
-/// cells, towards smaller amplitudes, in one part for each stretch without a gap.
+/// cells, towards smaller amplitudes, in one part for each stretch without a gap. A place where the cell of the
+/// smallest amplitude crosses has no edge: the first crossing is at or below that amplitude.
 pub fn first_crossing_edge(
     table: &Table,
     (x, y): (&str, &str),
@@ -145,7 +146,8 @@ pub fn first_crossing_edge(
     let mut parts: Vec<Vec<(f64, f64)>> = vec![Vec::new()];
     for (px, py) in xs.iter().zip(ys) {
         let place = across.place(*px).zip(up.place(*py));
-        match (place, parts.last_mut()) {
+        let edge = place.filter(|(i, j)| if amplitude_up { *j > 0 } else { *i > 0 });
+        match (edge, parts.last_mut()) {
             (Some((i, j)), Some(part)) => part.extend(if amplitude_up {
                 [(across.edges[i], up.edges[j]), (across.edges[i + 1], up.edges[j])]
             } else {
@@ -185,6 +187,19 @@ mod tests {
         assert_eq!(Edges::new(&[0.0]).ends(), (-0.5, 0.5));
         assert_eq!((edges.place(2.0), edges.cell(f64::NAN)), (Some(1), None));
     }
+    #[test]
+    fn the_edge_of_the_first_crossing_is_between_cells_of_which_one_crosses() {
+        let table = Table::new()
+            .with("travel_limit_mm", Values::Numbers(vec![1.0, 2.0, 3.0, 4.0]))
+            .with("amplitude_g", Values::Numbers(vec![0.0, 1.0, f64::NAN, 0.5]));
+        let (limits, amplitudes) = (Edges::new(&[1.0, 2.0, 3.0, 4.0]), Edges::new(&[0.0, 0.5, 1.0]));
+        let names = ("travel_limit_mm", "amplitude_g");
+        let parts = first_crossing_edge(&table, names, &limits, &amplitudes);
+        assert_eq!(parts, [[(1.5, 0.75), (2.5, 0.75)], [(3.5, 0.25), (4.5, 0.25)]]);
+        let turned = first_crossing_edge(&table, (names.1, names.0), &amplitudes, &limits);
+        assert_eq!(turned, [[(0.75, 1.5), (0.75, 2.5)], [(0.25, 3.5), (0.25, 4.5)]]);
+    }
+
     #[test]
     fn a_line_is_met_where_it_passes() {
         let line = [(0.0, 0.0), (1.0, 2.0), (1.0, 3.0), (2.0, 1.0)];

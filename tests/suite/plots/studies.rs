@@ -6,7 +6,7 @@ use super::*;
 fn a_spectrum_shows_lines_and_the_forcing() {
     let folder = tempfile::tempdir().unwrap();
     let seen = texts(&plot("spectrum paper", folder.path(), "lines.svg"));
-    for words in ["Prototype with travel limits", "frequency (Hz)", "amplitude of displacement (m)"] {
+    for words in ["Prototype with travel limits", "frequency (Hz)", "amplitude of displacement (mm)"] {
         assert!(seen.iter().any(|text| text == words), "{words}: {seen:?}");
     }
     assert!(seen.iter().any(|text| text == "forcing frequency, 3 Hz"), "{seen:?}");

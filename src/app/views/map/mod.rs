@@ -35,6 +35,9 @@ const UPWARD: usize = 2;
 /// Half the diagonal in points of the mark of the best stops.
 const BEST: f32 = 7.0;
 
+/// Number of lines of the text on a cell by a projector: its place, the motion and its RMS velocity.
+const BRIEF: usize = 4;
+
 /// The values of a scene on both axes of a map; `None` for a field that it lacks.
 type Place = [Option<f64>; 2];
 
@@ -126,7 +129,10 @@ pub fn map_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     if let Some(cell) = pointed {
         point_out(&painter, &style, &pane, map, cell);
         let over = pane.response.clone().on_hover_cursor(egui::CursorIcon::PointingHand);
-        over.on_hover_text_at_pointer(reading(map, quantity, cell));
+        let lines = reading(map, quantity, cell);
+        // by a projector a long text would hide the axes
+        let shown = if style.projector { BRIEF.min(lines.len()) } else { lines.len() };
+        over.on_hover_text_at_pointer(lines[..shown].join("\n"));
     }
     let is_enlarged = !context.session.map.enlarged.is_empty();
     let targets =
@@ -256,8 +262,8 @@ fn value_text(quantity: &SummaryField, summary: &Summary) -> Option<String> {
     Some(format!("{} {} {unit}", quantity.label, three(value * factor)).trim_end().to_owned())
 }
 
-/// Text on a cell.
-fn reading(map: &Map, quantity: &SummaryField, (column, row): (usize, usize)) -> String {
+/// Lines of text on a cell, the most important ones first.
+fn reading(map: &Map, quantity: &SummaryField, (column, row): (usize, usize)) -> Vec<String> {
     let names = map.grid().columns();
     let place = [map.edges[0].values[column], map.edges[1].values[row]];
     // such as `travel limit 1.5 mm`
@@ -268,7 +274,7 @@ fn reading(map: &Map, quantity: &SummaryField, (column, row): (usize, usize)) ->
     let mut lines: Vec<String> = names.iter().zip(place).map(named).collect();
     let Some((cell, has_run)) = map.cell(column, row) else {
         lines.push("not run yet".to_owned());
-        return lines.join("\n");
+        return lines;
     };
     if !has_run {
         lines.push("not run yet; its neighbour:".to_owned());
@@ -295,7 +301,7 @@ fn reading(map: &Map, quantity: &SummaryField, (column, row): (usize, usize)) ->
     let value = cell.summary().and_then(|summary| value_text(quantity, summary));
     lines.extend(value.filter(|_| !IN_EVERY_READING.contains(&quantity.name)));
     lines.push("click: take the scene there; drag: enlarge".to_owned());
-    lines.join("\n")
+    lines
 }
 
 /// Marks the scene by a ring, or by an arrow at the edge that it lies beyond. Returns the place.

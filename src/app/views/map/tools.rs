@@ -133,7 +133,7 @@ fn look_ui(ui: &mut Ui, look: &mut MapLook, quantity: &SummaryField) {
         "The same as a surface: height and colour are the quantity."
     };
     ui.selectable_value(&mut look.surface, true, "Surface").on_hover_text(surface);
-    ui.toggle_value(&mut look.cuts, "Cuts").on_hover_text(
+    ui.checkbox(&mut look.cuts, "Cuts").on_hover_text(
         "Lines through the map where the scene is, beside it: the quantity over one axis at this value of \
          the other, with regimes, release and first crossing.",
     );

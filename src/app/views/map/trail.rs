@@ -1,9 +1,10 @@
 //! Trail of the scene over the map: where the live motion has been, fading with age.
 
-use eframe::egui::{Painter, Pos2, Rect, Shape, Stroke};
+use eframe::egui::{Align2, Painter, Pos2, Rect, Shape, Stroke, vec2};
 
 use crate::app::ui::style::Style;
 
+use super::super::labels::haloed;
 use super::super::pane::Pane;
 use super::MAP;
 
@@ -15,14 +16,24 @@ const FADES: usize = 12;
 /// Opacity of the oldest part.
 const FAINTEST: f32 = 0.15;
 
-/// Draws the places, the oldest first; one at which the scene lacked the field of an axis is a gap.
+/// Width in points of a trail from which on it is named.
+const NAMED: f32 = 40.0;
+
+/// Draws the places, the oldest first, and the name of the trail at its oldest end; a place at which the scene
+/// lacked the field of an axis is a gap.
 pub fn draw(painter: &Painter, pane: &Pane, style: &Style, places: &[[Option<f64>; 2]]) {
     let painter = painter.with_clip_rect(pane.frame(MAP).unwrap_or(Rect::NOTHING));
-    for (points, opacity) in parts(places, |at| pane.place(MAP, at).unwrap_or(Pos2::ZERO)) {
+    let parts = parts(places, |at| pane.place(MAP, at).unwrap_or(Pos2::ZERO));
+    for (points, opacity) in &parts {
         for stroke in style.trail_strokes() {
-            let stroke = Stroke::new(stroke.width, stroke.color.gamma_multiply(opacity));
+            let stroke = Stroke::new(stroke.width, stroke.color.gamma_multiply(*opacity));
             painter.add(Shape::line(points.clone(), stroke));
         }
+    }
+    let all: Vec<Pos2> = parts.into_iter().flat_map(|part| part.0).collect();
+    if let (Some(oldest), true) = (all.first(), Rect::from_points(&all).size().max_elem() > NAMED) {
+        let words = (*oldest + vec2(0.0, -4.0), Align2::CENTER_BOTTOM);
+        haloed(&painter, style, words, "trail", (style.small(), style.ink()));
     }
 }
 

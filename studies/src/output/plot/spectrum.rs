@@ -5,6 +5,7 @@ use super::chart::{Chart, Marks, Panel};
 use super::drawn::Drawn;
 use super::figure::Point;
 use super::names::{BASE_ACCELERATION, FREQUENCY, VELOCITY};
+use super::quantity::suited_unit;
 use super::role::Role;
 use crate::numeric::{Taper, elementary, extent, short};
 use crate::study::{Signal, Spectrum, words};
@@ -28,16 +29,18 @@ const DECADES: f64 = 7.0;
 /// Largest number of forcing frequencies that are marked and named.
 const MAX_MARKED: usize = 4;
 
-/// The picture of a spectrum. `ranges` are those of the frequency in Hz and of the quantity.
+/// The picture of a spectrum. `ranges` are those of the frequency in Hz and of the quantity, in the unit of its
+/// axis: an amplitude below 2 m or 2 m/s is shown in mm or mm/s.
 pub fn spectrum_chart(spectrum: &Spectrum, quantity: SpectrumQuantity, ranges: Ranges) -> Chart {
     let column = |name: &str| spectrum.table.numbers(name).unwrap_or_default();
     let (frequencies, values) = (column("frequency_hz"), column(quantity.name()));
-    let label = &label(spectrum.signal, quantity);
+    let (scale, label) = scale_and_label(spectrum.signal, quantity, values);
+    let label = &label;
     let decades = if quantity == SpectrumQuantity::Density { 2.0 * DECADES } else { DECADES };
     let across = PlotAxis::between(0.0, shown_to(spectrum, frequencies, column("psd")), FREQUENCY);
     let across = across.or_given(ranges.x);
     let seen = frequencies.iter().zip(values).filter(|line| across.contains(*line.0));
-    let seen = seen.map(|pair| *pair.1).filter(|value| *value > 0.0);
+    let seen = seen.map(|pair| pair.1 * scale).filter(|value| *value > 0.0);
     let (least, greatest) = extent(seen);
     let up = match ranges.y {
         Some((low, high)) => PlotAxis::powers(elementary::log10(low), elementary::log10(high), label),
@@ -56,8 +59,11 @@ pub fn spectrum_chart(spectrum: &Spectrum, quantity: SpectrumQuantity, ranges: R
     panel.layer_if_any(Role::Drive, words, Marks::Verticals(marked.clone()));
     let floor = panel.y.low - 1.0;
     let height = |value: f64| if value > 0.0 { elementary::log10(value).max(floor) } else { floor };
-    let points: Vec<Point> =
-        frequencies.iter().zip(values).map(|(frequency, value)| (*frequency, height(*value))).collect();
+    let points: Vec<Point> = frequencies
+        .iter()
+        .zip(values)
+        .map(|(frequency, value)| (*frequency, height(value * scale)))
+        .collect();
     let is_lines = spectrum.period.is_some() && spectrum.taper == Taper::None;
     panel.draw(Role::Motion, if is_lines { Marks::Sticks(points) } else { Marks::Trace(points) });
     let mut drawn = Drawn::new(["frequency_hz", quantity.name()], &[]);
@@ -68,16 +74,19 @@ pub fn spectrum_chart(spectrum: &Spectrum, quantity: SpectrumQuantity, ranges: R
     Chart::stack(vec![panel], spectrum.describe(), drawn.table())
 }
 
-/// The label of the vertical axis.
-fn label(signal: Signal, quantity: SpectrumQuantity) -> String {
+/// The factor to the unit of the vertical axis, and the label of that axis.
+fn scale_and_label(signal: Signal, quantity: SpectrumQuantity, values: &[f64]) -> (f64, String) {
     let (name, unit, squared) = match signal {
         Signal::Displacement => ("displacement", "m", "m\u{b2}"),
         Signal::Velocity => (VELOCITY, "m/s", "m\u{b2}/s\u{b2}"),
         Signal::BaseAcceleration => (BASE_ACCELERATION, "m/s\u{b2}", "m\u{b2}/s\u{2074}"),
     };
     match quantity {
-        SpectrumQuantity::Amplitude => format!("amplitude of {name} ({unit})"),
-        SpectrumQuantity::Density => format!("power spectral density of {name} ({squared}/Hz)"),
+        SpectrumQuantity::Amplitude => {
+            let (scale, unit) = suited_unit(unit, values.iter().copied());
+            (scale, format!("amplitude of {name} ({unit})"))
+        }
+        SpectrumQuantity::Density => (1.0, format!("power spectral density of {name} ({squared}/Hz)")),
     }
 }
 
