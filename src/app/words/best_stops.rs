@@ -3,7 +3,8 @@
 use crate::app::words::numbers::{power, three};
 use crate::app::words::status::speed;
 use crate::numeric::short;
-use interwell_studies::study::{Basins, BestDesign, DesignRange, NoBest, Optimum, SummaryField};
+use crate::questions::{BestDesign, Optimum};
+use interwell_studies::study::{Basins, SummaryField};
 
 /// A value of the maximised column, with its unit.
 fn value_of(column: &str, value: f64) -> String {
@@ -21,14 +22,14 @@ pub fn looking(runs: u64, best: Option<&Optimum>, column: &str) -> String {
 /// The answer of a search with runs from rest. Each run lasts `duration_s` seconds or, if that is `None`,
 /// until its motion repeats.
 pub fn sentence(
-    answer: &Result<BestDesign, NoBest>,
+    answer: &Result<BestDesign, String>,
     column: &str,
-    range: &DesignRange,
+    (low, high): (f64, f64),
     duration_s: Option<f64>,
 ) -> String {
     let name = SummaryField::find(column).map_or(column, |field| field.label);
     let mm = |value: f64| format!("{} mm", short(value));
-    let between = format!("between ±{} and ±{}", short(range.low), mm(range.high));
+    let between = format!("between ±{} and ±{}", short(low), mm(high));
     let Ok(design) = answer else {
         return format!("With stops anywhere {between} no run has a {name}.");
     };
@@ -43,7 +44,7 @@ pub fn sentence(
     if design.flat {
         return format!("No stops are best: the {name} is {value} wherever they stand {between}, {runs}.");
     }
-    let [low, high] = design.margins[0];
+    let [inwards, outwards] = design.margins[0];
     let side = |margin: Option<f64>, way: &str, end: f64| match margin {
         Some(margin) => format!("{} further {way}", mm(margin)),
         None => format!("nowhere further {way}, up to ±{}", mm(end)),
@@ -53,7 +54,7 @@ pub fn sentence(
         "Best stops: ±{}, where the {name} is largest, {value}, {runs}. A tenth of it is lost {} and \
          {}.{border}",
         mm(at),
-        side(low, "in", range.low),
-        side(high, "out", range.high)
+        side(inwards, "in", low),
+        side(outwards, "out", high)
     )
 }
