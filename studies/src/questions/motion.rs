@@ -322,8 +322,8 @@ impl Basins {
         begun.map_err(|problem| no_basins(document, problem, self.x_mm))
     }
 
-    /// The first phase of starts that [`begin`](Self::begin), from coarse to fine. `coarse` gets what is known
-    /// after each level but the last.
+    /// The first phase of starts that [`begin`](Self::begin), from coarse to fine. `coarse` gets what is
+    /// known after each level but the last.
     #[doc(hidden)]
     pub fn followed(
         mut basins: study::Basins,
