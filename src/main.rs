@@ -24,18 +24,14 @@ fn main() -> ExitCode {
 /// exit code is stored in `scene_failure`.
 #[cfg(feature = "app")]
 fn window(scene: Option<&str>, scene_failure: &Cell<Option<ExitCode>>) -> Result<(), cli::Failure> {
-    use interwell::app::{AppError, CannotRun, run};
-    let failure = |error: CannotRun| match error {
-        CannotRun::Wrong(error) => cli::Failure::from(error),
-        CannotRun::Unsolved(_) => cli::Failure::Failed(error.into()),
-    };
+    use interwell::app::{AppError, run};
     let say = |error| {
-        let failure = failure(error);
+        let failure = cli::Failure::from(error);
         cli::say(&format!("error: {failure}"));
         scene_failure.set(Some(failure.exit_code()));
     };
     run(scene, say).map_err(|error| match error {
-        AppError::Scene(error) => failure(error),
+        AppError::Scene(error) => error.into(),
         AppError::NoWindow(_) => cli::Failure::Failed(error.into()),
     })
 }

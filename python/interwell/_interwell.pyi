@@ -85,130 +85,131 @@ class Simulation:
         until_settled: float | None = None,
     ) -> Run: ...
     def curve(self, positions: Sequence[float] | None = None) -> Answer: ...
-    def sweep(
-        self,
-        over: _Over,
-        columns: Sequence[str],
-        until_settled: float | None = None,
-        carry: str | None = None,
-        uncertain: Sequence[str] = (),
-        draws: int | None = None,
-        seed: int | None = None,
-        threads: int | None = None,
-        progress: _Told = None,
-    ) -> Answer: ...
-    def section(
-        self,
-        over: _Over,
-        at: str,
-        phase_deg: float = 0.0,
-        skip: int | None = None,
-        keep: int | None = None,
-        until_settled: float | None = None,
-        carry: str | None = None,
-        threads: int | None = None,
-        progress: _Told = None,
-    ) -> Answer: ...
-    def exponents(
-        self,
-        over: _Over,
-        periods: int | None = None,
-        until_settled: float | None = None,
-        threads: int | None = None,
-        progress: _Told = None,
-    ) -> Answer: ...
-    def escape(
-        self,
-        over: _Over,
-        runs: int | None = None,
-        within: float | None = None,
-        until: str = "well",
-        threads: int | None = None,
-        progress: _Told = None,
-    ) -> Answer: ...
-    def threshold(
-        self,
-        over: _Over,
-        field: str,
-        of: str,
-        resolution: float | None = None,
-        until_settled: float | None = None,
-        melnikov: bool = False,
-        threads: int | None = None,
-        progress: _Told = None,
-    ) -> Answer: ...
-    def probable_threshold(
-        self,
-        over: _Over,
-        field: str,
-        probability: float,
-        runs: int | None = None,
-        within: float | None = None,
-        resolution: float | None = None,
-        threads: int | None = None,
-        progress: _Told = None,
-    ) -> Answer: ...
-    def orbit(self, period: int | None = None, phase_deg: float = 0.0) -> Answer: ...
-    def branch(
-        self,
-        field: str,
-        range: tuple[float, float],
-        step: float,
-        count: int,
-        switch: int,
-        period: int | None = None,
-        phase_deg: float = 0.0,
-        progress: _Told = None,
-    ) -> Answer: ...
-    def locus(
-        self,
-        event: str,
-        field: str,
-        range: tuple[float, float],
-        second: str,
-        second_range: tuple[float, float],
-        step: float,
-        count: int,
-        period: int | None = None,
-        phase_deg: float = 0.0,
-        progress: _Told = None,
-    ) -> Answer: ...
-    def spectrum(
-        self,
-        of: str,
-        taper: str,
-        rate_hz: float | None = None,
-        until_settled: float | None = None,
-    ) -> Answer: ...
-    def basins(
-        self,
-        x_mm: tuple[float, float, int],
-        v: tuple[float, float, int],
-        random: tuple[int, int] | None = None,
-        threads: int | None = None,
-        progress: _Told = None,
-    ) -> tuple[Answer, Answer]: ...
-    def compare(
-        self,
-        name: str,
-        others: Sequence[tuple[str, Simulation]],
-        until_settled: float | None = None,
-        threads: int | None = None,
-        progress: _Told = None,
-    ) -> Answer: ...
-    def best(
-        self,
-        over: Sequence[str],
-        maximise: str,
-        subject_to: Sequence[str],
-        environment: Sequence[str],
-        vary: Sequence[str],
-        seed: int,
-        until_settled: float | None = None,
-        threads: int | None = None,
-        progress: _Told = None,
-    ) -> Answer: ...
 
+def sweep(
+    scene: Simulation,
+    over: _Over,
+    columns: Sequence[str],
+    until_settled: float | None = None,
+    carry: str | None = None,
+    uncertain: Sequence[str] = (),
+    draws: int | None = None,
+    seed: int | None = None,
+    threads: int | None = None,
+    progress: _Told = None,
+) -> Answer: ...
+def section(
+    scene: Simulation,
+    over: _Over,
+    at: str,
+    phase_deg: float = 0.0,
+    skip: int | None = None,
+    keep: int | None = None,
+    until_settled: float | None = None,
+    carry: str | None = None,
+    threads: int | None = None,
+    progress: _Told = None,
+) -> Answer: ...
+def exponents(
+    scene: Simulation,
+    over: _Over,
+    periods: int | None = None,
+    until_settled: float | None = None,
+    threads: int | None = None,
+    progress: _Told = None,
+) -> Answer: ...
+def escape(
+    scene: Simulation,
+    over: _Over,
+    runs: int | None = None,
+    within: float | None = None,
+    until: str = "well",
+    threads: int | None = None,
+    progress: _Told = None,
+) -> Answer: ...
+def threshold(
+    scene: Simulation,
+    over: _Over,
+    field: str,
+    of: str,
+    resolution: float | None = None,
+    until_settled: float | None = None,
+    melnikov: bool = False,
+    threads: int | None = None,
+    progress: _Told = None,
+) -> Answer: ...
+def probable_threshold(
+    scene: Simulation,
+    over: _Over,
+    field: str,
+    probability: float,
+    runs: int | None = None,
+    within: float | None = None,
+    resolution: float | None = None,
+    threads: int | None = None,
+    progress: _Told = None,
+) -> Answer: ...
+def orbit(scene: Simulation, period: int | None = None, phase_deg: float = 0.0) -> Answer: ...
+def branch(
+    scene: Simulation,
+    field: str,
+    range: tuple[float, float],
+    step: float,
+    count: int,
+    switch: int,
+    period: int | None = None,
+    phase_deg: float = 0.0,
+    progress: _Told = None,
+) -> Answer: ...
+def locus(
+    scene: Simulation,
+    event: str,
+    field: str,
+    range: tuple[float, float],
+    second: str,
+    second_range: tuple[float, float],
+    step: float,
+    count: int,
+    period: int | None = None,
+    phase_deg: float = 0.0,
+    progress: _Told = None,
+) -> Answer: ...
+def spectrum(
+    scene: Simulation,
+    of: str,
+    taper: str,
+    rate_hz: float | None = None,
+    until_settled: float | None = None,
+) -> Answer: ...
+def basins(
+    scene: Simulation,
+    x_mm: tuple[float, float, int],
+    v: tuple[float, float, int],
+    random: tuple[int, int] | None = None,
+    threads: int | None = None,
+    progress: _Told = None,
+    checking: _Told = None,
+) -> tuple[Answer, Answer]: ...
+def compare(
+    scene: Simulation,
+    name: str,
+    others: Sequence[tuple[str, Simulation]],
+    until_settled: float | None = None,
+    threads: int | None = None,
+    progress: _Told = None,
+) -> Answer: ...
+def best(
+    scene: Simulation,
+    over: Sequence[str],
+    maximise: str,
+    subject_to: Sequence[str],
+    environment: Sequence[str],
+    vary: Sequence[str],
+    seed: int,
+    until_settled: float | None = None,
+    threads: int | None = None,
+    progress: _Told = None,
+) -> Answer: ...
 def identify(
     path: str,
     of: str,

@@ -686,8 +686,8 @@ class Scene(Mapping[str, Any]):
         until_settled : float, optional
             Let each run go on until its motion repeats, or up to this time in s.
         carry : str, optional
-            Walk the last field ``"up"``, ``"down"`` or ``"both"`` ways: each run begins in the state of the
-            one before, at the last whole forcing period of that. The drive must repeat.
+            Walk the last field ``"up"``, ``"down"`` or ``"both"`` ways: each run from the end of the one
+            before, its last whole forcing period. The drive must repeat.
         uncertain : mapping of str to float, str or tuple, optional
             Fields that are known with a standard deviation: a number in the unit of the field, ``0.002``, or
             a text that is a share of the value, ``"5%"``, alone or behind the value, ``(0.023, 0.002)``.
@@ -740,7 +740,8 @@ class Scene(Mapping[str, Any]):
         laws = _mapping("uncertain", uncertain or {}, '{"damping.xi": 0.002}')
         inputs = [_uncertain(field, law) for field, law in laws.items()]
         with _Told(progress, "runs" if inputs else "cells") as told:
-            answer = self._simulation.sweep(
+            answer = _interwell.sweep(
+                self._simulation,
                 axes,
                 names,
                 until_settled,
@@ -807,7 +808,8 @@ class Scene(Mapping[str, Any]):
         """
         axes, _ = _over(over)
         with _Told(progress, "runs") as told:
-            answer = self._simulation.section(
+            answer = _interwell.section(
+                self._simulation,
                 axes,
                 at,
                 phase_deg,
@@ -916,8 +918,9 @@ class Scene(Mapping[str, Any]):
         if probability is None:
             _without("leave it out, or give `probability` too", runs=(runs, None), within=(within, None))
             with _Told(progress, "values") as told:
-                answer = self._simulation.threshold(
-                    axes, searched, of, resolution, until_settled, melnikov, _count("threads", threads), told
+                answer = _interwell.threshold(
+                    self._simulation, axes, searched, of, resolution, until_settled, melnikov,
+                    _count("threads", threads), told
                 )
             return Table(answer)
         _without(
@@ -925,8 +928,8 @@ class Scene(Mapping[str, Any]):
             of=(of, "crossing"), until_settled=(until_settled, None), melnikov=(melnikov, False),
         )
         with _Told(progress, "runs") as told:
-            answer = self._simulation.probable_threshold(
-                axes, searched, probability, _count("runs", runs), within, resolution,
+            answer = _interwell.probable_threshold(
+                self._simulation, axes, searched, probability, _count("runs", runs), within, resolution,
                 _count("threads", threads), told
             )
         return Table(answer)
@@ -988,9 +991,10 @@ class Scene(Mapping[str, Any]):
             _starts(name, given, random is not None)
             for name, given in [("x_mm", x_mm), ("v_m_per_s", v_m_per_s)]
         )
-        with _Told(progress, "starts") as told:
-            starts, attractors = self._simulation.basins(
-                starts_x, starts_v, drawn, _count("threads", threads), told
+        followed, checked = _Told(progress, "starts followed"), _Told(progress, "starts checked")
+        with followed as told, checked as told_again:
+            starts, attractors = _interwell.basins(
+                self._simulation, starts_x, starts_v, drawn, _count("threads", threads), told, told_again
             )
         return Basins(starts, attractors)
 
@@ -1029,7 +1033,7 @@ class Scene(Mapping[str, Any]):
         >>> scene.orbit()["period"]
         array([1])
         """
-        return Table(self._simulation.orbit(_count("period", period), phase_deg))
+        return Table(_interwell.orbit(self._simulation, _count("period", period), phase_deg))
 
     def branch(
         self,
@@ -1092,8 +1096,9 @@ class Scene(Mapping[str, Any]):
         array([0.7])
         """
         with _Told(progress, "motions") as told:
-            answer = self._simulation.branch(
-                field, (start, end), step, count, switch, _count("period", period), phase_deg, told
+            answer = _interwell.branch(
+                self._simulation, field, (start, end), step, count, switch, _count("period", period),
+                phase_deg, told
             )
         return Table(answer)
 
@@ -1157,8 +1162,9 @@ class Scene(Mapping[str, Any]):
         """
         with _Told(progress, "motions") as told:
             periods = _count("period", period)
-            answer = self._simulation.locus(
-                event, field, range, second, second_range, step, count, periods, phase_deg, told
+            answer = _interwell.locus(
+                self._simulation, event, field, range, second, second_range, step, count, periods,
+                phase_deg, told
             )
         return Table(answer)
 
@@ -1215,8 +1221,9 @@ class Scene(Mapping[str, Any]):
         """
         axes, arrays = _over(over)
         with _Told(progress, "cells") as told:
-            answer = self._simulation.exponents(
-                axes, _count("periods", periods), until_settled, _count("threads", threads), told
+            answer = _interwell.exponents(
+                self._simulation, axes, _count("periods", periods), until_settled,
+                _count("threads", threads), told
             )
         return Grid(answer, arrays) if arrays else Table(answer)
 
@@ -1277,8 +1284,8 @@ class Scene(Mapping[str, Any]):
         """
         axes, arrays = _over(over)
         with _Told(progress, "runs") as told:
-            answer = self._simulation.escape(
-                axes, _count("runs", runs), within, until, _count("threads", threads), told
+            answer = _interwell.escape(
+                self._simulation, axes, _count("runs", runs), within, until, _count("threads", threads), told
             )
         return Grid(answer, arrays) if arrays else Table(answer)
 
@@ -1331,7 +1338,7 @@ class Scene(Mapping[str, Any]):
         >>> table["amplitude"][table["frequency_hz"] == 3.0].round(6)
         array([14.709975])
         """
-        return Table(self._simulation.spectrum(of, taper, rate_hz, until_settled))
+        return Table(_interwell.spectrum(self._simulation, of, taper, rate_hz, until_settled))
 
     def compare(
         self,
@@ -1394,8 +1401,8 @@ class Scene(Mapping[str, Any]):
         names, scenes = first + names, unnamed + scenes
         pairs = [(name, scene._simulation) for name, scene in zip(names[1:], scenes[1:])]
         with _Told(progress, "parts") as told:
-            answer = self._simulation.compare(
-                names[0], pairs, until_settled, _count("threads", threads), told
+            answer = _interwell.compare(
+                self._simulation, names[0], pairs, until_settled, _count("threads", threads), told
             )
         return Table(answer)
 
@@ -1477,7 +1484,8 @@ class Scene(Mapping[str, Any]):
         varied = [f"{field}=+-{_value(by)}" for field, by in tolerances.items()]
         limits, places = _names("subject_to", subject_to), _names("environment", environment)
         with _Told(progress, "runs") as told:
-            answer = self._simulation.best(
+            answer = _interwell.best(
+                self._simulation,
                 ranges,
                 maximise,
                 limits,

@@ -35,3 +35,41 @@ fn in_python(text: String) -> String {
         _ => text.replace("`from`", "`start`").replace("`to`", "`end`"),
     }
 }
+
+/// What came of a question, or the exception.
+pub fn checked<T>(py: Python<'_>, found: Result<T, Error>) -> PyResult<T> {
+    found.map_err(|error| raised(py, &error))
+}
+
+/// The variant that is called `word`, or the exception that lists all.
+pub fn named<T: Copy>(
+    py: Python<'_>,
+    argument: &str,
+    word: &str,
+    all: &[T],
+    name: fn(T) -> &'static str,
+) -> PyResult<T> {
+    let found = all.iter().copied().find(|one| name(*one) == word);
+    found.ok_or_else(|| {
+        let known: Vec<&str> = all.iter().map(|one| name(*one)).collect();
+        raised(py, &Error::argument(argument, word, format!("give one of {}", known.join(", "))))
+    })
+}
+
+/// The error with the names that arguments have in Python, in place of those of the question.
+pub fn renamed<const N: usize>(error: Error, names: [[&str; 2]; N]) -> Error {
+    let named = |text: &str| {
+        let option =
+            |text: String, [from, to]: [&str; 2]| text.replace(&format!("--{from}"), &format!("--{to}"));
+        names.into_iter().fold(text.to_owned(), option)
+    };
+    match error {
+        Error::Argument { name, value, problem } => {
+            let known = names.into_iter().find(|[from, _]| *from == name);
+            let name = known.map_or(name, |[_, to]| to.to_owned());
+            Error::Argument { name, value, problem: named(&problem) }
+        }
+        Error::Unfit { scene, problem } => Error::Unfit { scene, problem: named(&problem) },
+        other => other,
+    }
+}

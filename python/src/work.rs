@@ -89,8 +89,8 @@ pub fn work_calling<T: Send>(
                 drop(sender.send(Message::Answer(answer)));
             };
             let started = thread::Builder::new().stack_size(STACK).spawn_scoped(scope, job);
-            if let Err(error) = started {
-                return (Ok(Err(Error::argument("threads", "", error))), None);
+            if started.is_err() {
+                return (Ok(Err(Error::no_thread())), None);
             }
             let mut interrupted = None;
             loop {

@@ -12,6 +12,7 @@ import subprocess
 import sys
 import textwrap
 import threading
+import types
 
 import numpy as np
 import pytest
@@ -482,6 +483,31 @@ def test_a_forked_process_has_threads_of_its_own() -> None:
     assert done.stdout == "same\n", done.stderr
 
 
+@pytest.mark.skipif(sys.platform != "linux", reason="the size of a process is read as Linux gives it")
+def test_a_thread_that_cannot_be_started_is_a_fault_with_its_value() -> None:
+    done = in_a_process(
+        """
+        import resource, threading
+        import interwell as iw
+        scene, over = iw.Scene.preset("paper"), threading.Event()
+        # stacks of threads that have ended are kept for the next ones, so that others have to take them
+        threading.stack_size(16 << 20)
+        for _ in range(4):
+            threading.Thread(target=over.wait, daemon=True).start()
+        with open("/proc/self/statm") as size:
+            pages = int(size.read().split()[0])
+        resource.setrlimit(resource.RLIMIT_AS, (pages * resource.getpagesize() + (8 << 20),) * 2)
+        try:
+            scene.curve()
+        except iw.SceneError as error:
+            (fault,) = error.faults
+            print(fault.field, fault.value, fault.problem)
+        over.set()
+        """
+    )
+    assert done.stdout == "threads 1 the system gives no thread; close another program\n", done.stderr
+
+
 def test_progress_is_told() -> None:
     told: list[tuple[int, int | None]] = []
     scene = iw.Scene.preset("paper-unconstrained").set({"run.duration_s": 100})
@@ -489,6 +515,32 @@ def test_progress_is_told() -> None:
     assert told[-1] == (60, 60)
     with pytest.raises(ZeroDivisionError):
         scene.sweep({"excitation.amplitude_g": np.linspace(1, 1.4, 60)}, progress=lambda *now: 1 / 0)
+
+
+def test_bars_name_the_phases_of_basins(monkeypatch: pytest.MonkeyPatch) -> None:
+    bars = []
+
+    class Bar:
+        def __init__(self, unit: str) -> None:
+            self.unit, self.total, self.n = unit, None, 0
+            bars.append(self)
+
+        def reset(self, total: int) -> None:
+            self.total, self.n = total, 0
+
+        def update(self, more: int) -> None:
+            self.n += more
+
+        def close(self) -> None:
+            pass
+
+    monkeypatch.setitem(sys.modules, "tqdm", types.ModuleType("tqdm"))
+    monkeypatch.setitem(sys.modules, "tqdm.auto", types.SimpleNamespace(tqdm=Bar))
+    scene = iw.Scene.preset("nominal-cubic").set({"excitation.amplitude_g": 0.6})
+    scene.basins((-4, 4, 5), (-0.2, 0.2, 3), progress=True)
+    assert [bar.unit.strip() for bar in bars] == ["starts followed", "starts checked"]
+    assert (bars[0].n, bars[0].total) == (15, 15)
+    assert bars[1].n == bars[1].total
 
 
 def test_types() -> None:

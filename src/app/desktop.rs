@@ -6,16 +6,16 @@ use std::sync::Arc;
 
 use eframe::egui;
 
-use super::session::CannotRun;
 use super::ui::settings::Settings;
 use super::window::{Window, begin};
+use crate::questions::Error;
 
 /// Why no window can be opened.
 #[derive(Debug, thiserror::Error)]
 pub enum AppError {
     /// The scene cannot be run.
     #[error(transparent)]
-    Scene(#[from] CannotRun),
+    Scene(#[from] Error),
     /// The machine has no display, or lacks a library or usable graphics.
     #[error(
         "no window can be opened: {0}; or work without one by interwell --headless, see interwell --help"
@@ -25,7 +25,7 @@ pub enum AppError {
 
 /// Opens the window on a scene, and returns when it is closed. If the scene cannot be run, the reason is
 /// passed to `refused` before the window opens; the window shows it too, and opens on the first preset.
-pub fn run(spec: Option<&str>, refused: impl FnOnce(CannotRun)) -> Result<(), AppError> {
+pub fn run(spec: Option<&str>, refused: impl FnOnce(Error)) -> Result<(), AppError> {
     let opened = Window::open(spec, Settings::default(), Arc::new(|| ())).map(drop);
     if !has_display() {
         opened?;

@@ -21,5 +21,4 @@ pub mod words;
 
 #[cfg(not(target_arch = "wasm32"))]
 pub use desktop::{AppError, run};
-pub use session::CannotRun;
 pub use window::begin;

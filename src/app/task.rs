@@ -16,8 +16,9 @@ use std::time::Duration;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
+use crate::questions::{Error, Progress};
 use crate::system::clock::WallClock;
-use crate::system::threads::{Pool, processors, sleep, spawn};
+use crate::system::threads::{processors, sleep, spawn};
 
 #[cfg(target_arch = "wasm32")]
 pub use workers::{Workers, set_workers, take_part};
@@ -27,9 +28,17 @@ pub fn threads() -> usize {
     processors().saturating_sub(1).max(1)
 }
 
-/// A pool of so many threads; `None` if the system cannot start them.
-pub fn pool() -> Option<Pool> {
-    Pool::new(threads()).ok()
+/// How a question beside the window is run: by so many threads, until it is cancelled.
+pub fn progress(cancel: &AtomicBool) -> Progress<'_> {
+    Progress::none().stopped_by(cancel).threads(threads())
+}
+
+/// What came of a question, or why there is no answer; `None` if it was cancelled.
+pub fn told<T>(answer: Result<T, Error>) -> Option<Result<T, String>> {
+    match answer {
+        Err(Error::Cancelled) => None,
+        answer => Some(answer.map_err(|error| error.problem())),
+    }
 }
 
 /// Callback that wakes the window when an answer is ready.

@@ -5,19 +5,13 @@ use std::path::Path;
 
 use clap::Args;
 use interwell::output::{accuracy_chart, aligned, scene_accuracy_chart};
+use interwell::questions::{Accuracy, Scheme, check_accuracy};
 use interwell::scene::Document;
-use interwell_studies::study::accuracy::methods::Scheme;
-use interwell_studies::study::accuracy::scene::{
-    Unfit, scene_table, step_name, step_size, tolerances, trust,
-};
-use interwell_studies::study::accuracy::{
-    PROBLEMS, Report, Selection, Stopped, accuracy, description, names,
-};
-use interwell_studies::study::{Task, stop_positions};
+use interwell_studies::study::accuracy::{PROBLEMS, Report, Selection, description, names};
+use interwell_studies::study::stop_positions;
 
-use super::progress::bar_on_terminal;
 use super::support::{Watch, inputs, load_simulation};
-use super::{Common, Failure, Output, Outputs, Picture, PlotOptions, interrupt, refuse, write_alone};
+use super::{Common, Failure, Output, Outputs, Picture, PlotOptions, ask, interrupt, refuse, write_alone};
 
 #[derive(Debug, Args)]
 pub struct Arguments {
@@ -59,7 +53,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     if let Some(option) = common.given(&["set", "tolerance"]) {
         refuse!("--{option} needs a SCENE, such as interwell --headless accuracy paper --{option} ..");
     }
-    let selection = Selection::of(&options.case)?;
+    let selection = Selection::of(&options.case).map_err(Failure::argument)?;
     if options.list {
         return write_alone(Output::DATA, Path::new("-"), &list(&options.case));
     }
@@ -72,16 +66,8 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     }
     let mut outputs = Outputs::new(&[]).with_rows(common.out.as_deref())?.with_picture(picture)?;
 
-    let template = "{wide_bar} {pos}/{len} parts  {eta} left";
-    let bar = bar_on_terminal(Some(selection.parts()), template, common.quiet);
-    let task = Task { tick: &|| bar.inc(1), cancel: interrupt::listen() };
     let watch = Watch::start();
-    let result = accuracy(&selection, &task);
-    bar.finish_and_clear();
-    let report = result.map_err(|stopped| match stopped {
-        Stopped::Cancelled => Failure::interrupted(),
-        Stopped::Scene(_) => Failure::Failed(stopped.into()),
-    })?;
+    let report = ask("parts", common, |progress| check_accuracy(&selection, progress))?;
     interrupt::check()?;
     outputs.table(Output::DATA, &report.table())?;
     if let Some(picture) = picture {
@@ -141,43 +127,23 @@ fn of_scene(
     picture: Option<Picture>,
     common: &Common,
 ) -> Result<(), Failure> {
-    let steps = options.step_s.as_deref().map_or_else(|| Ok(Vec::new()), steps)?;
+    let step_s = options.step_s.as_deref().map_or_else(|| Ok(Vec::new()), steps)?;
+    let is_chosen = |scheme: &Scheme| options.method.iter().any(|name| name == scheme.word());
+    let question = Accuracy { step_s, method: Scheme::ALL.into_iter().filter(is_chosen).collect() };
+    question.check()?;
     let simulation = load_simulation(spec, common)?;
     let (document, model) = (simulation.document(), simulation.model());
     let outputs = Outputs::new(&inputs(spec, document)).with_rows(common.out.as_deref())?;
     let mut outputs = outputs.with_picture(picture)?;
-    let cancel = interrupt::listen();
-
-    let trusted = trust(model, cancel).ok_or_else(Failure::interrupted)?;
-    let mut text = match trusted.short(0.0) {
-        Some(short) => format!("{short}. {}\n", trusted.long(0.0)),
-        None => format!("The run ends early ({}), after {} s.\n", trusted.outcome.name(), trusted.span),
-    };
-    let cost = tolerances(model, cancel).ok_or_else(Failure::interrupted)?;
-    let mut stepped = Vec::new();
-    let is_chosen = |word: &str| options.method.is_empty() || options.method.iter().any(|name| name == word);
-    for scheme in Scheme::ALL.into_iter().filter(|scheme| is_chosen(scheme.word())) {
-        for step in &steps {
-            let run = step_size(model, scheme, *step, cancel).map_err(|unfit| match unfit {
-                Unfit::Cancelled => Failure::interrupted(),
-                Unfit::Compliant | Unfit::ElectricalState => Failure::argument(format!("--step-s: {unfit}")),
-            })?;
-            let (name, step, effects) = (scheme.name(), step_name(*step), run.sentences().join(" "));
-            text += &format!("{name} in steps of {step}: {effects}\n");
-            stepped.push(run);
-        }
-    }
-    let table = scene_table(&cost, &stepped);
+    let found = question.run(&simulation, &interrupt::progress())?;
+    let table = found.table();
     outputs.table(Output::DATA, &table)?;
     outputs.draw(picture, document, |_| {
         let (tolerance, stops) = (model.tolerance(), stop_positions(&document.scene));
-        Ok(scene_accuracy_chart(&cost, tolerance, &stepped, stops))
+        Ok(scene_accuracy_chart(&found.tolerances, tolerance, &found.stepped, stops))
     })?;
-    finish(outputs, Some(document), &format!("{text}\n{}", aligned(&table)), common)
+    finish(outputs, Some(document), &format!("{}\n\n{}", found.words().join("\n"), aligned(&table)), common)
 }
-
-/// The shortest and the longest step in s that a run is made with.
-const STEPS: (f64, f64) = (1e-6, 1.0);
 
 /// Steps in s, each a number or a fraction.
 fn steps(text: &str) -> Result<Vec<f64>, Failure> {
@@ -187,12 +153,9 @@ fn steps(text: &str) -> Result<Vec<f64>, Failure> {
             Some((above, below)) => number(above).zip(number(below)).map(|(above, below)| above / below),
             None => number(part),
         };
-        let (least, most) = STEPS;
-        value.filter(|step| (least..=most).contains(step)).ok_or_else(|| {
-            Failure::argument(format!(
-                "--step-s {text}: `{part}` is no step; give seconds from {least:e} to {most}, such as 0.001 \
-                 or 1/60"
-            ))
+        value.filter(|step| step.is_finite()).ok_or_else(|| {
+            let remedy = "give seconds, such as 0.001 or 1/60";
+            Failure::argument(format!("--step-s {text}: `{part}` is no step; {remedy}"))
         })
     };
     text.split(',').map(step).collect()

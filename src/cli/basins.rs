@@ -66,7 +66,8 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     if !common.quiet {
         forecast(&basins).iter().for_each(|line| say(line));
     }
-    let found = ask("starts", common, |progress| Basins::follow(basins, progress))?;
+    let followed = ask("starts followed", common, |progress| Basins::followed(basins, progress, None))?;
+    let found = ask("starts checked", common, |progress| followed.checked(progress))?;
     write_rows(&mut outputs, &found)?;
     outputs.table(Output::ATTRACTORS, &found.attractors())?;
     let BasinsAnswer { basins, answer } = &found;

@@ -90,7 +90,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         Outputs::new(&read).with_rows(Some(common.out()))?.reading(&environments)?.with_picture(picture)?;
     let mut so_far = None;
     let found = ask("runs", common, |progress| {
-        request.search(question, &document, progress, &mut |words| so_far = Some(words))
+        request.search(question, &document, progress, &mut |_, words| so_far = Some(words))
     });
     if let (Err(_), Some(words)) = (&found, &so_far) {
         say(&format!("{}: best so far at {words}", document.name));

@@ -8,7 +8,7 @@ use interwell::questions::{Compare, Rated, Simulation};
 use interwell::scene::{Document, RunSettings, Stops, Transducer};
 
 use super::support::{self, change, inputs, load_simulation, settle_limit, simulation};
-use super::{Common, Failure, Output, Outputs, Picture, PlotOptions, ask, caption, interrupt, refuse};
+use super::{Common, Failure, Output, Outputs, Picture, PlotOptions, ask, caption, interrupt};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -48,10 +48,10 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         read.extend(inputs(spec, &document));
         all.push((name, simulation(&document, common)?));
     }
-    let mut others = all.iter().cloned();
-    let Some((name, first)) = others.next() else { refuse!("compare: name a scene, such as paper") };
+    // without an argument there is the default one
+    let (name, first) = all[0].clone();
     let until_settled = settle_limit(options.until_settled.as_deref())?;
-    let question = Compare { with: others.collect(), name, environment, until_settled };
+    let question = Compare { with: all[1..].to_vec(), name, environment, until_settled };
     let scenes = question.scenes(&first, &interrupt::progress())?;
     if let [(only, _)] = &all[..] {
         common.say(&format!("{only}: the only scene; name others to set beside it"));

@@ -164,7 +164,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         .with_picture(mechanism_picture)?
         .with_picture(contact_picture)?
         .with(Output::COMPARISON, options.measured.comparison.as_deref())?;
-    let measured = options.measured.compare(&mechanism, common)?;
+    let measured = options.measured.compare(&document, &mechanism, common)?;
     if let Some(found) = &measured {
         outputs.table(Output::COMPARISON, &found.table)?;
     }
@@ -181,8 +181,9 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let stops = stop_positions(&document.scene);
     outputs.draw(picture, &document, |ranges| match &measured {
         Some(found) => {
-            let over = even_positions(extent(found.positions.iter().copied()), CURVE_PICTURE_POINTS);
-            Ok(measured_force_chart(found, &curve(over)?, ranges))
+            let range = extent(found.positions.iter().copied());
+            let table = Curve::drawn(Some(range), &document, &mechanism).map_err(told)?;
+            Ok(measured_force_chart(found, &table, ranges))
         }
         None => {
             let table = curve(even(CURVE_PICTURE_POINTS))?;

@@ -7,8 +7,7 @@ use interwell::output::{NoPicture, OpenError};
 use interwell::questions::Error;
 use interwell::scene::lesson::LessonError;
 use interwell::scene::{ArgumentError, SceneError};
-use interwell_studies::study::accuracy::UnknownCase;
-use interwell_studies::study::{GridError, OutsideCurve, SweepEnd, TimesError};
+use interwell_studies::study::{GridError, SweepEnd};
 
 /// Returns the error of a wrong argument from the function; the message is formatted as by `format!`.
 macro_rules! refuse {
@@ -90,7 +89,7 @@ impl From<Error> for Failure {
 }
 
 arguments_are_wrong! {
-    SceneError, LessonError, ArgumentError, GridError, TimesError, OutsideCurve, NoPicture, UnknownCase
+    SceneError, LessonError, ArgumentError, GridError, NoPicture
 }
 
 impl From<OpenError> for Failure {

@@ -7,9 +7,9 @@ use clap::Args;
 use interwell::mechanics::Mechanism;
 use interwell::numeric::short;
 use interwell::output::aligned;
-use interwell::questions::{Error, Simulation, columns_read};
-use interwell::scene::{ColumnRequest, Measured, Quantity, read_measured};
-use interwell_studies::study::{Comparison, ForceComparison, MeasuredMotion, compare_force, metres};
+use interwell::questions::{Curve, Error, Simulation, columns_read};
+use interwell::scene::{ColumnRequest, Document, Measured, Quantity, read_measured};
+use interwell_studies::study::{Comparison, ForceComparison, MeasuredMotion, metres};
 
 use super::support::{finite, numbers};
 use super::{Common, Failure, interrupt, refuse, say};
@@ -202,6 +202,7 @@ impl MeasuredForceOptions {
     /// Compares the record, if one is given, with the curve of a mechanism.
     pub fn compare(
         &self,
+        document: &Document,
         mechanism: &Mechanism,
         common: &Common,
     ) -> Result<Option<ForceComparison>, Failure> {
@@ -220,8 +221,8 @@ impl MeasuredForceOptions {
         let commas = if record.decimal_commas { ", with decimal commas" } else { "" };
         let [x, force] = &record.channels;
         let positions: Vec<f64> = x.values.iter().map(|x| x + offset).collect();
-        let found = compare_force(mechanism, &positions, &force.values)
-            .map_err(|problem| about(problem.to_string()))?;
+        let found = Curve::compared(document, mechanism, &positions, &force.values)
+            .map_err(|error| about(error.problem()))?;
         common.say(&format!("{name}: position from `{}`, force from `{}`{commas}", x.column, force.column));
         found.remarks.iter().for_each(|remark| common.say(&format!("{name}: {remark}")));
         common.say(aligned(&found.table).trim_end());

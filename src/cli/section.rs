@@ -35,8 +35,8 @@ pub struct Arguments {
     #[arg(long, value_name = "FIELD=FROM:TO:STEP|a,b,c", allow_hyphen_values = true)]
     pub over: Vec<String>,
 
-    /// Walk the last --over field in its order (up), backwards (down) or both ways: each run begins in the
-    /// state of the one before, only the first at the scene's start
+    /// Walk the last --over field in its order (up), backwards (down) or both ways: each run from the end of
+    /// the one before, only the first from the scene's start
     #[arg(long, value_name = "up|down|both", value_parser = ["up", "down", "both"], requires = "over")]
     pub carry: Option<String>,
 

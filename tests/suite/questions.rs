@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use interwell::mechanics::ForceCurve;
 use interwell::questions::{
-    Best, Branch, Curve, Error, Identify, Progress, Sampling, Simulation, Sweep, WhatToIdentify,
+    Accuracy, Best, Branch, Curve, Error, Identify, Progress, Sampling, Simulation, Sweep, WhatToIdentify,
 };
 use interwell::scene::{Document, Excitation};
 
@@ -74,6 +74,10 @@ fn a_fault_names_the_argument_and_its_value() {
     // 1e4 places of one field are few, 1e8 of two are too many to keep
     let axes = ["mass_g=10:20:0.001", "stops.travel_limit_mm=1:6:0.0005"].map(str::to_owned);
     let (too_many, best) = (&*axes.join(", "), Best { over: axes.to_vec(), ..Best::default() });
+    let soft = "Hertz(travel_limit_mm: 4, radius_mm: 5, young_gpa: 69, loss_s_per_m: 10.4)";
+    let (soft, in_steps) = (scene.with("stops", soft).unwrap(), |scene: &Simulation, step| {
+        Accuracy { step_s: vec![step], method: Vec::new() }.run(scene, &Progress::none())
+    });
     let sampled = |sampling| scene.record(&sampling, None, &Progress::none());
     let beyond = Curve { positions: Some(vec![99.0]) }.run(&Simulation::preset("paper").unwrap());
     for (found, expected) in [
@@ -90,6 +94,8 @@ fn a_fault_names_the_argument_and_its_value() {
         (fault(sampled(Sampling::Every(0.0))), ("dt", "0")),
         (fault(sampled(Sampling::At(vec![99.0]))), ("at", "99")),
         (fault(beyond), ("positions", "99")),
+        (fault(in_steps(&scene, 2.0)), ("step_s", "2")),
+        (fault(in_steps(&soft, 0.01)), ("step_s", "0.01")),
         (fault(unswept.grid(&[])), ("over", "none")),
         (fault(best.run(&scene, &Progress::none())), ("over", too_many)),
     ] {

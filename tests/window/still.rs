@@ -141,7 +141,8 @@ fn the_guide_line_holds_its_longest_text_and_its_buttons_stand_at_the_right() {
         harness.get_by_label("What stops do:");
         assert_eq!(harness.get_by_label("Dismiss").rect(), right, "{size:?}");
         let all = painted(&harness);
-        let (_, text, clip) = all.iter().find(|label| label.0.starts_with("near the middle they hold")).unwrap();
+        let (_, text, clip) =
+            all.iter().find(|label| label.0.starts_with("near the middle they hold")).unwrap();
         assert!(clip.expand(1.0).contains_rect(*text) && text.right() < right.left(), "{text:?} {clip:?}");
         // it leaves with the stops
         harness.state_mut().session.switch_stops(false);

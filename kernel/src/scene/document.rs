@@ -153,9 +153,17 @@ impl Document {
         let record_faults = record::attach(&mut scene.excitation, "excitation", &files);
         let mut written = Written::default();
         written.update("", text.trim_start_matches('\u{feff}'));
-        let (name, text, source) = (name.to_owned(), text.to_owned(), Source::Text);
+        let (name, text) = (name.to_owned(), text.to_owned());
+        Ok(Self { name, text, record_faults, written, ..Self::of_scene(scene, files) })
+    }
+
+    /// The document of a scene without a text, such as one that a window changes. Messages call it `the
+    /// scene`.
+    pub fn of_scene(scene: Scene, files: Files) -> Self {
+        let (source, name, text) = (Source::Text, "the scene".to_owned(), String::new());
         let (swept, compared, assigned) = (None, Vec::new(), Vec::new());
-        Ok(Self { scene, source, name, text, files, swept, compared, assigned, record_faults, written })
+        let (record_faults, written) = (Vec::new(), Written::default());
+        Self { scene, source, name, text, files, swept, compared, assigned, record_faults, written }
     }
 
     /// The text of `scene`, this one or one made from it. A number that this scene has as arithmetic is

@@ -8,7 +8,7 @@ use anyhow::{Result, ensure};
 use crate::app::session::explore::STARTS;
 use crate::app::session::map::over;
 use crate::app::session::measured::Overlay as Laid;
-use crate::app::task::threads;
+use crate::app::task::progress;
 use crate::mechanics::Mechanism;
 use crate::numeric::extent;
 use crate::output::{
@@ -17,16 +17,11 @@ use crate::output::{
     scene_accuracy_chart, section_chart, spectrum_chart, sweep_chart,
 };
 use crate::questions::{
-    Basins, Carry, Curve, Error, EvenRange, Grid, Progress, Section, SectionOptions, Signal, Simulation,
-    Spectrum, Sweep,
+    Accuracy, Basins, Carry, Curve, EvenRange, Grid, Progress, Scheme, Section, SectionOptions, Signal,
+    Simulation, Spectrum, Sweep,
 };
 use crate::scene::{Document, FieldPath, arguments};
-use interwell_studies::study::accuracy::methods::Scheme;
-use interwell_studies::study::accuracy::scene::{step_size, tolerances};
-use interwell_studies::study::{
-    CURVE_PICTURE_POINTS, Keep, MeasuredMotion, compare_force, default_positions, even_positions, metres,
-    stop_positions,
-};
+use interwell_studies::study::{Keep, metres, stop_positions};
 
 use super::figure::{FigureOrder, Subject};
 
@@ -43,7 +38,7 @@ pub(super) fn draw(order: &FigureOrder, cancel: &AtomicBool) -> Result<Option<Fi
 fn figure(order: &FigureOrder, cancel: &AtomicBool) -> Result<Figure> {
     let document = document(order)?;
     let caption = Caption::new(&document, env!("CARGO_PKG_VERSION"));
-    let drawing = Drawing { progress: Progress::none().stopped_by(cancel).threads(threads()), document };
+    let drawing = Drawing { progress: progress(cancel), document };
     let chart = match &order.subject {
         Subject::Run(times, panels) => drawing.run(*times, panels),
         Subject::Curve => drawing.curve(),
@@ -110,8 +105,7 @@ impl Drawing<'_> {
     fn curve(&self) -> Result<Chart> {
         let simulation = self.simulation()?;
         let (scene, mechanism) = (simulation.scene(), simulation.mechanism());
-        let positions = Some(default_positions(scene, mechanism, CURVE_PICTURE_POINTS));
-        let table = Curve { positions }.run(&simulation)?;
+        let table = Curve::drawn(None, &self.document, mechanism)?;
         Ok(curve_chart(&table, mechanism, stop_positions(scene), Ranges::default()))
     }
 
@@ -120,27 +114,24 @@ impl Drawing<'_> {
     }
 
     fn accuracy(&self, stepped: Option<(Scheme, f64)>) -> Result<Chart> {
-        let (simulation, cancel) = (self.simulation()?, self.progress.stop());
-        let model = simulation.model();
-        let known = tolerances(model, cancel).ok_or(Error::Cancelled)?;
-        let stepped = stepped.map(|(scheme, step)| step_size(model, scheme, step, cancel)).transpose()?;
+        let (simulation, progress) = (self.simulation()?, &self.progress);
+        let known = Accuracy::tolerances(&simulation, progress)?;
+        let run = |(scheme, step)| Accuracy::step_size(&simulation, scheme, step, progress);
+        let stepped = stepped.map(run).transpose()?;
         let stops = stop_positions(&self.document.scene);
-        Ok(scene_accuracy_chart(&known, model.tolerance(), stepped.as_slice(), stops))
+        Ok(scene_accuracy_chart(&known, simulation.model().tolerance(), stepped.as_slice(), stops))
     }
 
     fn measured(&self, over: &Laid) -> Result<Chart> {
-        let (simulation, record) = (self.simulation()?, &over.record);
-        let (across, channel, ranges) = (&record.across.values, &record.values, Ranges::default());
+        let (simulation, channel, ranges) = (self.simulation()?, &over.record.values, Ranges::default());
         if over.is_force() {
-            let positions: Vec<f64> = across.iter().map(|x| x + over.offset).collect();
-            let found = compare_force(simulation.mechanism(), &positions, &channel.values)?;
-            let over = even_positions(extent(found.positions.iter().copied()), CURVE_PICTURE_POINTS);
-            let table = Curve { positions: Some(over) }.run(&simulation)?;
+            let (document, mechanism) = (simulation.document(), simulation.mechanism());
+            let found = Curve::compared(document, mechanism, &over.positions(), &channel.values)?;
+            let range = extent(found.positions.iter().copied());
+            let table = Curve::drawn(Some(range), document, mechanism)?;
             return Ok(measured_force_chart(&found, &table, ranges));
         }
-        let (offset, time_scale, shift) = (over.added(), over.time_scale, Some(over.shift));
-        let motion = MeasuredMotion { times: across, channel, offset, time_scale, shift };
-        let found = simulation.compared(&motion, &self.progress)?;
+        let found = simulation.compared(&over.motion(Some(over.shift)), &self.progress)?;
         let (_, trace) = simulation.traced(&Keep::default(), None, &self.progress)?;
         Ok(measured_chart(&trace, (&found, channel.quantity), None, ranges))
     }
@@ -187,7 +178,7 @@ impl Drawing<'_> {
         let even = |(from, to): (f64, f64)| EvenRange { from, to, count: STARTS };
         let question = Basins { x_mm: even(x_mm), v: even(v), random: None };
         let begun = question.begin(question.starts()?, &self.document, &self.mechanism()?)?;
-        let found = Basins::follow(begun, &self.progress)?;
+        let found = Basins::followed(begun, &self.progress, None)?.checked(&self.progress)?;
         Ok(basins_chart(&found.basins, &found.answer))
     }
 

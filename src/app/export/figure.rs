@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::app::session::Session;
 use crate::app::session::editor::keep_start_inside;
-use crate::app::session::explore::{STARTS, WalkQuantity, longest_wait};
+use crate::app::session::explore::{STARTS, WalkQuantity};
 use crate::app::session::map::{LOAD_POWER, NO_FIELDS, ground, over};
 use crate::app::session::measured::{Overlay, file_name};
 use crate::app::task::{Each, Question, as_text};
@@ -16,10 +16,9 @@ use crate::numeric::{elementary, short};
 use crate::output::{
     Argument, Cut, Figure, Format, RMS, RunPanel, Sheet, Sink, View, csv, picture_arguments, words_of,
 };
+use crate::questions::{Scheme, Signal, longest_wait};
 use crate::scene::{FieldPath, Scene, Start, SweepAxis, arguments};
 use crate::system::files;
-use interwell_studies::study::Signal;
-use interwell_studies::study::accuracy::methods::Scheme;
 
 use super::drawing::draw;
 use super::{WriteResult, quoted};

@@ -6,9 +6,8 @@ mod drawing;
 pub mod figure;
 
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 
-use anyhow::Result;
 use eframe::egui::ColorImage;
 use serde::{Deserialize, Serialize};
 
@@ -18,14 +17,11 @@ use crate::app::session::map::over;
 use crate::app::session::measured::file_name;
 use crate::app::session::player::Player;
 use crate::app::session::prepared::SharedModel;
-use crate::app::task::{Each, Question};
-use crate::dynamics::Model;
+use crate::app::task::{Each, Question, progress, told};
 use crate::output::{csv, write_file};
+use crate::questions::{Curve, Error, Sampling};
 use crate::scene::{FieldPath, Scene, arguments};
-use interwell_studies::study::{
-    CURVE_POINTS, Keep, OutsideCurve, Sampling, continued_scene, curve, default_positions, events_table,
-    sample_times, samples_table, simulate, watched_events,
-};
+use interwell_studies::study::{continued_scene, events_table, samples_table, watched_events};
 
 /// The remembered motion, in the columns of the command `simulate`.
 pub fn motion_csv(player: &Player) -> String {
@@ -39,8 +35,6 @@ pub type WriteResult = Result<String, String>;
 /// The run of a scene from start to end, to be written to a file as `simulate` writes it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RunQuestion {
-    #[serde(with = "crate::app::task::as_text")]
-    pub scene: Scene,
     pub model: SharedModel,
     pub path: PathBuf,
 }
@@ -50,20 +44,13 @@ impl Question for RunQuestion {
     type Part = WriteResult;
 
     fn answer(&self, cancel: &AtomicBool, _: Each<WriteResult>) -> Option<WriteResult> {
-        let text = run_csv(&self.scene, &self.model, cancel).map_err(|error| error.to_string());
-        text.transpose().map(|text| write_text(&self.path, &text?))
+        let recorded = self.model.simulation().record(&Sampling::Default, None, &progress(cancel));
+        Some(told(recorded)?.and_then(|recorded| write_text(&self.path, &csv(&recorded.samples))))
     }
 }
 
 pub fn write_text(path: &Path, text: &str) -> WriteResult {
     write_file(path, text.as_bytes()).map(|()| format!("Saved {}", file_name(path)))
-}
-
-/// The run of a scene from start to end, as `simulate` writes it. Returns `None` if cancelled.
-pub fn run_csv(scene: &Scene, model: &Model, cancel: &AtomicBool) -> Result<Option<String>> {
-    let times = sample_times(scene, model, &Sampling::Default, None)?;
-    let table = simulate(model, &Keep { times, events: false, until_settled: None }, Some(cancel)).samples;
-    Ok((!cancel.load(Ordering::Relaxed)).then(|| csv(&table)))
 }
 
 /// The remembered events, in the columns of `simulate --events`.
@@ -78,10 +65,8 @@ pub fn events_seen_csv(player: &Player) -> String {
 }
 
 /// Force, potential and stiffness of the mechanism, as the command `curve` writes them without options.
-pub fn curve_csv(session: &Session) -> Result<String, OutsideCurve> {
-    let mechanism = &session.model().mechanism();
-    let table = curve(mechanism, default_positions(session.scene(), mechanism, CURVE_POINTS as usize))?;
-    Ok(csv(&table))
+pub fn curve_csv(session: &Session) -> Result<String, Error> {
+    Curve::default().run(&session.model.simulation()).map(|table| csv(&table))
 }
 
 pub fn png(image: &ColorImage) -> Result<Vec<u8>, String> {

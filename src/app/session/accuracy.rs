@@ -9,14 +9,11 @@ use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 
-use crate::app::task::{Background, Each, Question, Wake};
+use crate::app::task::{Background, Each, Question, Wake, progress, told};
 use crate::app::words::capital;
 use crate::dynamics::{Model, Summary};
-use interwell_studies::study::accuracy::methods::Scheme;
-use interwell_studies::study::accuracy::scene::{
-    Course, StepSize, Tolerances, Trust, Unfit, lasting, moment, small_length, step_size, tolerances, trust,
-};
-use interwell_studies::study::settled;
+use crate::questions::{self, Course, Scheme, StepSize, Tolerances, Trust};
+use interwell_studies::study::accuracy::scene::{moment, small_length};
 
 use super::prepared::SharedModel;
 
@@ -39,7 +36,7 @@ impl Question for LiveRun {
     type Part = Summary;
 
     fn answer(&self, cancel: &AtomicBool, _: Each<Summary>) -> Option<Summary> {
-        settled(&self.model, cancel)
+        self.model.simulation().settled(&progress(cancel)).ok()
     }
 }
 
@@ -52,7 +49,7 @@ pub struct Accuracy {
     /// Its step in s.
     pub step: f64,
     pub(super) tolerances: Background<TolerancesQuestion, Tolerances>,
-    pub(super) stepped: Background<StepQuestion, Result<StepSize, Unfit>>,
+    pub(super) stepped: Background<StepQuestion, Result<StepSize, String>>,
     /// Whether the user has stopped the computations since the last change.
     pub is_stopped: bool,
 }
@@ -69,7 +66,8 @@ impl Question for PathQuestion {
     type Part = Trust;
 
     fn answer(&self, cancel: &AtomicBool, _: Each<Trust>) -> Option<Trust> {
-        trust(&lasting(&self.run.model, self.duration), cancel)
+        let simulation = self.run.model.simulation();
+        questions::Accuracy::trust(&simulation, Some(self.duration), &progress(cancel)).ok()
     }
 }
 
@@ -82,7 +80,7 @@ impl Question for TolerancesQuestion {
     type Part = Tolerances;
 
     fn answer(&self, cancel: &AtomicBool, _: Each<Tolerances>) -> Option<Tolerances> {
-        tolerances(&self.0, cancel)
+        questions::Accuracy::tolerances(&self.0.simulation(), &progress(cancel)).ok()
     }
 }
 
@@ -96,13 +94,11 @@ pub(super) struct StepQuestion {
 
 impl Question for StepQuestion {
     const NAME: &'static str = "step size";
-    type Part = Result<StepSize, Unfit>;
+    type Part = Result<StepSize, String>;
 
     fn answer(&self, cancel: &AtomicBool, _: Each<Self::Part>) -> Option<Self::Part> {
-        match step_size(&self.model, self.scheme, self.step, cancel) {
-            Err(Unfit::Cancelled) => None,
-            answer => Some(answer),
-        }
+        let (simulation, progress) = (self.model.simulation(), progress(cancel));
+        told(questions::Accuracy::step_size(&simulation, self.scheme, self.step, &progress))
     }
 }
 
@@ -211,7 +207,7 @@ impl Accuracy {
     }
 
     /// The result of the fixed step, and whether it is that of `model`, the present method and step.
-    pub fn stepped(&self, model: &Model) -> Option<(&Result<StepSize, Unfit>, bool)> {
+    pub fn stepped(&self, model: &Model) -> Option<(&Result<StepSize, String>, bool)> {
         let question = self.stepped.question()?;
         let same = std::ptr::eq(&*question.model, model)
             && (question.scheme, question.step) == (self.scheme, self.step);

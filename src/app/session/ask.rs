@@ -6,11 +6,12 @@ use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 
-use crate::app::task::{Each, Question, Uncompared};
+use crate::app::task::{Each, Question, Uncompared, progress};
 use crate::app::words::status;
 use crate::mechanics::Mechanism;
+use crate::questions::{stops_that_cross, thresholds};
 use crate::scene::{Scene, Start};
-use interwell_studies::study::{self, Task, Thresholds};
+use interwell_studies::study::{Thresholds, can_cross};
 
 use super::Session;
 use super::accuracy::LiveRun;
@@ -38,7 +39,7 @@ impl Question for ThresholdsQuestion {
         let Prepared { of: SceneWithFiles { scene, .. }, mechanism, .. } = &self.0;
         let known = earlier().iter().find(|kept| kept.0 == *scene && kept.1 == *mechanism).map(|kept| kept.2);
         known.or_else(|| {
-            let thresholds = study::thresholds(scene, mechanism, &Task { tick: &|| (), cancel })?;
+            let thresholds = thresholds(scene, mechanism, &progress(cancel))?;
             let mut all = earlier();
             if all.len() == KEPT {
                 all.remove(0);
@@ -62,8 +63,8 @@ impl Question for StopsQuestion {
     type Part = Option<f64>;
 
     fn answer(&self, cancel: &AtomicBool, _: Each<Option<f64>>) -> Option<Option<f64>> {
-        let (Self { of, restitution }, task) = (self, Task { tick: &|| (), cancel });
-        study::stops_that_cross(&of.of, &of.mechanism, restitution.0, &task).ok()
+        let Self { of, restitution } = self;
+        stops_that_cross(&of.of, &of.mechanism, restitution.0, &progress(cancel)).ok()
     }
 }
 
@@ -181,9 +182,7 @@ impl Session {
     }
 
     pub(super) fn can_search(&self) -> bool {
-        self.fault.is_none()
-            && self.built.harmonic().is_some()
-            && study::can_cross(&self.built, &self.mechanism)
+        self.fault.is_none() && self.built.harmonic().is_some() && can_cross(&self.built, &self.mechanism)
     }
 }
 

@@ -195,7 +195,7 @@ mod tests {
         session.find_best_stops();
         if let Some(search) = session.best.search.question().filter(|_| !is_slow(Search::NAME)) {
             let mut search = search.clone();
-            search.range.intervals = 4;
+            search.over += &format!(":{}", (search.range.1 - search.range.0) / 4.0);
             compare(Some(&search), true);
         }
     }

@@ -5,15 +5,13 @@ use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 
-use crate::app::task::{Background, Each, Question, pool};
+use crate::app::task::{Background, Each, Question, progress, told};
 use crate::app::words::Guide;
 use crate::app::words::best_stops::{answer_guide, looking};
 use crate::app::words::fields::info;
+use crate::questions::{Best, BestDesign, Error, Optimum};
 use crate::scene::{FieldPath, Stops, SweepAxis};
-use interwell_studies::study::{
-    BestDesign, BestQuestion, DesignRange, Environment, INTERVALS, NoBest, Optimum, RMS_VELOCITY,
-    SummaryField, Task, best,
-};
+use interwell_studies::study::{RMS_VELOCITY, SummaryField};
 
 use super::Session;
 use super::map::{LOAD_POWER, ground};
@@ -24,19 +22,22 @@ pub const LIMIT: &str = "stops.travel_limit_mm";
 
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) enum Part {
-    /// A run has been made.
-    Run,
+    /// So many runs have been made.
+    Runs(u64),
     /// The optimum of the coarse scan.
     Preview(Optimum),
     /// The answer, or why there is none.
-    Whole(Result<BestDesign, NoBest>),
+    Whole(Result<BestDesign, String>),
 }
 
 /// A search: the scene, from rest with its least travel limit, and the range of travel limits.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct Search {
     scene: SceneWithFiles,
-    pub range: DesignRange,
+    /// The field with its range, as a question takes it.
+    pub over: String,
+    /// Ends of the range in mm.
+    pub range: (f64, f64),
     maximise: &'static SummaryField,
     /// Length of a run in s under a drive that does not repeat.
     duration_s: Option<f64>,
@@ -47,21 +48,18 @@ impl Question for Search {
     type Part = Part;
 
     fn answer(&self, cancel: &AtomicBool, each: Each<Part>) -> Option<Part> {
-        let SceneWithFiles { scene, files } = self.scene.clone();
-        let question = BestQuestion {
-            over: vec![self.range.clone()],
-            maximise: self.maximise,
-            subject_to: Vec::new(),
-            environments: vec![Environment { name: String::new(), weight: 1.0, scene, files }],
-            vary: Vec::new(),
-            seed: 1,
-            until_settled: None,
-        };
-        let task = Task { tick: &|| each(Part::Run), cancel };
-        match best(&question, &pool()?, &task, &mut |optimum| each(Part::Preview(optimum.clone()))) {
-            Err(NoBest::Cancelled) => None,
-            found => Some(Part::Whole(found)),
-        }
+        told(self.found(cancel, each)).map(Part::Whole)
+    }
+}
+
+impl Search {
+    fn found(&self, cancel: &AtomicBool, each: Each<Part>) -> Result<BestDesign, Error> {
+        let (over, maximise) = (vec![self.over.clone()], self.maximise.name.to_owned());
+        let question = Best { over, maximise, ..Best::default() };
+        let (document, runs) = (self.scene.document(), |done, _| each(Part::Runs(done)));
+        let progress = progress(cancel).reporting_to(&runs);
+        let preview = &mut |optimum: &Optimum, _| each(Part::Preview(optimum.clone()));
+        Ok(question.search(question.question(&document)?, &document, &progress, preview)?.design)
     }
 }
 
@@ -93,15 +91,15 @@ impl BestStops {
     fn known(&self) -> (u64, Option<&Part>) {
         let (parts, is_current) = self.search.parts();
         let parts = if is_current { parts } else { &[] };
-        let is_run = |part: &&Part| matches!(part, Part::Run);
-        (parts.iter().filter(is_run).count() as u64, parts.iter().rfind(|part| !is_run(part)))
+        let runs = |part: &Part| if let Part::Runs(runs) = part { Some(*runs) } else { None };
+        (parts.iter().filter_map(runs).max().unwrap_or(0), parts.iter().rfind(|part| runs(part).is_none()))
     }
 
     /// The best travel limit in mm so far, at first that of the coarse scan; `None` if no limit stands out.
     pub fn limit_mm(&self) -> Option<f64> {
         match self.known().1? {
             Part::Whole(Ok(design)) => (!design.flat).then(|| design.optimum.at[0]),
-            Part::Whole(Err(_)) | Part::Run => None,
+            Part::Whole(Err(_)) | Part::Runs(_) => None,
             Part::Preview(best) => (best.value != 0.0).then(|| best.at[0]),
         }
     }
@@ -114,12 +112,12 @@ impl BestStops {
         let Some(search) = self.search.question() else { return Guide::default() };
         let (column, (runs, newest)) = (search.maximise.name, self.known());
         match newest {
-            Some(Part::Whole(answer)) => answer_guide(answer, column, &search.range, search.duration_s),
+            Some(Part::Whole(answer)) => answer_guide(answer, column, search.range, search.duration_s),
             _ if !self.is_running() => {
                 Guide::new("", "The search for the best stops ended without an answer.")
             }
             Some(Part::Preview(best)) => Guide::new("", looking(runs, Some(best), column)),
-            None | Some(Part::Run) => Guide::new("", looking(runs, None, column)),
+            None | Some(Part::Runs(_)) => Guide::new("", looking(runs, None, column)),
         }
     }
 }
@@ -152,11 +150,12 @@ impl Session {
         if !FieldPath::new(LIMIT).set(&mut scene, reach.low) {
             return Err("The stops that would be switched on do not stand equally far out.");
         }
-        let range = DesignRange::new(LIMIT, (reach.low, reach.high), INTERVALS[0]);
         let duration_s = (!self.model().repeats()).then_some(scene.run.duration_s);
         let power = SummaryField::find(LOAD_POWER).filter(|_| self.model().has_transducer());
         let maximise = power.unwrap_or(&RMS_VELOCITY);
-        Ok(Search { scene: self.with_files(scene), range, maximise, duration_s })
+        let (scene, range) = (self.with_files(scene), (reach.low, reach.high));
+        let over = format!("{LIMIT}={}:{}", range.0, range.1);
+        Ok(Search { scene, over, range, maximise, duration_s })
     }
 
     /// Receives results, and drops them once the scene has changed; to be called once a frame.

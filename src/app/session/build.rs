@@ -5,37 +5,25 @@ use std::sync::Arc;
 use crate::app::words::fields::{in_words, name_and_unit};
 use crate::app::words::numbers::rounded;
 use crate::dynamics::Model;
-use crate::mechanics::{BuildError, FlexureError, Mechanism};
+use crate::mechanics::Mechanism;
+use crate::questions::Error;
 use crate::scene::{Document, Fault, Scene, SceneError, Stops};
 
 /// Restitution of the stops if the scene gives no stops to switch on.
 const RESTITUTION: f64 = 0.36;
 
-/// Why a scene cannot be run.
-#[derive(Debug, thiserror::Error)]
-pub enum CannotRun {
-    #[error(transparent)]
-    Wrong(#[from] SceneError),
-    /// The scene is valid, but its flexures could not be solved.
-    #[error(transparent)]
-    Unsolved(#[from] FlexureError),
-}
-
-pub(super) fn mechanism(document: &Document, tolerance: f64) -> Result<Arc<Mechanism>, CannotRun> {
+pub(super) fn mechanism(document: &Document, tolerance: f64) -> Result<Arc<Mechanism>, Error> {
     let built = Mechanism::build_with(&document.scene.mechanism, &document.files, tolerance);
-    built.map(Arc::new).map_err(|error| match error {
-        BuildError::Wrong(fault) => document.error_from(vec![fault]).into(),
-        BuildError::Unsolved(error) => error.into(),
-    })
+    built.map(Arc::new).map_err(|error| Error::unbuilt(document, error))
 }
 
 /// The model of a scene that has been checked, with its mechanism.
-pub(super) fn model(document: &Document, mechanism: &Arc<Mechanism>) -> Result<Model, CannotRun> {
+pub(super) fn model(document: &Document, mechanism: &Arc<Mechanism>) -> Result<Model, Error> {
     let model = Model::build(&document.scene, Arc::clone(mechanism));
-    Ok(model.map_err(|faults| document.error_from(faults))?)
+    model.map_err(|faults| Error::faults_of(document, faults))
 }
 
-pub(super) fn solve(document: &Document, tolerance: f64) -> Result<(Arc<Mechanism>, Model), CannotRun> {
+pub(super) fn solve(document: &Document, tolerance: f64) -> Result<(Arc<Mechanism>, Model), Error> {
     document.check()?;
     let mechanism = mechanism(document, tolerance)?;
     let model = model(document, &mechanism)?;
@@ -43,8 +31,8 @@ pub(super) fn solve(document: &Document, tolerance: f64) -> Result<(Arc<Mechanis
 }
 
 /// The first fault, with the field names of the screen and without its position in the file.
-pub(super) fn fault_message(error: &CannotRun, scene: &Scene) -> String {
-    if let CannotRun::Wrong(SceneError::Faults { faults, .. }) = error
+pub(super) fn fault_message(error: &Error, scene: &Scene) -> String {
+    if let Error::Scene(SceneError::Faults { faults, .. }) = error
         && let Some(placed) = faults.first()
     {
         let Fault { field, value, problem } = &placed.fault;
@@ -52,7 +40,7 @@ pub(super) fn fault_message(error: &CannotRun, scene: &Scene) -> String {
         let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
         return in_words(&format!("{name} = {value}{unit}: {problem}"), scene);
     }
-    error.to_string()
+    error.problem()
 }
 
 /// Distance of the right-hand well from the middle in mm.

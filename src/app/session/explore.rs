@@ -1,23 +1,21 @@
 //! Studies of the open scene for the views of the layout Explore. A view asks for its study in every frame;
 //! the study begins once nobody is changing the scene, and stops when no view asks for it.
 
-use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use serde::{Deserialize, Serialize};
 
 use crate::app::session::Session;
 use crate::app::session::map::{ground, is_amplitude};
-use crate::app::session::prepared::{Prepared, SharedModel, first_problem};
-use crate::app::task::{Background, Each, Question, Uncompared, pool};
+use crate::app::session::prepared::{Prepared, SharedModel};
+use crate::app::task::{Background, Each, Question, Uncompared, progress, told};
 use crate::app::words::numbers::decimal;
-use crate::dynamics::Model;
 use crate::output::{Chart, basins_chart, suited_unit};
-use crate::scene::{Axis, FieldPath, Scene, Start, SweepAxis};
-use interwell_studies::study::{
-    Answer, Basins, Direction, EvenRange, Family, NoBasins, Signal, Spectrum, SpectrumOptions, Starts, Task,
-    Visit, followed_until, spectrum, up_and_down,
+use crate::questions::{
+    Answer, Basins, BasinsAnswer, Error, EvenRange, Signal, Spectrum, SpectrumAnswer, longest_wait, walks,
 };
+use crate::scene::{Axis, FieldPath, Scene, Start, SweepAxis};
+use interwell_studies::study::{Direction, Visit};
 
 #[derive(Default)]
 pub struct Explore {
@@ -36,20 +34,19 @@ pub struct SpectrumQuestion {
 
 impl Question for SpectrumQuestion {
     const NAME: &'static str = "spectrum";
-    type Part = Result<Spectrum, String>;
+    type Part = Result<SpectrumAnswer, String>;
 
     fn answer(&self, cancel: &AtomicBool, _: Each<Self::Part>) -> Option<Self::Part> {
-        let until_settled = longest_wait(&self.model);
-        let options = SpectrumOptions { signal: self.signal, taper: None, rate_hz: None, until_settled };
-        let found = spectrum(&self.model, &options, &Task { tick: &|| (), cancel });
-        Some(found.map_err(|error| error.to_string()))
+        let (of, until_settled) = (self.signal, longest_wait(&self.model));
+        let question = Spectrum { of, until_settled, ..Spectrum::default() };
+        told(question.run(&self.model.simulation(), &progress(cancel)))
     }
 }
 
 pub struct Spectra {
     pub signal: Signal,
     /// The spectrum, or why there is none.
-    pub found: Background<SpectrumQuestion, Result<Spectrum, String>>,
+    pub found: Background<SpectrumQuestion, Result<SpectrumAnswer, String>>,
 }
 
 impl Default for Spectra {
@@ -65,11 +62,6 @@ impl Session {
         let (question, still) = (SpectrumQuestion { model, signal }, self.stands_still());
         self.explore.spectra.found.want(question, still, &self.wake);
     }
-}
-
-/// How long in s to wait for the motion to repeat; `None` if it cannot settle.
-pub fn longest_wait(model: &Model) -> Option<f64> {
-    model.can_settle().then(|| followed_until(model))
 }
 
 /// Stride of the coarse walks, which come first.
@@ -107,16 +99,13 @@ impl Question for WalkQuestion {
     type Part = (usize, Visit);
 
     fn answer(&self, cancel: &AtomicBool, each: Each<Self::Part>) -> Option<Self::Part> {
-        let (pool, task) = (pool()?, Task { tick: &|| (), cancel });
         let Prepared { of, mechanism, .. } = &self.ground.0;
-        let family = Family::new(of, &of.files, mechanism, &self.axis.field);
         for stride in [COARSE, 1] {
             let values: Vec<f64> = self.values.0.iter().step_by(stride).copied().collect();
-            let walks = self.walks.0.iter().filter(|walk| walk.0 == stride);
-            let directions: Vec<Direction> = walks.map(|walk| walk.1).collect();
-            if !up_and_down(&family, &values, &directions, &pool, &task, &|visit| each((stride, visit))) {
-                break;
-            }
+            let of_stride = self.walks.0.iter().filter(|walk| walk.0 == stride);
+            let directions: Vec<Direction> = of_stride.map(|walk| walk.1).collect();
+            let (over, each) = ((&*self.axis.field, &*values), |visit| each((stride, visit)));
+            walks(&of.document(), mechanism, over, &directions, &progress(cancel), &each).ok()?;
         }
         None
     }
@@ -212,7 +201,25 @@ impl Question for BasinsQuestion {
     type Part = Result<Level, String>;
 
     fn answer(&self, cancel: &AtomicBool, each: Each<Self::Part>) -> Option<Self::Part> {
-        find_basins(self, cancel, &|level| each(Ok(level))).err().map(Err)
+        told(self.levels(cancel, &|level| each(Ok(level))))
+    }
+}
+
+impl BasinsQuestion {
+    /// The levels, of which the last is returned.
+    fn levels(&self, cancel: &AtomicBool, each: &(dyn Fn(Level) + Sync)) -> Result<Level, Error> {
+        let range = |(from, to): (f64, f64)| EvenRange { from, to, count: self.starts };
+        let question = Basins { x_mm: range(self.x_mm), v: range(self.v), random: None };
+        let Prepared { of, mechanism, .. } = &self.of;
+        let begun = question.begin(question.starts()?, &of.document(), mechanism)?;
+        let per_speed = suited_unit("m/s", [self.v.0, self.v.1].into_iter()).0;
+        let level = |basins: &_, answer: Answer| {
+            let (chart, words) = (basins_chart(basins, &answer), answer.words());
+            Level { chart, words, per_speed, answer, room: basins.room() }
+        };
+        let coarse = |basins: &_, answer| each(level(basins, answer));
+        let BasinsAnswer { basins, answer } = Basins::followed(begun, &progress(cancel), Some(&coarse))?;
+        Ok(level(&basins, answer))
     }
 }
 
@@ -250,25 +257,4 @@ impl Session {
             self.restart();
         }
     }
-}
-
-fn find_basins(question: &BasinsQuestion, cancel: &AtomicBool, each: &dyn Fn(Level)) -> Result<(), String> {
-    let range = |(from, to): (f64, f64)| EvenRange { from, to, count: question.starts };
-    let starts = Starts::grid(&range(question.x_mm), &range(question.v)).map_err(|why| why.to_string())?;
-    let Prepared { of, mechanism, .. } = &question.of;
-    let mut basins = Basins::new(of, Arc::clone(mechanism), starts).map_err(|error| match error {
-        NoBasins::Faults(faults) => first_problem(&faults),
-        other => other.to_string(),
-    })?;
-    let per_speed = suited_unit("m/s", [question.v.0, question.v.1].into_iter()).0;
-    let task = Task { tick: &|| (), cancel };
-    let Some(pool) = pool() else { return Ok(()) };
-    while !basins.is_whole() {
-        let Some(answer) = basins.run_level(&pool, &task).then(|| basins.answer(&task)).flatten() else {
-            return Ok(());
-        };
-        let (chart, words) = (basins_chart(&basins, &answer), answer.words());
-        each(Level { chart, words, per_speed, answer, room: basins.room() });
-    }
-    Ok(())
 }

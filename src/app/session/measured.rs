@@ -6,17 +6,16 @@ use std::sync::atomic::AtomicBool;
 
 use serde::{Deserialize, Serialize};
 
-use crate::app::task::{Background, Each, Identity, Question};
+use crate::app::task::{Background, Each, Identity, Question, progress, told};
 use crate::app::words::capital;
 use crate::numeric::{extent, short};
 use crate::output::Argument;
+use crate::questions::Curve;
 use crate::scene::{Channel, Excitation, Measured, MeasuredText, Quantity, Timing, Unit, read_record};
-use interwell_studies::study::{
-    Comparison, ForceComparison, MeasuredMotion, NoComparison, compare, compare_force,
-};
+use interwell_studies::study::{Comparison, ForceComparison, MeasuredMotion};
 
 use super::Session;
-use super::prepared::{SceneWithFiles, SharedModel};
+use super::prepared::SharedModel;
 
 /// A measured record with its two chosen columns.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -132,17 +131,27 @@ impl Overlay {
         t * self.time_scale + self.shift
     }
 
+    /// The motion with a given shift, or with the one that fits best.
+    pub fn motion(&self, shift: Option<f64>) -> MeasuredMotion<'_> {
+        let (times, channel) = (&*self.record.across.values, &self.record.values);
+        MeasuredMotion { times, channel, offset: self.added(), time_scale: self.time_scale, shift }
+    }
+
+    /// The positions of a force in m.
+    pub fn positions(&self) -> Vec<f64> {
+        self.record.across.values.iter().map(|x| x + self.offset).collect()
+    }
+
     /// Offset that is added to the values, SI.
     pub fn added(&self) -> f64 {
         if self.record.values.quantity == Quantity::Displacement { self.offset } else { 0.0 }
     }
 }
 
-/// A record, and the scene and model that it is compared with.
+/// A record, and the model that it is compared with.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MeasuredQuestion {
     model: SharedModel,
-    scene: SceneWithFiles,
     over: Overlay,
 }
 
@@ -175,21 +184,16 @@ impl Question for FitQuestion {
 impl MeasuredQuestion {
     /// The differences with a given shift, or with the best one; `None` if cancelled.
     fn differences(&self, shift: Option<f64>, cancel: &AtomicBool) -> Option<Result<Differences, String>> {
-        let Self { model, scene, over } = self;
-        let (across, channel) = (&over.record.across.values, &over.record.values);
-        if channel.quantity == Quantity::Force {
-            let positions: Vec<f64> = across.iter().map(|x| x + over.offset).collect();
-            let found = compare_force(model.mechanism(), &positions, &channel.values);
-            let found = found.map(|found| Differences::Force(Box::new(found)));
-            return Some(found.map_err(|problem| sentence(&problem.to_string())));
-        }
-        let (offset, time_scale) = (over.added(), over.time_scale);
-        let motion = MeasuredMotion { times: across, channel, offset, time_scale, shift };
-        match compare(scene, model, &motion, cancel) {
-            Ok(found) => Some(Ok(Differences::Motion(Box::new(found)))),
-            Err(NoComparison::Cancelled) => None,
-            Err(problem) => Some(Err(sentence(&problem.to_string()))),
-        }
+        let (over, simulation) = (&self.over, self.model.simulation());
+        let found = if over.is_force() {
+            let (document, mechanism) = (simulation.document(), simulation.mechanism());
+            let found = Curve::compared(document, mechanism, &over.positions(), &over.record.values.values);
+            found.map(|found| Differences::Force(Box::new(found)))
+        } else {
+            let found = simulation.compared(&over.motion(shift), &progress(cancel));
+            found.map(|found| Differences::Motion(Box::new(found)))
+        };
+        Some(told(found)?.map_err(|problem| sentence(&problem)))
     }
 }
 
@@ -258,8 +262,7 @@ impl Session {
     }
 
     fn measured_question(&self) -> Option<MeasuredQuestion> {
-        let (over, scene) = (self.measured.over.clone()?, self.with_files(self.built.clone()));
-        Some(MeasuredQuestion { model: self.model.clone(), scene, over })
+        Some(MeasuredQuestion { model: self.model.clone(), over: self.measured.over.clone()? })
     }
 
     /// Shakes the base with the acceleration in the file at `path`, as one undo step. Returns warnings about

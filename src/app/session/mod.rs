@@ -26,13 +26,13 @@ use crate::app::task::{Background, Wake};
 use crate::app::words::status::{self, DrivenMotion, Sentence};
 use crate::dynamics::{Model, Outcome, Summary};
 use crate::mechanics::{FLEXURE_TOLERANCE, Mechanism};
+use crate::questions::Error;
 use crate::scene::{self, Scene, Stops};
 use interwell_studies::study::{self, Thresholds};
 
 use accuracy::{Accuracy, LiveRun};
 use ask::{StopsQuestion, ThresholdsQuestion};
 use best::BestStops;
-pub use build::CannotRun;
 use build::{fault_message, first_stops, solve};
 use editor::Editor;
 use explore::Explore;
@@ -114,7 +114,7 @@ pub struct Session {
 
 impl Session {
     /// A session on a scene; `wake` is called from other threads when a result has come.
-    pub fn new(editor: Editor, wake: Wake) -> Result<Self, CannotRun> {
+    pub fn new(editor: Editor, wake: Wake) -> Result<Self, Error> {
         let document = editor.document();
         let (mechanism, model) = solve(document, FLEXURE_TOLERANCE)?;
         let scene = editor.scene().clone();
@@ -262,7 +262,7 @@ impl Session {
         (elapsed < whole).then_some((elapsed, whole))
     }
 
-    fn build(&mut self) -> Result<Model, CannotRun> {
+    fn build(&mut self) -> Result<Model, Error> {
         let document = &self.editor.runnable();
         document.check()?;
         if document.scene.mechanism != self.mechanism_of {

@@ -4,6 +4,7 @@ use std::time::Duration;
 
 use crate::app::task::{Background, Wake};
 use crate::dynamics::Summary;
+use crate::questions::Error;
 use crate::scene::{Scene, Start, Stops};
 use crate::system::clock::WallClock;
 use interwell_studies::study::{Thresholds, Watch};
@@ -11,7 +12,7 @@ use interwell_studies::study::{Thresholds, Watch};
 use super::Session;
 use super::accuracy::LiveRun;
 use super::ask::unshaken;
-use super::build::{self, CannotRun, fault_message};
+use super::build::{self, fault_message};
 use super::editor::keep_start_inside;
 use super::prepared::SharedModel;
 
@@ -218,7 +219,7 @@ impl Session {
         let mut document = self.editor.runnable();
         // the sweep axes do not matter for a motion
         document.scene = Scene { sweep: Vec::new(), ..scene.clone() };
-        let checked = document.check().map_err(CannotRun::from);
+        let checked = document.check().map_err(Error::from);
         let model = checked.and_then(|_| build::model(&document, &self.mechanism));
         let model = model.map_err(|error| fault_message(&error, scene))?;
         Ok(SharedModel::new(model, self.prepared(scene.clone())))

@@ -10,7 +10,8 @@ use serde::{Deserialize, Serialize};
 use crate::app::task::Identity;
 use crate::dynamics::{Beginning, Model};
 use crate::mechanics::Mechanism;
-use crate::scene::{self, Fault, Files, Scene, named_texts, read_records};
+use crate::questions::Simulation;
+use crate::scene::{self, Document, Fault, Files, Scene, named_texts, read_records};
 
 /// A scene with the files that it names, which is compared by the scene and written with their texts.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -38,6 +39,13 @@ impl From<WithTexts> for SceneWithFiles {
         let files = Files { folder: None, cached: texts };
         read_records(&mut scene, &files);
         Self { scene, files }
+    }
+}
+
+impl SceneWithFiles {
+    /// The document of the scene, as questions take it.
+    pub fn document(&self) -> Document {
+        Document::of_scene(self.scene.clone(), self.files.clone())
     }
 }
 
@@ -119,6 +127,11 @@ impl SharedModel {
         Self { model: Identity(Arc::new(model)), of: Arc::new(of) }
     }
 
+    /// The scene with this model, as questions take it.
+    pub fn simulation(&self) -> Simulation {
+        Simulation::of_model(self.of.of.document(), (**self).clone())
+    }
+
     /// The model that continues a motion of this one, or this one without it.
     pub fn or(&self, continued: Option<Model>) -> Self {
         let model = Identity(Arc::new(continued.unwrap_or_else(|| (**self).clone())));
@@ -143,7 +156,7 @@ impl TryFrom<(Arc<Prepared>, Beginning)> for SharedModel {
 }
 
 /// The problem of the first fault; empty without faults.
-pub(super) fn first_problem(faults: &[Fault]) -> String {
+fn first_problem(faults: &[Fault]) -> String {
     faults.first().map_or_else(String::new, |fault| fault.problem.clone())
 }
 

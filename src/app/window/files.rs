@@ -6,11 +6,11 @@ use std::sync::mpsc::channel;
 
 use eframe::egui::{self, Ui};
 
-use crate::app::session::CannotRun;
 use crate::app::session::editor::Editor;
 use crate::app::session::measured::MeasuredRecord;
 use crate::app::ui::style::STATUS;
 use crate::app::views::View;
+use crate::questions::Error;
 use crate::scene::{Quantity, is_link};
 use crate::system::files;
 
@@ -28,10 +28,10 @@ impl Window {
         if lessons::is_lesson(spec) {
             return self.open_lesson(spec);
         }
-        self.open_editor(Editor::open(spec).map_err(CannotRun::from));
+        self.open_editor(Editor::open(spec).map_err(Error::from));
     }
 
-    fn open_editor(&mut self, editor: Result<Editor, CannotRun>) {
+    fn open_editor(&mut self, editor: Result<Editor, Error>) {
         let wake = Arc::clone(&self.wake);
         match editor.and_then(|editor| Self::with_editor(editor, self.settings, wake)) {
             Ok(window) => {
@@ -84,7 +84,7 @@ impl Window {
         match next {
             Next::Open(spec) => self.open_another(&spec),
             Next::Text(text) if is_link(&text) => self.open_another(text.trim()),
-            Next::Text(text) => self.open_editor(Editor::from_text(&text).map_err(CannotRun::from)),
+            Next::Text(text) => self.open_editor(Editor::from_text(&text).map_err(Error::from)),
             Next::Choose => self.choose(Wanted::Open),
             Next::Quit => {
                 self.leaving = true;

@@ -8,18 +8,19 @@ use eframe::egui::{self, Id, Key, LayerId, Modifiers, Order, Panel, Rect, Stroke
 use crate::app::panels::controls;
 use crate::app::panels::hint::Hint;
 use crate::app::panels::lesson::{LessonAction, lesson_ui, navigation_ui};
+use crate::app::session::Session;
 use crate::app::session::editor::Editor;
 use crate::app::session::explore::WalkQuantity;
 use crate::app::session::lesson::{OpenLesson, Records, Turn, answers_text};
-use crate::app::session::{CannotRun, Session};
 use crate::app::ui::style::Style;
 use crate::app::ui::widgets::{bare, close_ui, dialog_ui, panel_frame, primary};
 use crate::app::views::{Cover, Memory, View};
 use crate::app::words::capital;
 use crate::app::words::fields::name_and_unit;
 use crate::app::words::lesson::{bold_words, letter, numbered, plain};
+use crate::questions::Error;
 use crate::scene::lesson::{BuiltInLesson, LessonDocument, LessonError, Step};
-use crate::scene::{Document, PRESETS, SceneError, is_link, linked_lesson};
+use crate::scene::{Document, PRESETS, is_link, linked_lesson};
 use crate::system::files;
 use interwell_studies::study::result_fields;
 
@@ -82,19 +83,18 @@ struct Suspended {
     ways: bool,
 }
 
-pub(super) fn read(spec: &str) -> Result<LessonDocument, CannotRun> {
+pub(super) fn read(spec: &str) -> Result<LessonDocument, Error> {
+    let unfit = |scene: &str, problem: &str| Error::Unfit { scene: scene.into(), problem: problem.into() };
     let spec = match linked_lesson(spec) {
         Some(name) if BuiltInLesson::find(name).is_none() => {
             let problem = format!("there is no built-in lesson {name:.40}; `lessons` lists them");
-            return Err(SceneError::Unreadable { name: "the link".to_owned(), problem }.into());
+            return Err(unfit("the link", &problem));
         }
         linked => linked.unwrap_or(spec),
     };
     LessonDocument::load(spec, &result_fields()).map_err(|error| match error {
         LessonError::Wrong(error) => error.into(),
-        LessonError::NoSuchLesson { spec, .. } => {
-            SceneError::Unreadable { name: spec, problem: "no such file".to_owned() }.into()
-        }
+        LessonError::NoSuchLesson { spec, .. } => unfit(&spec, "no such file"),
     })
 }
 
@@ -118,7 +118,7 @@ impl Window {
     }
 
     /// Continues a lesson where it was left, and suspends the scene that is open.
-    pub(super) fn begin_lesson(&mut self, document: LessonDocument) -> Result<(), CannotRun> {
+    pub(super) fn begin_lesson(&mut self, document: LessonDocument) -> Result<(), Error> {
         self.session.end_gesture();
         self.keep_progress();
         let wake = Arc::clone(&self.wake);
@@ -152,7 +152,7 @@ impl Window {
     }
 
     /// A session on a scene of a lesson, at the lesson's speed.
-    fn session_on(&self, lesson: &OpenLesson, scene: Document, plays: bool) -> Result<Session, CannotRun> {
+    fn session_on(&self, lesson: &OpenLesson, scene: Document, plays: bool) -> Result<Session, Error> {
         let mut session = Session::new(Editor::changed(scene), Arc::clone(&self.wake))?;
         session.player.speed = lesson.lesson().speed.unwrap_or(session.player.speed);
         session.player.set_playing(plays);

@@ -10,7 +10,6 @@ use eframe::egui::{self, CentralPanel, Panel, RichText, Ui};
 use crate::app::panels::hint::guide_ui;
 use crate::app::panels::status_line::{self, covered_ui, has_column, status_ui};
 use crate::app::panels::{controls, notes, transport};
-use crate::app::session::CannotRun;
 use crate::app::session::lesson::Records;
 use crate::app::ui::settings::Settings;
 pub use crate::app::ui::style::install as prepare;
@@ -19,6 +18,7 @@ use crate::app::ui::widgets::bare;
 use crate::app::views::{Drawn, ViewContext};
 use crate::app::words::Guide;
 use crate::app::words::lesson::numbered;
+use crate::questions::Error;
 use crate::scene::lesson::LESSONS;
 
 use card::{Title, card_ui};
@@ -389,7 +389,7 @@ impl eframe::App for Window {
 
 /// The window on a scene, with what was kept from the last time; the first time it is `dark` or light. If the
 /// scene cannot be run, the window says why and opens on the first preset.
-pub fn begin(creation: &CreationContext<'_>, spec: Option<&str>, dark: bool) -> Result<Window, CannotRun> {
+pub fn begin(creation: &CreationContext<'_>, spec: Option<&str>, dark: bool) -> Result<Window, Error> {
     prepare(&creation.egui_ctx);
     let kept = creation.storage.and_then(|storage| eframe::get_value(storage, eframe::APP_KEY));
     let settings = kept.unwrap_or(Settings { dark, ..Settings::default() });

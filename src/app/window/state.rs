@@ -9,11 +9,12 @@ use egui_tiles::Tree;
 use crate::app::export::{RunQuestion, WriteResult};
 use crate::app::panels::hint;
 use crate::app::panels::status_line::Announcer;
+use crate::app::session::Session;
 use crate::app::session::editor::Editor;
-use crate::app::session::{CannotRun, Session};
 use crate::app::task::{Background, Wake};
 use crate::app::ui::settings::Settings;
 use crate::app::views::{Memory, View};
+use crate::questions::Error;
 use crate::scene::{Layout, PRESETS};
 use crate::system::files;
 
@@ -89,7 +90,7 @@ pub struct Window {
 impl Window {
     /// A window on a scene file, a built-in scene or a lesson file, or with a file of measured data over the
     /// first preset. Without `spec` it opens the first preset.
-    pub fn open(spec: Option<&str>, settings: Settings, wake: Wake) -> Result<Self, CannotRun> {
+    pub fn open(spec: Option<&str>, settings: Settings, wake: Wake) -> Result<Self, Error> {
         let lesson = spec.filter(|spec| lessons::is_lesson(spec)).map(lessons::read).transpose()?;
         let measured = spec.map(Path::new).filter(|path| lesson.is_none() && is_measured(path));
         let first = PRESETS.first().map_or("paper", |preset| preset.name);
@@ -105,7 +106,7 @@ impl Window {
     }
 
     /// Like [`Self::open`]; if that fails, a window on the first preset with an alert that says why.
-    pub fn start(spec: Option<&str>, settings: Settings, wake: Wake) -> Result<Self, CannotRun> {
+    pub fn start(spec: Option<&str>, settings: Settings, wake: Wake) -> Result<Self, Error> {
         Self::open(spec, settings, Arc::clone(&wake)).or_else(|error| {
             let mut window = Self::open(None, settings, wake)?;
             let is_lesson = spec.is_some_and(lessons::is_lesson);
@@ -115,7 +116,7 @@ impl Window {
         })
     }
 
-    pub(super) fn with_editor(editor: Editor, settings: Settings, wake: Wake) -> Result<Self, CannotRun> {
+    pub(super) fn with_editor(editor: Editor, settings: Settings, wake: Wake) -> Result<Self, Error> {
         let session = Session::new(editor, Arc::clone(&wake))?;
         let layout = session.scene().app.as_ref().and_then(|app| app.layout).unwrap_or(Layout::Look);
         Ok(Self {

@@ -60,8 +60,7 @@ impl Window {
         if let Some(fault) = self.session.fault() {
             return self.messages.alert("The run was not written", fault);
         }
-        let (scene, model) = (self.session.scene().clone(), self.session.model.clone());
-        self.run.ask(RunQuestion { scene, model, path }, &self.wake);
+        self.run.ask(RunQuestion { model: self.session.model.clone(), path }, &self.wake);
         self.messages.notify("Computing the run");
     }
 

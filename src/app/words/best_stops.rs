@@ -4,7 +4,8 @@ use super::{Guide, capital};
 use crate::app::words::numbers::{power, three};
 use crate::app::words::status::speed;
 use crate::numeric::short;
-use interwell_studies::study::{Basins, BestDesign, DesignRange, NoBest, Optimum, SummaryField};
+use crate::questions::{BestDesign, Optimum};
+use interwell_studies::study::{Basins, SummaryField};
 
 /// A value of the maximised column, with its unit.
 fn value_of(column: &str, value: f64) -> String {
@@ -22,14 +23,14 @@ pub fn looking(runs: u64, best: Option<&Optimum>, column: &str) -> String {
 /// The answer of a search with runs from rest. Each run lasts `duration_s` seconds or, if that is `None`,
 /// until its motion repeats.
 pub fn answer_guide(
-    answer: &Result<BestDesign, NoBest>,
+    answer: &Result<BestDesign, String>,
     column: &str,
-    range: &DesignRange,
+    (low, high): (f64, f64),
     duration_s: Option<f64>,
 ) -> Guide {
     let name = SummaryField::find(column).map_or(column, |field| field.label);
     let mm = |value: f64| format!("{} mm", short(value));
-    let between = format!("between \u{b1}{} and \u{b1}{}", short(range.low), mm(range.high));
+    let between = format!("between ±{} and ±{}", short(low), mm(high));
     let runs = match duration_s {
         Some(duration) => format!("Searched {between}, from rest, in runs of {} s.", three(duration)),
         None => format!(
@@ -46,13 +47,13 @@ pub fn answer_guide(
     if design.flat {
         return guide("No stops are best:", format!("the {name} is {value} wherever they stand {between}."));
     }
-    let [low, high] = design.margins[0];
+    let [inwards, outwards] = design.margins[0];
     let side = |margin: Option<f64>, way: &str, end: f64| match margin {
         Some(margin) => format!("{} further {way}", mm(margin)),
-        None => format!("nowhere further {way}, up to \u{b1}{}", mm(end)),
+        None => format!("nowhere further {way}, up to ±{}", mm(end)),
     };
     let border = if design.at_border[0] { " It is an end of the range that was searched." } else { "" };
-    let (inward, outward) = (side(low, "in", range.low), side(high, "out", range.high));
+    let (inward, outward) = (side(inwards, "in", low), side(outwards, "out", high));
     let text = format!("{name} {value}; a tenth of it is lost {inward} and {outward}.{border}");
-    guide(&format!("Best stops: \u{b1}{}.", mm(at)), capital(&text))
+    guide(&format!("Best stops: ±{}.", mm(at)), capital(&text))
 }

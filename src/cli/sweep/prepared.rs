@@ -35,8 +35,8 @@ pub struct Arguments {
     #[arg(long, value_name = "MAX_S", allow_hyphen_values = true)]
     pub until_settled: Option<String>,
 
-    /// Walk the last --over field in its order (up), backwards (down) or both ways: each cell begins in the
-    /// state of the one before, only the first at the scene's start. Needs a drive that repeats
+    /// Walk the last --over field in its order (up), backwards (down) or both ways: each run from the end of
+    /// the one before, only the first from the scene's start. Needs a drive that repeats
     #[arg(long, value_name = "up|down|both", value_parser = ["up", "down", "both"])]
     pub carry: Option<String>,
 

@@ -4,8 +4,8 @@ use super::grid::{check_until, drive_alone};
 use super::{Error, Progress, Simulation, sweep};
 use crate::scene::{Axis, Document, FieldPath, RunSettings, Transducer, find_name, is_whole, read_number};
 use crate::study::{
-    BestDesign, BestQuestion, Constraint, DesignRange, Environment, INTERVALS, MOST_FIELDS, NoBest, Read,
-    SUMMARY_FIELDS, SummaryField, Table, Variation, best, names, place, quantity, scan_runs,
+    BestDesign, BestQuestion, Constraint, DesignRange, Environment, INTERVALS, MOST_FIELDS, NoBest, Optimum,
+    Read, SUMMARY_FIELDS, SummaryField, Table, Variation, best, names, place, quantity, scan_runs,
 };
 use crate::system::files::{canonical, is_file};
 
@@ -102,24 +102,24 @@ impl Best {
     /// Searches for the best design.
     pub fn run(&self, simulation: &Simulation, progress: &Progress) -> Result<BestAnswer, Error> {
         let document = simulation.document();
-        self.search(self.question(document)?, document, progress, &mut |_| ())
+        self.search(self.question(document)?, document, progress, &mut |_, _| ())
     }
 
     /// Searches for the best design of a scene whose fields of the design need not be valid; `preview` gets
-    /// the best design so far in words.
+    /// the best design so far, and the same in words.
     #[doc(hidden)]
     pub fn search(
         &self,
         question: BestQuestion,
         document: &Document,
         progress: &Progress,
-        preview: &mut (dyn FnMut(String) + Send),
+        preview: &mut (dyn FnMut(&Optimum, String) + Send),
     ) -> Result<BestAnswer, Error> {
         let (fields, maximised) = (names(&question), question.maximise.name);
         let found = progress.shared(scan_runs(&question), |pool, task| {
             best(&question, pool, task, &mut |design| {
                 let (at, value) = (place(&fields, &design.at), quantity(design.value, maximised));
-                preview(format!("{at}: {maximised} {value}"));
+                preview(design, format!("{at}: {maximised} {value}"));
             })
         })?;
         match found {

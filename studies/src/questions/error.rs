@@ -6,7 +6,7 @@ use crate::dynamics::Model;
 use crate::mechanics::{BuildError, FunctionError};
 use crate::numeric::number_text;
 use crate::scene::{Document, DriveError, Fault, Origin, SceneError};
-use crate::study::{CellFaults, GridError};
+use crate::study::{CellFaults, GridError, followed_until};
 
 /// Why a question has no answer.
 ///
@@ -120,6 +120,12 @@ impl Error {
         }
     }
 
+    /// A thread that the system does not give.
+    #[doc(hidden)]
+    pub fn no_thread() -> Self {
+        Self::argument("threads", 1, "the system gives no thread; close another program")
+    }
+
     /// All faults of the input; empty if the computation failed or was cancelled.
     pub fn faults(&self) -> Vec<FaultAt> {
         match self {
@@ -150,6 +156,20 @@ impl Error {
             Self::Argument { name, value, problem } => format!("{name} = {value}: {problem}"),
             Self::Unfit { scene, problem } | Self::Failed { scene, problem } => format!("{scene}: {problem}"),
             Self::Cancelled => "cancelled".to_owned(),
+        }
+    }
+
+    /// The first problem and its remedy, without the name of the scene or of the argument, for a program in
+    /// which both are clear.
+    #[doc(hidden)]
+    pub fn problem(&self) -> String {
+        match self {
+            Self::Argument { problem, .. } | Self::Unfit { problem, .. } | Self::Failed { problem, .. } => {
+                problem.clone()
+            }
+            Self::Scene(_) | Self::Cells(_) | Self::Cancelled => {
+                self.faults().first().map_or_else(|| self.message(), |fault| fault.problem.clone())
+            }
         }
     }
 
@@ -275,6 +295,12 @@ impl From<GridError> for Error {
 
 /// Longest `until_settled` in s, which is the longest duration of a run.
 const MAX_UNTIL_SETTLED: f64 = 1e9;
+
+/// The time in s up to which a run of `model` is worth to be continued, if its motion can be seen to repeat.
+#[doc(hidden)]
+pub fn longest_wait(model: &Model) -> Option<f64> {
+    model.can_settle().then(|| followed_until(model).min(MAX_UNTIL_SETTLED))
+}
 
 /// Checks that runs of `model` can continue up to `until` s.
 pub(super) fn check_until_settled(until: f64, document: &Document, model: &Model) -> Result<(), Error> {

@@ -20,6 +20,7 @@
 //! | [`Locus`] | the curve of a fold, flip or grazing over two fields | [`LocusAnswer`] |
 //! | [`Spectrum`] | which frequencies the motion holds | [`SpectrumAnswer`] |
 //! | [`Basins`] | which attractor each start goes to, and the share of each | [`BasinsAnswer`] |
+//! | [`Accuracy`] | how far a run is off, and what its digits cost | [`AccuracyAnswer`] |
 //! | [`Compare`] | how designs rate under one sine | [`CompareAnswer`] |
 //! | [`Best`] | which design is the best for an environment, and with which margins | [`BestAnswer`] |
 //! | [`Identify`] | damping, restitution or force of a measured record | [`IdentifyAnswer`] |
@@ -42,7 +43,7 @@
 //!   in s. It costs most where a motion never repeats. It is at least the duration of the scene's run and at
 //!   most 1e9 s, and needs a drive that repeats. Thresholds, exponents, comparisons and designs continue by
 //!   default for at most 1000 forcing periods beyond the run; the others do not.
-//! - `carry`: the last field of a grid is walked, each run from the state of the one before. It needs a drive
+//! - `carry`: the last field of a grid is walked, each run from the end of the one before. It needs a drive
 //!   that repeats.
 //! - [`Progress`]: reports, cancellation, threads. The answer has the same bits for any number of threads.
 //!
@@ -59,6 +60,7 @@
 //!
 //! A run of a grid that ends early is no error: the column `outcome` says why, and the others continue.
 
+mod accuracy;
 mod compare;
 mod design;
 mod error;
@@ -67,20 +69,28 @@ mod grid;
 mod lesson;
 mod motion;
 mod orbits;
+mod parts;
 mod progress;
 mod record;
 mod simulation;
 mod sweep;
 
+#[doc(hidden)]
+pub use accuracy::check_accuracy;
+pub use accuracy::{Accuracy, AccuracyAnswer};
 pub use compare::{Compare, CompareAnswer};
 pub use design::{Best, BestAnswer};
+#[doc(hidden)]
+pub use error::longest_wait;
 pub use error::{Error, FaultAt};
 pub use escape::{Escape, ProbableThreshold};
 pub use grid::{Exponents, Section, Threshold};
 #[doc(hidden)]
-pub use lesson::check_lessons;
+pub use lesson::{JudgedStep, check_lessons};
 pub use motion::{Basins, BasinsAnswer, Curve, FlexuresAnswer, Spectrum};
 pub use orbits::{Branch, BranchesAnswer, Locus, LocusAnswer, Orbit};
+#[doc(hidden)]
+pub use parts::{stops_that_cross, thresholds, walks};
 pub use progress::Progress;
 #[doc(hidden)]
 pub use record::columns_read;
@@ -95,6 +105,8 @@ pub use crate::scene::Uncertain;
 
 #[doc(hidden)]
 pub use crate::study::BestQuestion;
+pub use crate::study::accuracy::methods::{Scheme, Statistics};
+pub use crate::study::accuracy::scene::{AtTolerance, Course, Lateness, StepSize, Tolerances, Trust};
 pub use crate::study::{
     Answer, Attractor, BestDesign, Branch as BranchAnswer, BranchEnd, BranchEvent, Carry, Column, Estimate,
     EvenRange, ExponentOptions, Exponents as ExponentsAnswer, FieldRange, Found, Grid, Identified, Identity,

@@ -9,9 +9,10 @@ use crate::mechanics::flexure::State;
 use crate::numeric::{Taper, number_text};
 use crate::scene::{Axis, Document, Transducer};
 use crate::study::{
-    self, Answer, CURVE_POINTS, EvenRange, NoBasins, NoSpectrum, Signal, Spectrum as SpectrumAnswer,
-    SpectrumOptions, Starts, StartsError, StatesError, Table, curve, default_positions, full_curve, shapes,
-    spectrum, states, stress_warning,
+    self, Answer, CURVE_PICTURE_POINTS, CURVE_POINTS, EvenRange, ForceComparison, NoBasins, NoSpectrum,
+    Signal, Spectrum as SpectrumAnswer, SpectrumOptions, Starts, StartsError, StatesError, Table,
+    compare_force, curve, default_positions, even_positions, full_curve, shapes, spectrum, states,
+    stress_warning,
 };
 
 /// Force, potential and stiffness of the mechanism over displacement.
@@ -50,6 +51,29 @@ impl Curve {
         let default = || default_positions(&document.scene, mechanism, CURVE_POINTS as usize);
         let found = curve(mechanism, self.positions.clone().unwrap_or_else(default));
         found.map_err(|problem| Error::number("positions", problem.x, problem))
+    }
+
+    /// The curve of a picture: over a range in m, or over the default range.
+    #[doc(hidden)]
+    pub fn drawn(
+        range: Option<(f64, f64)>,
+        document: &Document,
+        mechanism: &Mechanism,
+    ) -> Result<Table, Error> {
+        let usual = || default_positions(&document.scene, mechanism, CURVE_PICTURE_POINTS);
+        let positions = range.map_or_else(usual, |range| even_positions(range, CURVE_PICTURE_POINTS));
+        Self { positions: Some(positions) }.of_mechanism(document, mechanism)
+    }
+
+    /// Forces in N that were measured at positions in m beside those of the curve.
+    #[doc(hidden)]
+    pub fn compared(
+        document: &Document,
+        mechanism: &Mechanism,
+        positions: &[f64],
+        force: &[f64],
+    ) -> Result<ForceComparison, Error> {
+        compare_force(mechanism, positions, force).map_err(|problem| Error::unfit(document, problem))
     }
 
     /// The flexures of the mechanism at the positions, each solved anew.
@@ -276,8 +300,14 @@ impl Basins {
     /// Follows the starts, then once more those whose answer may be uncertain. Progress counts the two phases
     /// separately.
     pub fn run(&self, simulation: &Simulation, progress: &Progress) -> Result<BasinsAnswer, Error> {
+        self.follow(simulation, progress)?.checked(progress)
+    }
+
+    /// The first phase alone; [`BasinsAnswer::checked`] is the second.
+    #[doc(hidden)]
+    pub fn follow(&self, simulation: &Simulation, progress: &Progress) -> Result<BasinsAnswer, Error> {
         let begun = self.begin(self.starts()?, simulation.document(), simulation.mechanism())?;
-        Self::follow(begun, progress)
+        Self::followed(begun, progress, None)
     }
 
     /// The starts before any is followed, of a scene whose own start need not be possible.
@@ -292,22 +322,29 @@ impl Basins {
         begun.map_err(|problem| no_basins(document, problem, self.x_mm))
     }
 
+    /// The first phase of starts that [`begin`](Self::begin), from coarse to fine. `coarse` gets what is
+    /// known after each level but the last.
     #[doc(hidden)]
-    pub fn follow(mut basins: study::Basins, progress: &Progress) -> Result<BasinsAnswer, Error> {
-        let count = basins.starts().count() as u64;
-        let answer = progress.pool(|pool| {
-            let mut answer = progress.task(Some(count), |task| {
-                while !basins.is_whole() && basins.run_level(pool, task) {}
-                basins.answer(task).filter(|_| basins.is_whole())
-            })?;
-            let uncertain = basins.rows_to_check(&answer).len() as u64;
-            let whole = progress.task(Some(uncertain), |task| basins.check(&mut answer, pool, task));
-            whole.then_some(answer)
+    pub fn followed(
+        mut basins: study::Basins,
+        progress: &Progress,
+        coarse: Option<Coarse>,
+    ) -> Result<BasinsAnswer, Error> {
+        let answer = progress.shared(basins.starts().count() as u64, |pool, task| {
+            while !basins.is_whole() && basins.run_level(pool, task) {
+                if let Some(coarse) = coarse.filter(|_| !basins.is_whole()) {
+                    coarse(&basins, basins.answer(task)?);
+                }
+            }
+            basins.answer(task).filter(|_| basins.is_whole())
         })?;
         let answer = answer.ok_or(Error::Cancelled)?;
         Ok(BasinsAnswer { basins, answer })
     }
 }
+
+/// A callback for what is known of basins.
+type Coarse<'a> = &'a (dyn Fn(&study::Basins, Answer) + Sync);
 
 /// A range as an argument of the command line.
 fn shown(EvenRange { from, to, count }: EvenRange) -> String {
@@ -323,6 +360,15 @@ fn no_basins(document: &Document, problem: NoBasins, x_mm: EvenRange) -> Error {
 }
 
 impl BasinsAnswer {
+    /// The second phase: follows once more the starts whose answer may be uncertain.
+    #[doc(hidden)]
+    pub fn checked(mut self, progress: &Progress) -> Result<Self, Error> {
+        let Self { basins, answer } = &mut self;
+        let uncertain = basins.rows_to_check(answer).len() as u64;
+        let whole = progress.shared(uncertain, |pool, task| basins.check(answer, pool, task))?;
+        if whole { Ok(self) } else { Err(Error::Cancelled) }
+    }
+
     /// One row per start, the displacement the slower, or in the order in which they were drawn.
     pub fn table(&self) -> Table {
         self.answer.table(&self.basins, 0, self.answer.rows.len())

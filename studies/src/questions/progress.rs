@@ -112,7 +112,7 @@ impl<'a> Progress<'a> {
     ) -> Result<T, Error> {
         let (sender, receiver) = channel();
         if !spawn(move || drop(sender.send(work()))) {
-            return Err(Error::argument("threads", 1, "the system gives no thread: close something"));
+            return Err(Error::no_thread());
         }
         while !self.is_stopped() {
             match receiver.recv_timeout(INTERVAL) {
@@ -154,7 +154,8 @@ impl<'a> Progress<'a> {
             last => {
                 // dropping a pool would wait for its threads, which a forked process does not have
                 std::mem::forget(last.filter(|pool| !pool.is_alive()));
-                Pool::new(count).map_err(|error| Error::argument("threads", count, error))?
+                let fewer = |error| Error::argument("threads", count, format!("{error}; give fewer"));
+                Pool::new(count).map_err(fewer)?
             }
         };
         let answer = work(&pool);

@@ -92,6 +92,12 @@ impl Simulation {
         }
     }
 
+    /// The simulation of a document whose model is known, such as one that continues a motion.
+    #[doc(hidden)]
+    pub fn of_model(document: Document, model: Model) -> Self {
+        Self { document, model, warnings: Vec::new() }
+    }
+
     /// The simulation with one field changed. The value is a number, or text as in a scene file.
     pub fn with(&self, field: &str, value: impl Display) -> Result<Self, Error> {
         self.with_all(&[(field.to_owned(), value.to_string())])

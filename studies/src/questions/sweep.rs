@@ -7,7 +7,7 @@ use crate::scene::{
     Axis, Document, FieldPath, SceneError, Uncertain, field_info, find_name, is_whole, read_number,
 };
 use crate::study::{
-    self, Carry, DIRECTION, Draws, Grid, MAX_CELLS, MAX_DRAWS, STANDARD_COLUMNS, SUMMARY_FIELDS,
+    self, Carry, Cell, DIRECTION, Draws, Grid, MAX_CELLS, MAX_DRAWS, STANDARD_COLUMNS, SUMMARY_FIELDS,
     SummaryField, SweepOptions, Table, Variation, share_in_range,
 };
 
@@ -58,7 +58,7 @@ pub struct Sweep {
     pub columns: Vec<String>,
     /// Each run continues until its motion repeats, at most up to this time in s.
     pub until_settled: Option<f64>,
-    /// Directions in which the last field is walked: each run starts from the final state of the run before.
+    /// Directions in which the last field is walked: each run from the end of the one before.
     pub carry: Option<Carry>,
     /// Uncertain inputs, and their draws.
     pub uncertain: Uncertain,
@@ -127,6 +127,17 @@ pub struct SweepCells {
 }
 
 impl SweepCells {
+    /// Runs the cells with these indices, in any order, and hands over each as soon as it is known.
+    pub fn run(
+        &self,
+        cells: &[u64],
+        progress: &Progress,
+        each: &(dyn Fn(u64, Cell) + Sync),
+    ) -> Result<(), Error> {
+        let whole = progress.pool(|pool| self.sweep.run_cells(pool, &progress.silent(), cells, each))?;
+        if whole { Ok(()) } else { Err(Error::Cancelled) }
+    }
+
     /// All rows, with all columns that were computed.
     pub fn rows(&self, document: &Document, progress: &Progress) -> Result<Table, Error> {
         all_rows(&self.sweep, document, progress)

@@ -72,21 +72,22 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 pub use alternatives::{Alternative, Rated, alternatives};
 pub(crate) use alternatives::{SEARCHED_SPAN, comparison_parts, comparison_table};
-pub use amplitudes::{Thresholds, can_cross, stops_that_cross, thresholds};
+pub(crate) use amplitudes::stops_that_cross;
+pub use amplitudes::{Thresholds, can_cross, thresholds};
 pub(crate) use basins::StartsError;
 pub use basins::{Answer, Attractor, Basins, EvenRange, NoBasins, Shares, Starts};
 pub use best::{
-    BestDesign, BestQuestion, Constraint, DesignRange, Environment, INTERVALS, NoBest, Optimum, SAMPLES,
-    Spread, Tried, Variation, best, names, place, quantity,
+    BestDesign, BestQuestion, Constraint, DesignRange, Environment, NoBest, Optimum, Spread, Tried,
+    Variation, best, names, place, quantity,
 };
-pub(crate) use best::{MOST_FIELDS, scan_places, scan_runs};
-pub(crate) use contact::yield_speed;
-pub use contact::{contact, strikes, yield_warning};
+pub(crate) use best::{INTERVALS, MOST_FIELDS, scan_places, scan_runs};
+pub use contact::yield_warning;
+pub(crate) use contact::{contact, yield_speed};
 pub use curve::{
-    CURVE_PICTURE_POINTS, CURVE_POINTS, OutsideCurve, curve, default_positions, even_positions, metres,
-    shapes, states, stop_positions,
+    CURVE_PICTURE_POINTS, CURVE_POINTS, curve, default_positions, even_positions, metres, states,
+    stop_positions,
 };
-pub(crate) use curve::{StatesError, full_curve, small_amplitude_frequency, stress_warning};
+pub(crate) use curve::{StatesError, full_curve, shapes, small_amplitude_frequency, stress_warning};
 pub use escape::{Chance, NoKramers, Until, depopulation, kramers_rate};
 pub(crate) use escape::{EscapeOptions, escape_table, probable_threshold_table};
 pub use exponents::{Estimate, ExponentOptions, Exponents, NoExponents, average_exponents, exponents};
@@ -94,29 +95,29 @@ pub(crate) use exponents::{ExponentCells, drive_fault};
 pub(crate) use fields::InJson;
 pub use fields::{RMS_VELOCITY, Read, SUMMARY_FIELDS, SummaryField};
 pub use grid::{Grid, GridError, Levels, MAX_CELLS, STRIDES};
-pub use grid_study::{GridStudy, Question, Row};
+pub(crate) use grid_study::Row;
+pub use grid_study::{GridStudy, Question};
 pub use identify::{
     FORCE_POINTS, Identified, Identity, Unidentified, damping, force, restitution, restitution_of_times,
 };
 pub use inspect::inspect;
-pub use lesson::{
-    Lack, LessonFinding, LessonReport, Subject, Unjudged, Value, check_lesson, goal_lack, options_that_hold,
-    result_fields,
-};
+pub use lesson::{Lack, LessonFinding, LessonReport, Subject, Value, check_lesson, goal_lack, result_fields};
+pub(crate) use lesson::{Unjudged, options_that_hold};
 pub use map::{Edges, first_crossing, release_line};
 pub(crate) use map::{first_crossing_edge, line_meets};
 pub use measured::{Comparison, ForceComparison, MeasuredMotion, NoComparison, compare, compare_force};
 pub use melnikov::melnikov_threshold;
 pub(crate) use melnikov::{suits_melnikov, with_melnikov};
-pub use models::ModelUse;
+pub(crate) use models::ModelUse;
 pub use orbit::{
     Branch, BranchEnd, BranchEvent, BranchOptions, FieldRange, Locus, LocusEnd, LocusEvent, NoOrbit, Orbit,
     branch, branches_table, loci, loci_table, orbit, orbit_near, orbit_table, switched,
 };
 pub use section::{IMPACTS, MAX_SECTION, SectionAt, SectionOptions, Sections, section};
-pub use settled::{Standing, followed_until, lasts, settled, standing};
+pub(crate) use settled::followed_until;
+pub use settled::{Standing, lasts, settled, standing};
 pub use simulate::{
-    Keep, Recorded, Sampling, TimesError, ended_remedy, events_table, sample_times, samples_table, simulate,
+    Keep, Recorded, Sampling, ended_remedy, events_table, sample_times, samples_table, simulate,
 };
 pub use slice::{Shard, Slice};
 pub(crate) use spectrum::NoSpectrum;
@@ -126,12 +127,13 @@ pub use sweep::{Cell, DIRECTION, STANDARD as STANDARD_COLUMNS, Sweep, SweepEnd, 
 pub use table::{Column, Table, Values, label_and_unit, with_unit};
 pub(crate) use thresholds::NoThresholds;
 pub use thresholds::{Found, Onset, Scan, Verdict, threshold, threshold_table};
-pub use trace::{Trace, between, simulate_with_trace};
-pub(crate) use uncertain::share_in_range;
-pub use uncertain::{Draws, MAX_DRAWS};
+pub(crate) use trace::Trace;
+pub use trace::{between, simulate_with_trace};
+pub use uncertain::MAX_DRAWS;
+pub(crate) use uncertain::{Draws, share_in_range};
 pub(crate) use walk::NoModel;
 pub use walk::{Carry, Direction, Family, Visit, up_and_down};
-pub use watch::{Watch, continued_scene, distances, ledger_over, watched_events};
+pub use watch::{Watch, continued_scene, distances, watched_events};
 
 /// Progress and cancellation of a long study.
 #[derive(Clone, Copy)]

@@ -84,7 +84,7 @@ fn a_diagram_has_a_manifest_and_pictures() {
     let text = fs::read_to_string(folder.path().join("w.svg")).unwrap();
     assert!(text.contains(">hysteresis</text>"));
     assert!(
-        text.contains("2 \u{d7} 5 runs of ") && text.contains(", up and down, each from where"),
+        text.contains("2 \u{d7} 5 runs of ") && text.contains(", up and down, each from the end of"),
         "{text}"
     );
     // with stops both ways are the same: no hysteresis is named
@@ -92,7 +92,7 @@ fn a_diagram_has_a_manifest_and_pictures() {
     assert!(!fs::read_to_string(folder.path().join("w.svg")).unwrap().contains("hysteresis"));
     run("sweep paper --over excitation.amplitude_g=0.5:1:0.05 --carry down --out w.csv --plot w.svg");
     let text = fs::read_to_string(folder.path().join("w.svg")).unwrap();
-    assert!(text.contains("11 runs of ") && text.contains(", down, each from where"), "{text}");
+    assert!(text.contains("11 runs of ") && text.contains(", down, each from the end of"), "{text}");
     run("sweep paper --over stops.travel_limit_mm=1.5:3:0.5 --over excitation.amplitude_g=0.5,1 \
          --carry both --out m.csv --plot m.svg");
     let text = fs::read_to_string(folder.path().join("m.svg")).unwrap();

@@ -7,11 +7,11 @@ use serde::{Deserialize, Serialize};
 
 use super::{Outcome, TaskState};
 use crate::app::session::prepared::SceneWithFiles;
-use crate::app::task::{Each, Question, Uncompared};
+use crate::app::task::{Each, Question, Uncompared, progress, told};
 use crate::mechanics::Mechanism;
-use crate::scene::lesson::{Lesson, LessonDocument, Step};
+use crate::questions::JudgedStep;
+use crate::scene::lesson::{Lesson, LessonDocument};
 use crate::scene::{Document, Scene};
-use interwell_studies::study::{Subject, Task, Unjudged, goal_lack, options_that_hold};
 
 /// A step of a lesson, and the scene that is judged in it.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -34,23 +34,10 @@ impl Judged {
         Self { lesson, number, begin, scene: of(judged), mechanism: None }
     }
 
-    /// The `verdict`, or why there is none; `None` if cancelled.
-    fn judge<T>(
-        &self,
-        cancel: &AtomicBool,
-        verdict: impl FnOnce(&Step, &Subject<'_>, &Subject<'_>) -> Result<T, Unjudged>,
-    ) -> Option<Result<T, String>> {
-        let (Self { lesson, begin, scene, .. }, task) = (self, Task { tick: &|| (), cancel });
-        let before = Subject::new(begin, &begin.files, lesson, &task);
-        let subject = Subject::new(scene, &scene.files, lesson, &task);
-        let subject = match &self.mechanism {
-            Some(mechanism) => subject.with_mechanism(Arc::clone(mechanism)),
-            None => subject,
-        };
-        match verdict(&lesson.steps[self.number], &subject, &before) {
-            Err(Unjudged::Cancelled) => None,
-            verdict => Some(verdict.map_err(|error| error.to_string())),
-        }
+    fn step(&self) -> JudgedStep<'_> {
+        let Self { lesson, number, begin, scene, mechanism } = self;
+        let scenes = [begin, scene].map(|of| (&of.scene, &of.files));
+        JudgedStep { lesson, number: *number, scenes, mechanism: mechanism.as_ref() }
     }
 }
 
@@ -66,10 +53,8 @@ impl Question for OptionsQuestion {
     type Part = Outcome;
 
     fn answer(&self, cancel: &AtomicBool, _: Each<Outcome>) -> Option<Outcome> {
-        let outcome = self.judged.0.judge(cancel, |step, subject, before| {
-            options_that_hold(step, subject, before).map(|options| single_option(&options))
-        });
-        outcome.map(|outcome| outcome.unwrap_or_else(Outcome::Unjudged))
+        let options = told(self.judged.0.step().options(&progress(cancel)))?;
+        Some(options.map_or_else(Outcome::Unjudged, |options| single_option(&options)))
     }
 }
 
@@ -86,10 +71,8 @@ impl Question for GoalQuestion {
     type Part = TaskState;
 
     fn answer(&self, cancel: &AtomicBool, _: Each<TaskState>) -> Option<TaskState> {
-        let state = self.judged.0.judge(cancel, |step, subject, before| {
-            Ok(goal_lack(step, subject, before)?.map_or(TaskState::Met, TaskState::NotYet))
-        });
-        state.map(|state| state.unwrap_or_else(TaskState::Unjudged))
+        let lack = told(self.judged.0.step().lack(&progress(cancel)))?;
+        Some(lack.map_or_else(TaskState::Unjudged, |lack| lack.map_or(TaskState::Met, TaskState::NotYet)))
     }
 }
 

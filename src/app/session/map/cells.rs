@@ -3,17 +3,15 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use crate::app::session::editor::Editor;
 use crate::app::words::fields::in_words;
 use crate::mechanics::Mechanism;
 use crate::numeric::short;
 use crate::output::{Chart, Cut, NoPicture, Overlay, Ranges, SweepPicture, View, csv, sweep_chart};
-use crate::scene::{FieldPath, Scene, SceneError};
-use interwell_studies::study::{
-    Cell, Edges, Grid, Levels, STRIDES, SummaryField, Sweep, Table, first_crossing, release_line,
-};
+use crate::questions::{Grid, SweepCells, Table};
+use crate::scene::{FieldPath, Scene};
+use interwell_studies::study::{Cell, Edges, Levels, STRIDES, SummaryField};
 
-use super::{MapQuestion, over};
+use super::MapQuestion;
 
 const MAX_CELLS: u64 = 200_000;
 
@@ -30,7 +28,7 @@ pub struct Map {
     pub edges: [Edges; 2],
     /// The release in closed form, and the first crossing cells as far as they are known.
     pub overlay: Overlay,
-    pub(in crate::app::session) sweep: Arc<Sweep>,
+    pub(in crate::app::session) sweep: Arc<SweepCells>,
     levels: Levels,
     cells: Vec<Option<Cell>>,
     /// Number of cells that are known.
@@ -45,32 +43,22 @@ pub struct Map {
 
 impl Map {
     /// The map of a question before its first cell, or why there is none. `mechanism` is that of the session.
-    pub(super) fn new(
-        question: &MapQuestion,
-        editor: &Editor,
-        mechanism: &Mechanism,
-    ) -> Result<Self, String> {
-        let mut document = editor.document().clone();
-        document.scene = question.scene.scene.clone();
-        let message = |error: SceneError| in_words(&error.to_string(), &question.scene);
-        document.check().map_err(message)?;
-        let arguments = question.axes.each_ref().map(over);
-        let axes = document.axes(&arguments).map_err(message)?;
-        let grid = Grid::new(axes).map_err(|error| error.to_string())?;
+    pub(super) fn new(question: &MapQuestion, mechanism: &Mechanism) -> Result<Self, String> {
+        let sweep = question.sweep().map_err(|error| in_words(&error.message(), &question.scene))?;
+        let grid = sweep.sweep.grid();
         if let Some(problem) = too_many(grid.cells()) {
             return Err(problem);
         }
         let [across, up] = grid.axes() else { return Err("a map has two axes".to_owned()) };
         let edges = [across, up].map(|axis| Edges::new(&axis.values));
-        let release =
-            (!grid.changes_mechanism()).then(|| release_line(&question.scene, mechanism, &grid)).flatten();
+        let mechanism = (!grid.changes_mechanism()).then_some(mechanism);
         Ok(Self {
             question: question.clone(),
             edges,
-            overlay: Overlay { release, first_crossing: None },
-            levels: Levels::of(&grid),
+            overlay: Overlay::of(&question.scene, mechanism, grid, &Table::new()),
+            levels: Levels::of(grid),
             cells: vec![None; grid.cells() as usize],
-            sweep: Arc::new(question.sweep(grid)),
+            sweep: Arc::new(sweep),
             known: 0,
             drawn_after: None,
             took: Duration::ZERO,
@@ -92,7 +80,7 @@ impl Map {
     }
 
     pub fn grid(&self) -> &Grid {
-        self.sweep.grid()
+        self.sweep.sweep.grid()
     }
 
     /// Number of columns and of rows.
@@ -142,8 +130,11 @@ impl Map {
             return false;
         }
         self.drawn_after = Some(self.took);
-        self.overlay.first_crossing =
-            self.is_covered().then(|| first_crossing(self.grid(), &self.table(true, &[]))).flatten();
+        if self.is_covered() {
+            let rows = self.table(true, &[]);
+            self.overlay.first_crossing =
+                Overlay::of(&self.question.scene, None, self.grid(), &rows).first_crossing;
+        }
         true
     }
 
@@ -169,7 +160,7 @@ impl Map {
             found.map_or(Cell::NotRun, |found| *found.0)
         };
         let cells: Vec<Cell> = (0..columns * rows).map(cell).collect();
-        let mut table = self.sweep.table(0, cells.iter().copied());
+        let mut table = self.sweep.sweep.table(0, cells.iter().copied());
         for field in more.iter().filter_map(|name| SummaryField::find(name)) {
             if table.column(field.name).is_none() {
                 table = table.with(field.name, field.column(cells.iter().map(Cell::summary)));

@@ -15,12 +15,11 @@ use serde::{Deserialize, Serialize};
 
 use crate::app::session::Session;
 use crate::app::session::prepared::SceneWithFiles;
-use crate::app::task::{Background, Each, Question, Uncompared, pool};
+use crate::app::task::{Background, Each, Question, Uncompared, progress};
 use crate::app::words::fields::{in_words, name_and_unit};
+use crate::questions::{Error, Grid, Progress, Sweep, SweepCells};
 use crate::scene::{Axis, FieldPath, Scene, Stops, SweepAxis};
-use interwell_studies::study::{
-    Cell, Grid, RMS_VELOCITY, STANDARD_COLUMNS, SummaryField, Sweep, SweepOptions, Task,
-};
+use interwell_studies::study::{Cell, RMS_VELOCITY, STANDARD_COLUMNS, SummaryField};
 
 pub use crate::numeric::short;
 pub use axes::{ground, is_amplitude, label, over, part, start};
@@ -50,9 +49,12 @@ pub struct MapQuestion {
 
 impl MapQuestion {
     /// The sweep that makes the map, over a grid of its axes.
-    fn sweep(&self, grid: Grid) -> Sweep {
-        let options = SweepOptions { columns: self.ledger.into_iter().collect(), ..SweepOptions::default() };
-        Sweep::new(&self.scene, &self.scene.files, grid).with(options)
+    fn sweep(&self) -> Result<SweepCells, Error> {
+        let document = self.scene.document();
+        document.check()?;
+        let grid = Grid::new(document.axes(&self.axes.each_ref().map(over))?)?;
+        let ledger = self.ledger.map(|field| field.name);
+        Sweep::default().cells(&document, grid, ledger, &Progress::none())
     }
 }
 
@@ -64,7 +66,7 @@ pub struct CellsQuestion {
     missing: Uncompared<Vec<Vec<u64>>>,
     /// The sweep, where it has been prepared.
     #[serde(skip)]
-    sweep: Uncompared<Option<Arc<Sweep>>>,
+    sweep: Uncompared<Option<Arc<SweepCells>>>,
 }
 
 impl Question for CellsQuestion {
@@ -74,16 +76,9 @@ impl Question for CellsQuestion {
 
     fn answer(&self, cancel: &AtomicBool, each: Each<Self::Part>) -> Option<Self::Part> {
         let Self { map, missing, sweep } = self;
-        let parsed = || {
-            let axes = map.axes.iter().map(|axis| Axis::parse(&over(axis), &map.scene));
-            let grid = Grid::new(axes.collect::<Result<_, _>>().ok()?).ok()?;
-            Some(Arc::new(map.sweep(grid)))
-        };
-        let (sweep, pool, task) = (sweep.0.clone().or_else(parsed)?, pool()?, Task { tick: &|| (), cancel });
+        let sweep = sweep.0.clone().or_else(|| map.sweep().ok().map(Arc::new))?;
         for cells in &missing.0 {
-            if !sweep.run_cells(&pool, &task, cells, &|index, cell| each((index, cell))) {
-                break;
-            }
+            sweep.run(cells, &progress(cancel), &|index, cell| each((index, cell))).ok()?;
         }
         None
     }
@@ -272,7 +267,7 @@ impl Session {
         }
         self.map.version += 1;
         self.map.cells.resume();
-        match Map::new(&question, &self.editor, self.model().mechanism()) {
+        match Map::new(&question, self.model().mechanism()) {
             Ok(map) => {
                 let mapping = &mut self.map;
                 let old = mapping.map.take().filter(Map::is_covered).or_else(|| mapping.previous.take());

@@ -126,5 +126,5 @@ fn about(rows: &Table, phase_deg: Option<f64>) -> String {
         None => format!("{count} impacts"),
     };
     let walked = rows.column(DIRECTION).is_some();
-    if walked { points + ", each run from where the one before was" } else { points }
+    if walked { points + ", each run from the end of the one before" } else { points }
 }

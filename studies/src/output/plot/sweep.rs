@@ -192,7 +192,7 @@ pub fn sweep_about(grid: &Grid, scene: &Scene, walked: &[Direction], until_settl
     }
     if !walked.is_empty() {
         let ways: Vec<&str> = walked.iter().map(|way| way.name()).collect();
-        parts.push(format!("{}, each from where the one before was", ways.join(" and ")));
+        parts.push(format!("{}, each from the end of the one before", ways.join(" and ")));
     } else if scene.start == Start::Rest {
         parts.push("each from rest".to_owned());
     }

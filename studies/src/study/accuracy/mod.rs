@@ -22,11 +22,6 @@ pub use setup::Stopped;
 
 use super::{Table, Task};
 
-/// A name that cannot be selected.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("there is no case `{0}`; the cases are {cases}", cases = names().collect::<Vec<_>>().join(", "))]
-pub struct UnknownCase(String);
-
 /// Names of all parts of the study: the problems, then the hard cases.
 pub fn names() -> impl Iterator<Item = &'static str> {
     PROBLEMS.iter().map(|problem| problem.name).chain(HARD_CASES.iter().map(|case| case.name))
@@ -48,10 +43,11 @@ pub struct Selection {
 }
 
 impl Selection {
-    /// The parts with these names, in the study's own order; all parts without names.
-    pub fn of(wanted: &[String]) -> Result<Self, UnknownCase> {
+    /// The parts with these names, in the study's own order; all parts without names. The error is a clause.
+    pub fn of(wanted: &[String]) -> Result<Self, String> {
         if let Some(unknown) = wanted.iter().find(|wanted| !names().any(|name| name == wanted.as_str())) {
-            return Err(UnknownCase(unknown.clone()));
+            let known: Vec<&str> = names().collect();
+            return Err(format!("there is no case `{unknown}`; the cases are {}", known.join(", ")));
         }
         let has = |name: &str| wanted.is_empty() || wanted.iter().any(|wanted| wanted == name);
         Ok(Self {

@@ -10,9 +10,7 @@ mod trust;
 mod words;
 
 pub use step_size::{Lateness, StepSize, TRUE_TOLERANCE, Unfit, step_size};
-pub use trust::{
-    AtTolerance, Course, TOLERANCES, TRUSTED_SHARE, Tolerances, Trust, lasting, tolerances, trust,
-};
+pub use trust::{AtTolerance, Course, TOLERANCES, TRUSTED_SHARE, Tolerances, Trust, tolerances, trust};
 pub use words::{duration, length_mm, moment, small_length, step_name};
 
 use super::OWN;

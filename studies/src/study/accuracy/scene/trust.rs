@@ -194,11 +194,6 @@ pub fn trust(model: &Model, cancel: &AtomicBool) -> Option<Trust> {
     })
 }
 
-/// The model with a run of another length in s, to judge a motion beyond the run of its scene.
-pub fn lasting(model: &Model, duration: f64) -> Model {
-    model.with_duration(duration, model.settle())
-}
-
 /// A run of `model` that is more accurate than one at `tolerance`, and its tolerance. `None` if cancelled.
 fn more_accurate(model: &Model, tolerance: f64, request: &Request) -> Option<(f64, Run)> {
     let finer = TIGHTER * tolerance;

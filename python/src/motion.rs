@@ -1,0 +1,179 @@
+//! Questions about the motions of one scene, and about its design.
+
+use interwell_kernel::numeric::Taper;
+use interwell_studies::output::{
+    SpectrumQuantity, basins_chart, branch_chart, comparison_chart, loci_chart, spectrum_chart,
+};
+use interwell_studies::questions::{
+    Basins, Best, Branch, BranchEvent, Compare, Error, FieldRange, Locus, Orbit, Signal, Spectrum,
+};
+use pyo3::prelude::*;
+
+use crate::answer::Answer;
+use crate::errors::{named, raised, renamed};
+use crate::scene::Simulation;
+use crate::work::{Way, work};
+
+#[pyfunction]
+#[pyo3(signature = (scene, period=None, phase_deg=0.0))]
+pub fn orbit(scene: &Simulation, py: Python<'_>, period: Option<u32>, phase_deg: f64) -> PyResult<Answer> {
+    let question = Orbit { period, phase_deg };
+    let found = work(py, &Way::default(), |progress| question.run(&scene.inner, progress))?;
+    Ok(Answer::new(py, found.table(), scene.caption()))
+}
+
+#[pyfunction]
+#[pyo3(signature = (scene, field, range, step, count, switch, period=None, phase_deg=0.0, progress=None))]
+#[expect(clippy::too_many_arguments, reason = "keywords of Python")]
+pub fn branch(
+    scene: &Simulation,
+    py: Python<'_>,
+    field: String,
+    range: (f64, f64),
+    step: f64,
+    count: usize,
+    switch: u32,
+    period: Option<u32>,
+    phase_deg: f64,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<Answer> {
+    let question = Branch { field, range, period, phase_deg, step, count };
+    let way = Way { threads: None, progress };
+    let found = work(py, &way, |progress| {
+        let found = question.with_switches(switch, &scene.inner, progress);
+        found.map_err(|error| renamed(error, [["range", "end"]]))
+    })?;
+    let table = if switch > 0 { found.table() } else { found.branches[0].table() };
+    let answer = Answer::new(py, table, scene.caption()).told(found.remarks());
+    Ok(answer.drawn(move |_, asked| Ok(branch_chart(&found.branches, phase_deg, asked.ranges))))
+}
+
+#[pyfunction]
+#[pyo3(signature = (
+    scene, event, field, range, second, second_range, step, count, period=None, phase_deg=0.0, progress=None
+))]
+#[expect(clippy::too_many_arguments, reason = "keywords of Python")]
+pub fn locus(
+    scene: &Simulation,
+    py: Python<'_>,
+    event: &str,
+    field: String,
+    range: (f64, f64),
+    second: String,
+    second_range: (f64, f64),
+    step: f64,
+    count: usize,
+    period: Option<u32>,
+    phase_deg: f64,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<Answer> {
+    let of = named(py, "event", event, &BranchEvent::ALL, BranchEvent::name)?;
+    let branch = Branch { field, range, period, phase_deg, step, count };
+    let question = Locus { branch, of, second: FieldRange { field: second, range: second_range } };
+    let way = Way { threads: None, progress };
+    let found = work(py, &way, |progress| question.run(&scene.inner, progress))?;
+    let answer = Answer::new(py, found.table(), scene.caption()).told(found.remarks());
+    Ok(answer.drawn(move |_, asked| Ok(loci_chart(&found.loci, phase_deg, asked.ranges))))
+}
+
+#[pyfunction]
+#[pyo3(signature = (scene, of, taper, rate_hz=None, until_settled=None))]
+pub fn spectrum(
+    scene: &Simulation,
+    py: Python<'_>,
+    of: &str,
+    taper: &str,
+    rate_hz: Option<f64>,
+    until_settled: Option<f64>,
+) -> PyResult<Answer> {
+    let of = named(py, "of", of, &Signal::ALL, Signal::name)?;
+    let taper = match taper {
+        "auto" => None,
+        "hann" => Some(Taper::Hann),
+        "none" => Some(Taper::None),
+        _ => return Err(raised(py, &Error::argument("taper", taper, "give auto, hann or none"))),
+    };
+    let question = Spectrum { of, taper, rate_hz, until_settled };
+    let found = work(py, &Way::default(), |progress| question.run(&scene.inner, progress))?;
+    let answer = Answer::new(py, found.table().clone(), scene.caption()).told(vec![found.describe()]);
+    Ok(answer.drawn(move |_, asked| {
+        let quantity = match asked.quantity.as_deref() {
+            None | Some("amplitude") => SpectrumQuantity::Amplitude,
+            Some("psd") => SpectrumQuantity::Density,
+            Some(other) => return Err(format!("no column `{other}`; give amplitude or psd")),
+        };
+        Ok(spectrum_chart(&found, quantity, asked.ranges))
+    }))
+}
+
+/// A row a start, and a row an attractor. `progress` is told of the starts that are followed, `checking` of
+/// those that are checked afterwards.
+#[pyfunction]
+#[pyo3(signature = (scene, x_mm, v, random=None, threads=None, progress=None, checking=None))]
+#[expect(clippy::too_many_arguments, reason = "keywords of Python")]
+pub fn basins(
+    scene: &Simulation,
+    py: Python<'_>,
+    x_mm: (f64, f64, u64),
+    v: (f64, f64, u64),
+    random: Option<(u64, u64)>,
+    threads: Option<usize>,
+    progress: Option<Py<PyAny>>,
+    checking: Option<Py<PyAny>>,
+) -> PyResult<(Answer, Answer)> {
+    let question = Basins { random, ..Basins::of(x_mm, v) };
+    let followed = work(py, &Way { threads, progress }, |progress| {
+        question.follow(&scene.inner, progress).map_err(|error| renamed(error, [["v", "v_m_per_s"]]))
+    })?;
+    let checked = Way { threads, progress: checking };
+    let found = work(py, &checked, |progress| followed.checked(progress))?;
+    let attractors = Answer::new(py, found.attractors(), scene.caption());
+    let starts = Answer::new(py, found.table(), scene.caption()).told(found.answer.words());
+    let starts = starts.drawn(move |_, _| Ok(basins_chart(&found.basins, &found.answer)));
+    Ok((starts, attractors))
+}
+
+/// This scene, called `name`, beside others under its sine.
+#[pyfunction]
+#[pyo3(signature = (scene, name, others, until_settled=None, threads=None, progress=None))]
+pub fn compare(
+    scene: &Simulation,
+    py: Python<'_>,
+    name: String,
+    others: Vec<(String, Py<Simulation>)>,
+    until_settled: Option<f64>,
+    threads: Option<usize>,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<Answer> {
+    let with = others.into_iter().map(|(name, other)| (name, other.get().inner.clone())).collect();
+    let question = Compare { with, name, environment: None, until_settled };
+    let way = Way { threads, progress };
+    let found = work(py, &way, |progress| question.run(&scene.inner, progress))?;
+    Ok(Answer::new(py, found.table(), scene.caption())
+        .drawn(move |_, _| Ok(comparison_chart(&found.rated, found.frequency_hz))))
+}
+
+#[pyfunction]
+#[pyo3(signature = (
+    scene, over, maximise, subject_to, environment, vary, seed, until_settled=None, threads=None,
+    progress=None
+))]
+#[expect(clippy::too_many_arguments, reason = "keywords of Python")]
+pub fn best(
+    scene: &Simulation,
+    py: Python<'_>,
+    over: Vec<String>,
+    maximise: String,
+    subject_to: Vec<String>,
+    environment: Vec<String>,
+    vary: Vec<String>,
+    seed: u64,
+    until_settled: Option<f64>,
+    threads: Option<usize>,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<Answer> {
+    let question = Best { over, maximise, subject_to, environment, vary, seed, until_settled };
+    let way = Way { threads, progress };
+    let found = work(py, &way, |progress| question.run(&scene.inner, progress))?;
+    Ok(Answer::new(py, found.table(), scene.caption()).told(found.words()))
+}
