@@ -37,11 +37,13 @@ mod lanes;
 mod normal;
 pub mod orthogonal;
 mod periodogram;
+#[doc(hidden)]
 pub mod pieces;
 mod quadrature;
 pub mod real_roots;
 pub mod regression;
 mod roots;
+#[doc(hidden)]
 pub mod round;
 mod scalar;
 pub(crate) mod single_root;
@@ -53,7 +55,7 @@ mod turns;
 pub use bisect::{bisect, golden_section};
 pub(crate) use collocation::{Collocation, GROUP, MAX_GROUPS, Values};
 pub use correlation::{Alignment, alignment};
-pub use decimal::{Decimal, Ratio, greatest_common_divisor};
+pub use decimal::{Decimal, Ratio};
 pub use double_double::DoubleDouble;
 pub use dual::Dual;
 pub use envelope::{Envelope, MIN_TURNS, TurningPoint};
@@ -63,13 +65,20 @@ pub use lanes::Lanes;
 pub(crate) use lanes::widest;
 pub use normal::{normal_probability, normal_quantile};
 pub use periodogram::{Periodogram, Taper, periodogram};
-pub use quadrature::{GaussLegendre, MAX_POINTS, even_half};
+pub use quadrature::{GaussLegendre, MAX_POINTS};
 pub use roots::{MAX_DEGREE, PolynomialRoots};
 pub use scalar::{Number, Scalar};
 pub use sum::CompensatedSum;
 pub use survival::{QuantileRanks, Rate, Waiting, median};
-pub use text::{decimals, number_text, push_number, short};
-pub use turns::{Turn, extent, turns};
+
+// For the other layers and the window.
+#[doc(hidden)]
+pub use {
+    decimal::greatest_common_divisor,
+    quadrature::even_half,
+    text::{decimals, number_text, push_number, short},
+    turns::{Turn, extent, turns},
+};
 
 /// The coefficients of the polynomial `factor` times (x - root) for each root.
 #[cfg(test)]

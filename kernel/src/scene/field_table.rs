@@ -79,6 +79,8 @@ pub struct Control {
 }
 
 /// A numeric field of a scene.
+///
+/// [`FIELDS`] lists them, and [`field_info`] finds that of a path.
 #[derive(Debug)]
 pub struct FieldInfo {
     /// Dotted path in the scene, without the indices of parts of a sum and of elements of a list.
@@ -88,10 +90,13 @@ pub struct FieldInfo {
     /// Advice for a value outside the range, as a clause.
     pub remedy: &'static str,
     /// Its name on the screen; without one the path is shown.
+    #[doc(hidden)]
     pub name: Option<&'static str>,
     /// Its control in the window, if it has one.
+    #[doc(hidden)]
     pub control: Option<Control>,
     /// Its place among the fields that are offered as axes of a map, if it is offered.
+    #[doc(hidden)]
     pub axis: Option<u8>,
 }
 

@@ -93,6 +93,10 @@ fn query(text: &str) -> Option<(&str, &str, &str)> {
 
 impl Document {
     /// The link to the scene with its changes. It begins with `?scene=`; put the address of a page before it.
+    ///
+    /// # Errors
+    ///
+    /// For a file of the scene that cannot be read, and a scene or file that is too large for a link.
     pub fn link(&self) -> Result<String, LinkError> {
         let mut payload = Payload::default();
         let mut name = "";

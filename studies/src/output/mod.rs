@@ -9,16 +9,31 @@
 //! [`Format::bytes`] makes PNG, SVG or PDF of the [`Figure`]. [`Sink`] writes a file as a whole or not at
 //! all. A [`Manifest`] says what made a file, so that it can be made again.
 //!
-//! Errors: [`NoPicture`] and [`SheetError`] say why there is no picture, [`OpenError`] why there is no file.
+//! Tables are in SI units, as the names of their columns say; axes of pictures have the units of their
+//! labels.
+//!
+//! # Errors
+//!
+//! [`NoPicture`] and [`SheetError`] say why there is no picture, [`OpenError`] why there is no file.
+//!
+//! # Example
 //!
 //! ```
-//! use interwell_studies::output::csv;
-//! use interwell_studies::questions::{Curve, Simulation};
+//! # use interwell_studies as interwell;
+//! use interwell::output::{Caption, Format, Ranges, Theme, csv, curve_chart};
+//! use interwell::questions::{Curve, Simulation};
 //!
 //! let simulation = Simulation::preset("nominal-cubic")?;
 //! let table = Curve { positions: Some(vec![0.0]) }.run(&simulation)?;
 //! assert_eq!(csv(&table), "x_m,force_n,potential_j,stiffness_n_per_m\n0,0,0,-40\n");
-//! # Ok::<(), interwell_studies::questions::Error>(())
+//!
+//! // the force curve between the stops at 4 mm as a picture
+//! let table = Curve::default().run(&simulation)?;
+//! let chart = curve_chart(&table, simulation.mechanism(), (-4e-3, 4e-3), Ranges::default());
+//! let caption = Caption { title: simulation.scene().title.clone(), ..Caption::default() };
+//! let figure = chart.figure(&caption, &Theme::LIGHT);
+//! assert!(Format::Svg.bytes(&figure).unwrap().starts_with(b"<svg"));
+//! # Ok::<(), interwell::questions::Error>(())
 //! ```
 
 mod arguments;
@@ -29,13 +44,20 @@ mod plan;
 mod plot;
 mod text;
 
-pub use arguments::{Argument, picture_arguments, repeated};
 pub use csv::{csv, csv_table, header, rows};
 pub use json::{identified, landscape, summary};
-pub use manifest::{Made, Manifest, Provenance, manifest_path, merged_manifest};
-pub use plan::{plan, plan_differences};
+pub use manifest::{Manifest, Provenance, manifest_path};
 pub use plot::*;
 pub use text::aligned;
 
-pub use crate::numeric::push_number;
-pub use crate::system::{OpenError, Sink, is_regular, same_target, write_file};
+pub use crate::system::{OpenError, Sink, write_file};
+
+// For the command line and the window of this workspace.
+#[doc(hidden)]
+pub use {
+    crate::numeric::push_number,
+    crate::system::{is_regular, same_target},
+    arguments::{Argument, picture_arguments, repeated},
+    manifest::{Made, merged_manifest},
+    plan::{plan, plan_differences},
+};

@@ -162,6 +162,7 @@ impl Model {
     }
 
     /// The excitation.
+    #[doc(hidden)]
     pub fn excitation(&self) -> &ExcitationParts {
         &self.excitation
     }
@@ -195,6 +196,7 @@ impl Model {
     }
 
     /// Where its runs begin.
+    #[doc(hidden)]
     pub fn beginning(&self) -> Beginning {
         let start = MapState { x: self.start.0, v: self.start.1, electrical: self.start_electrical };
         let phases = self.excitation.tones.iter().map(|tone| tone.phase).collect();
@@ -203,6 +205,7 @@ impl Model {
 
     /// The model of the same scene whose runs begin as those of another one.
     #[must_use]
+    #[doc(hidden)]
     pub fn begun_at(&self, beginning: &Beginning) -> Self {
         let Beginning { start, motionless, phases } = beginning;
         let mut model = Self { motionless: *motionless, start_phase: phases.1, ..self.with_start(*start) };
@@ -248,6 +251,7 @@ impl Model {
 
     /// Moves a state to between the stops, or up to `depth` into them, and into the known curve. A mass that
     /// has to be moved loses its speed.
+    #[doc(hidden)]
     pub fn held_within(&self, (x, v): (f64, f64), depth: f64) -> (f64, f64) {
         let domain = self.mechanism.curve.domain();
         let (left, right) = self.stop_positions();

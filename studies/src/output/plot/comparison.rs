@@ -97,7 +97,8 @@ pub fn three_digits(value: f64) -> String {
     short((value / digit).round() * digit)
 }
 
-/// The picture of a comparison of scenes, one row each, under a drive of this frequency in Hz.
+/// The picture of a comparison of scenes, one row each, under a drive of this frequency in Hz, of the fields
+/// of a [`CompareAnswer`](crate::questions::CompareAnswer).
 pub fn comparison_chart(rated: &[Rated], frequency_hz: f64) -> Chart {
     let shown = shown(rated, frequency_hz);
     let count = shown.len().div_ceil(shown.len().div_ceil(COLUMNS).max(1)).max(1);

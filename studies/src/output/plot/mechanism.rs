@@ -44,6 +44,10 @@ pub fn depends_on_place(mechanism: &Mechanism, (low, high): (f64, f64)) -> bool 
 
 /// The picture of the mechanism of a model with the mass at `x` in m. Flexures have their true shape; mass,
 /// stops and the parts beside them are not to scale.
+///
+/// # Errors
+///
+/// If the flexures have no solution at `x`.
 pub fn mechanism_chart(model: &Model, x: f64) -> Result<Chart, StatesError> {
     let mechanism = model.mechanism();
     let task = Task { tick: &|| (), cancel: &AtomicBool::new(false) };

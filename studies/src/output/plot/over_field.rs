@@ -67,6 +67,10 @@ pub fn escape_chart(
 }
 
 /// Both Lyapunov exponents over the field of the grid, each with its standard error as a band; from all rows.
+///
+/// # Errors
+///
+/// [`NoPicture::OneField`] unless the grid has one field.
 pub fn exponents_chart(rows: &Table, grid: &Grid, scene: &Scene, ranges: Ranges) -> Result<Chart, NoPicture> {
     can_show_over_field(grid, "exponents")?;
     let x = grid.columns()[0].as_str();

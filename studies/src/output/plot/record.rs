@@ -65,6 +65,9 @@ struct RecordPicture {
 
 /// The picture of what was identified `of` a record, from the two columns that it was identified from in SI,
 /// the second one of this quantity; of impact times alone there is one column.
+///
+/// `of` is the name of the quantity; the others are fields of an
+/// [`IdentifyAnswer`](crate::questions::IdentifyAnswer).
 pub fn identified_chart(
     of: &str,
     found: &Identified,

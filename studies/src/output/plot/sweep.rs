@@ -15,7 +15,7 @@ use crate::study::{DIRECTION, Direction, Grid, SUMMARY_FIELDS, Table};
 /// Largest number of cells in a picture: more than its pixels can distinguish.
 pub const MAX_PICTURE_CELLS: u64 = 500_000;
 
-/// Why a sweep has no picture.
+/// Why a table has no picture. The messages are those of the command line and name its options.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum NoPicture {
     /// Neither a line nor a map.
@@ -123,6 +123,12 @@ const VISIBLE: f64 = 2e-3;
 
 /// The picture of a sweep: a line over one field; over two fields a map, or one line per value of a field
 /// with few values.
+///
+/// # Errors
+///
+/// [`NoPicture::Fields`] over more than two fields, [`NoPicture::Cells`] for more cells than a picture can
+/// show, [`NoPicture::Quantity`] for a column that is not there or has no picture, and the others for rows
+/// of another sweep and for a surface or cuts that the map does not allow.
 pub fn sweep_chart(picture: &SweepPicture) -> Result<Chart, NoPicture> {
     let SweepPicture { rows, grid, scene, until_settled, .. } = *picture;
     let quantity = can_show(grid, picture.quantity, &picture.view, rows)?;
