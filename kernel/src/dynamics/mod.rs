@@ -56,22 +56,9 @@ mod step;
 
 pub use live::{Live, LiveLedger, LiveOutput};
 pub use map::{Jacobian, Miss, Multiplier, Passage, StroboscopicMap};
-pub use model::Model;
-pub use model::excitation::STANDARD_GRAVITY;
+pub use model::excitation::{ChirpPart, ExcitationParts, NoisePart, STANDARD_GRAVITY, TonePart};
 pub use model::scales::Scales;
 pub use model::stops::{StopAt, StopPair};
 pub use model::transducer::{CircuitState, Output};
-pub use result::{
-    Event, EventKind, First, Firsts, Harvest, Ledger, MapState, Outcome, Phase, Place, Regime, Request, Run,
-    Sample, SectionPoint, Side, Summary,
-};
-
-// For the studies, the command line and the window of this workspace.
-#[doc(hidden)]
-pub use {
-    model::{
-        Beginning,
-        excitation::{ChirpPart, ExcitationParts, NoisePart, TonePart},
-    },
-    result::{Arrival, Capture, Pursued, Pursuit, Region, ReleaseIdentity},
-};
+pub use model::{Beginning, Model};
+pub use result::*;

@@ -14,7 +14,7 @@ pub const MAX_POINTS: usize = 100_000;
 const X: &str = "x_m";
 const FORCE: &str = "force_n";
 
-/// The points of a measured or computed force; [`fit()`] makes a curve of them.
+/// The points of a measured or computed force; [`fit()`](super::fit()) makes a curve of them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ForceTable {
     /// Positions in m, strictly increasing.

@@ -55,7 +55,7 @@ mod turns;
 pub use bisect::{bisect, golden_section};
 pub(crate) use collocation::{Collocation, GROUP, MAX_GROUPS, Values};
 pub use correlation::{Alignment, alignment};
-pub use decimal::{Decimal, Ratio};
+pub use decimal::{Decimal, Ratio, greatest_common_divisor};
 pub use double_double::DoubleDouble;
 pub use dual::Dual;
 pub use envelope::{Envelope, MIN_TURNS, TurningPoint};
@@ -65,20 +65,13 @@ pub use lanes::Lanes;
 pub(crate) use lanes::widest;
 pub use normal::{normal_probability, normal_quantile};
 pub use periodogram::{Periodogram, Taper, periodogram};
-pub use quadrature::{GaussLegendre, MAX_POINTS};
+pub use quadrature::{GaussLegendre, MAX_POINTS, even_half};
 pub use roots::{MAX_DEGREE, PolynomialRoots};
 pub use scalar::{Number, Scalar};
 pub use sum::CompensatedSum;
 pub use survival::{QuantileRanks, Rate, Waiting, median};
-
-// For the other layers and the window.
-#[doc(hidden)]
-pub use {
-    decimal::greatest_common_divisor,
-    quadrature::even_half,
-    text::{decimals, number_text, push_number, short},
-    turns::{Turn, extent, turns},
-};
+pub use text::{decimals, number_text, push_number, short};
+pub use turns::{Turn, extent, turns};
 
 /// The coefficients of the polynomial `factor` times (x - root) for each root.
 #[cfg(test)]

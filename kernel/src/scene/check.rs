@@ -426,6 +426,7 @@ fn sweep(scene: &Scene, checked: &mut Checked) {
 
 /// Checks the scene at the corners of a sweep of at most [`MAX_AXES`] axes. The relations between fields are
 /// linear, so that they hold in every cell if they hold at the corners.
+#[doc(hidden)]
 pub fn corners(scene: &Scene, axes: &[Axis]) -> Vec<Fault> {
     let ends: Vec<[usize; 2]> = axes.iter().map(extremes).collect();
     let corners = 1_usize << axes.len().min(MAX_AXES);

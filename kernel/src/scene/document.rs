@@ -470,11 +470,13 @@ pub(super) fn structure_error<E: ToString>(
 }
 
 /// The paths of the files that a scene names, as written: its table and its records.
+#[doc(hidden)]
 pub fn named_paths(scene: &mut Scene) -> Vec<&mut String> {
     scene.mechanism.paths_mut().into_iter().chain(record::paths_mut(&mut scene.excitation)).collect()
 }
 
 /// Whether the file at `path` is a scene: its name ends in `.ron`, or its text parses as a scene.
+#[doc(hidden)]
 pub fn is_scene_file(path: &Path) -> bool {
     let named = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("ron"));
     files::is_file(path)
@@ -482,6 +484,7 @@ pub fn is_scene_file(path: &Path) -> bool {
 }
 
 /// The texts of the files that a scene names, by their paths in it, as far as they can be read.
+#[doc(hidden)]
 pub fn named_texts(scene: &Scene, files: &Files) -> BTreeMap<String, String> {
     let mut scene = scene.clone();
     let paths = named_paths(&mut scene).into_iter();
@@ -489,6 +492,7 @@ pub fn named_texts(scene: &Scene, files: &Files) -> BTreeMap<String, String> {
 }
 
 /// Reads the records that a scene names. One that cannot be read is missing.
+#[doc(hidden)]
 pub fn read_records(scene: &mut Scene, files: &Files) {
     record::attach(&mut scene.excitation, "excitation", files);
 }

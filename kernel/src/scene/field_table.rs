@@ -43,6 +43,7 @@ impl fmt::Display for Range {
 }
 
 /// The quantity that the range of a slider depends on.
+#[doc(hidden)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Scale {
     /// Nothing: every scene has the range of the table.
@@ -64,6 +65,7 @@ pub enum Scale {
 }
 
 /// The control of a field in the window.
+#[doc(hidden)]
 #[derive(Debug)]
 pub struct Control {
     /// Path of the field.
@@ -145,6 +147,7 @@ pub fn field_info(path: &str) -> Option<&'static FieldInfo> {
 }
 
 /// A path without the indices of parts of a sum and of elements of a list.
+#[doc(hidden)]
 pub fn without_indices(path: &str) -> String {
     path.split('.').filter(|part| part.parse::<usize>().is_err()).collect::<Vec<_>>().join(".")
 }

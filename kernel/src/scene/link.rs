@@ -69,11 +69,13 @@ struct Payload {
 }
 
 /// Whether a text is a link, and not the name of a scene or of a file.
+#[doc(hidden)]
 pub fn is_link(text: &str) -> bool {
     query(text).is_some()
 }
 
 /// The lesson that a link opens, if it opens one.
+#[doc(hidden)]
 pub fn linked_lesson(text: &str) -> Option<&str> {
     match query(text)? {
         ("lesson", name, _) => Some(name),

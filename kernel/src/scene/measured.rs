@@ -116,6 +116,7 @@ fn text_of(path: &Path) -> Result<String, MeasuredError> {
 }
 
 /// The text of a record with its header parsed, so that columns can be chosen.
+#[doc(hidden)]
 #[derive(Debug)]
 pub struct MeasuredText {
     text: String,
@@ -124,6 +125,7 @@ pub struct MeasuredText {
 }
 
 /// Index of a column, and its unit if known.
+#[doc(hidden)]
 pub type ChosenColumn = (usize, Option<Unit>);
 
 impl MeasuredText {

@@ -67,49 +67,35 @@ mod unit;
 mod walk;
 mod written;
 
+pub use arguments::arguments;
 pub use arithmetic::read_number;
-pub use axis::{Axis, MAX_AXES, MAX_AXIS_VALUES};
+pub use axis::{Axis, MAX_AXES, MAX_AXIS_VALUES, column_names};
 pub(crate) use check::is_sound;
-pub use check::{Checked, check};
-pub use columns::{ColumnsError, MAX_ROWS};
+pub use check::{Checked, check, corners};
+pub use columns::{Columns, ColumnsError, MAX_ROWS, read_columns};
 pub use data::*;
-pub use document::{Document, Source};
+pub use document::{Document, Source, is_scene_file, named_paths, named_texts, read_records};
 pub use error::{ArgumentError, Fault, Origin, PlacedFault, SceneError};
-pub use field_table::{FIELDS, FieldInfo, MAX_COEFFICIENTS, Range, TOLERANCES, field_info};
+pub use field_table::{
+    Control, FIELDS, FieldInfo, MAX_COEFFICIENTS, Range, Scale, TOLERANCES, field_info, without_indices,
+};
 pub use fields::{FieldPath, all_fields, is_whole, numeric_fields};
 pub use files::{FileError, Files, MAX_TABLE_BYTES};
 pub use harmonic::Harmonic;
-pub use link::LinkError;
-pub use manifest::{SweepRequest, Uncertain};
+pub use link::{LinkError, is_link, linked_lesson};
+pub use manifest::{PROGRAM, SweepRequest, Uncertain, is_manifest};
 pub use measured::{
-    Channel, ColumnOptions, ColumnRequest, MAX_MEASURED_BYTES, MAX_MEASURED_ROWS, Measured, MeasuredError,
-    read_measured,
+    Channel, ChosenColumn, ColumnOptions, ColumnRequest, MAX_MEASURED_BYTES, MAX_MEASURED_ROWS, Measured,
+    MeasuredError, MeasuredText, read_measured,
 };
 pub use mechanism::{FlexureGroup, ForcePiece, Mechanism, Moments};
+pub use names::find_name;
 pub use periodic::{DriveError, PeriodicDrive};
-pub use presets::{EmbeddedTable, PRESETS, Preset, TABLES};
+pub use presets::{EmbeddedTable, PRESETS, Preset, TABLES, export};
 pub use record::{Record, read_record};
-pub use scanner::Place;
+pub use scanner::{Place, Places, has_comments};
 pub use stops::Stops;
 pub use text::{MAX_SCENE_BYTES, write};
 pub use timing::Timing;
 pub use transducer::Transducer;
-pub use unit::{Quantity, STANDARD_GRAVITY};
-
-// For the command line and the window of this workspace.
-#[doc(hidden)]
-pub use {
-    arguments::arguments,
-    axis::column_names,
-    check::corners,
-    columns::{Columns, read_columns},
-    document::{is_scene_file, named_paths, named_texts, read_records},
-    field_table::{Control, Scale, without_indices},
-    link::{is_link, linked_lesson},
-    manifest::{PROGRAM, is_manifest},
-    measured::{ChosenColumn, MeasuredText},
-    names::find_name,
-    presets::export,
-    scanner::{Places, has_comments},
-    unit::{Unit, unit_ending},
-};
+pub use unit::{Quantity, STANDARD_GRAVITY, Unit, unit_ending};

@@ -68,6 +68,7 @@ pub(super) fn names() -> String {
 }
 
 /// File names and contents of all presets and their tables. In one folder each scene finds its table.
+#[doc(hidden)]
 pub fn export() -> Vec<(String, &'static str)> {
     let scenes = PRESETS.iter().map(|preset| (format!("{}.ron", preset.name), preset.text));
     scenes.chain(TABLES.iter().map(|table| (table.name.to_owned(), table.text))).collect()

@@ -30,16 +30,9 @@ mod part;
 mod sink;
 pub mod threads;
 
-pub use sink::{OpenError, Sink, write_file};
-
-// For the command line and the window. A `Part` writes a long file in blocks with a journal, so that an
-// interruption loses no complete block; a block is synced before it counts, on a thread of its own.
-#[doc(hidden)]
-pub use {
-    journal::Block,
-    part::{Opened, Part, PartError},
-    sink::{is_regular, same_target},
-};
+pub use journal::Block;
+pub use part::{Opened, Part, PartError};
+pub use sink::{OpenError, Sink, is_regular, same_target, write_file};
 
 /// The address that stands before a link: in a web page that of the page, elsewhere what the environment
 /// variable `INTERWELL_PAGE` has, up to a `?` or `#`. The error is a sentence.

@@ -217,6 +217,7 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), String> {
 
 /// Whether an output at `path` would be a regular file, and not standard output, a device or a pipe. This
 /// does not open `path`, since opening and closing a pipe ends it for its reader.
+#[doc(hidden)]
 pub fn is_regular(path: &Path) -> bool {
     let existing = fs::metadata(follow_links(path));
     !is_stdout(path) && existing.map_or(true, |existing| existing.is_file() && !is_descriptor(path))
@@ -232,6 +233,7 @@ fn is_descriptor(path: &Path) -> bool {
 }
 
 /// Whether two outputs would overwrite each other: both are standard output, or two names of one file.
+#[doc(hidden)]
 pub fn same_target(a: &Sink, b: &Sink) -> bool {
     let is_same_name = match (&a.kind, &b.kind) {
         (Kind::Stdout, Kind::Stdout) => true,

@@ -44,20 +44,13 @@ mod plan;
 mod plot;
 mod text;
 
+pub use arguments::{Argument, picture_arguments, repeated};
 pub use csv::{csv, csv_table, header, rows};
 pub use json::{identified, landscape, summary};
-pub use manifest::{Manifest, Provenance, manifest_path};
+pub use manifest::{Made, Manifest, Provenance, manifest_path, merged_manifest};
+pub use plan::{plan, plan_differences};
 pub use plot::*;
 pub use text::aligned;
 
-pub use crate::system::{OpenError, Sink, write_file};
-
-// For the command line and the window of this workspace.
-#[doc(hidden)]
-pub use {
-    crate::numeric::push_number,
-    crate::system::{is_regular, same_target},
-    arguments::{Argument, picture_arguments, repeated},
-    manifest::{Made, merged_manifest},
-    plan::{plan, plan_differences},
-};
+pub use crate::numeric::push_number;
+pub use crate::system::{OpenError, Sink, is_regular, same_target, write_file};

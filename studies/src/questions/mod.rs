@@ -111,12 +111,10 @@ pub use sweep::{SweepCells, assign as assign_uncertain};
 pub use crate::mechanics::flexure::State as FlexureState;
 pub use crate::scene::Uncertain;
 
-#[doc(hidden)]
-pub use crate::study::BestQuestion;
 pub use crate::study::{
-    Answer, Attractor, BestDesign, Branch as BranchAnswer, BranchEnd, BranchEvent, Carry, Column, Estimate,
-    EvenRange, ExponentOptions, Exponents as ExponentsAnswer, FieldRange, Found, Grid, Identified, Identity,
-    Locus as OneLocus, LocusEnd, LocusEvent, Onset, Optimum, Orbit as OrbitAnswer, Rated, Recorded, Sampling,
-    SectionAt, SectionOptions, Shares, Signal, Spectrum as SpectrumAnswer, Spread, Table, Tried, Until,
-    Values,
+    Answer, Attractor, BestDesign, BestQuestion, Branch as BranchAnswer, BranchEnd, BranchEvent, Carry,
+    Column, Estimate, EvenRange, ExponentOptions, Exponents as ExponentsAnswer, FieldRange, Found, Grid,
+    Identified, Identity, Locus as OneLocus, LocusEnd, LocusEvent, Onset, Optimum, Orbit as OrbitAnswer,
+    Rated, Recorded, Sampling, SectionAt, SectionOptions, Shares, Signal, Spectrum as SpectrumAnswer, Spread,
+    Table, Tried, Until, Values,
 };

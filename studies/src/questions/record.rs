@@ -113,6 +113,7 @@ impl IdentifyAnswer {
 }
 
 /// A description of the columns from which a record was read.
+#[doc(hidden)]
 pub fn columns_read<const N: usize>(record: &Measured<N>) -> String {
     let from = |channel: &Channel| format!("{} from `{}`", channel.quantity.name(), channel.column);
     let commas = if record.decimal_commas { ", with decimal commas" } else { "" };

@@ -191,6 +191,7 @@ fn parts(input: &str) -> Result<[&str; 3], Error> {
 
 /// Gives the fields of a document the values of the uncertain inputs, and says whether there are any. The
 /// document is to be checked afterwards.
+#[doc(hidden)]
 pub fn assign(uncertain: &Uncertain, document: &mut Document) -> Result<bool, Error> {
     let mut assigned = false;
     for input in &uncertain.fields {

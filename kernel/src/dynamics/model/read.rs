@@ -15,6 +15,7 @@ use crate::numeric::{DoubleDouble, Number, Scalar};
 use crate::scene;
 
 /// Where a run of a model begins. A model that continues a live run has this and all else from its scene.
+#[doc(hidden)]
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Beginning {
     start: MapState,

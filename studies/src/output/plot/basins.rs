@@ -14,6 +14,7 @@ use crate::study::{Answer, Attractor, Basins, Edges, Shares, Starts, Table};
 const MAX_NAMED: usize = 9;
 
 /// Whether a map of these starts can be drawn.
+#[doc(hidden)]
 pub fn can_show_starts(starts: &Starts) -> Result<(), NoPicture> {
     let count = starts.count() as u64;
     if count > MAX_PICTURE_CELLS { Err(NoPicture::Starts(count)) } else { Ok(()) }

@@ -89,6 +89,7 @@ impl Shown {
 }
 
 /// A number rounded to three digits, as text without zeros at its end.
+#[doc(hidden)]
 pub fn three_digits(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return short(value);

@@ -51,6 +51,7 @@ pub fn curve_chart(table: &Table, mechanism: &Mechanism, stops: (f64, f64), rang
 
 /// The potential in J from which the energy of the mass is counted: of the deepest well, or else of the lower
 /// of the stops at these positions in m, NaN where there is none, or else 0. Beside it the name of an axis.
+#[doc(hidden)]
 pub fn zero_of_energy(mechanism: &Mechanism, stops: (f64, f64)) -> (f64, &'static str) {
     let lowest = |places: &mut dyn Iterator<Item = f64>| {
         places.map(|x| mechanism.curve.potential(x)).filter(|joule| joule.is_finite()).reduce(f64::min)
@@ -65,6 +66,7 @@ pub fn zero_of_energy(mechanism: &Mechanism, stops: (f64, f64)) -> (f64, &'stati
 
 /// Panel of the holding force over displacement in mm, with `per_newton` units of the axis per N: stops in
 /// mm, kinks, equilibria, and the curve with its name and points.
+#[doc(hidden)]
 pub fn force_panel(
     mechanism: &Mechanism,
     axes: (PlotAxis, PlotAxis),

@@ -31,6 +31,7 @@ const TURNS: usize = 14;
 
 /// Whether the force of a mechanism without its springs and magnets depends on the displacement between these
 /// ends in m.
+#[doc(hidden)]
 pub fn depends_on_place(mechanism: &Mechanism, (low, high): (f64, f64)) -> bool {
     let depends = |part: &&Mechanism| {
         let forces = [0.0, 0.21, 0.5, 0.83, 1.0].map(|share| {

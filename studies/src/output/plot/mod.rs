@@ -52,60 +52,43 @@ use std::path::Path;
 
 use crate::study::words;
 
+pub use accuracy::{accuracy_chart, cost_panel, scene_accuracy_chart, steps_panel};
 pub use axis::{PlotAxis, Ranges};
-pub use basins::basins_chart;
+pub use basins::{basins_chart, can_show_starts};
 pub use best::best_chart;
 pub use branch::{branch_chart, loci_chart};
 pub use cells::{Cell, Cells, Colours};
 pub use chart::{Chart, Column, Layer, Marks, Note, Panel, Side};
-pub use comparison::comparison_chart;
-pub use curve::{contact_chart, curve_chart};
+pub use comparison::{comparison_chart, three_digits};
+pub use curve::{contact_chart, curve_chart, force_panel, zero_of_energy};
 pub use figure::{Area, Figure, Shape, Text};
+pub use font::{HACK, INTER, width as text_width};
 pub use frame::Frame;
+pub use ledger::{LedgerTerm, ledger_bars, ledger_decimals, ledger_number, share_of_work};
 pub use mark::Caption;
-pub use mechanism::mechanism_chart;
-pub use over_field::exponents_chart;
+pub use mechanism::{depends_on_place, mechanism_chart};
+pub use names::{
+    BASE_ACCELERATION, DISPLACEMENT, FREQUENCY, HOLDING_FORCE, PROCESSOR_TIME, TIME, VELOCITY, axis_name,
+};
+pub use over_field::{can_show_over_field, escape_chart, exponents_chart};
+pub use over_time::OverTime;
+pub use page::Room;
 pub use png::PaintError;
-pub use quantity::{RMS, quantities};
-pub use record::identified_chart;
-pub use role::Role;
+pub use portrait::portrait_panel;
+pub use projection::Projection;
+pub use quantity::{RMS, quantities, suited_unit, words_of};
+pub use record::{identified_chart, measured_chart, measured_force_chart};
+pub use role::{Look, Role};
+pub use run::{RunPanel, run_chart};
 pub use section::section_chart;
 pub use shapes::shapes_chart;
 pub use sheet::{Sheet, SheetError, SheetText};
 pub use spectrum::{SpectrumQuantity, spectrum_chart};
-pub use style::{Ink, Theme};
+pub use style::{BLACK, Ink, TICK, Theme, is_fine, viridis};
 pub use surface::SurfaceFrame;
-pub use sweep::{MAX_PICTURE_CELLS, NoPicture, sweep_chart};
+pub use sweep::{MAX_PICTURE_CELLS, NoPicture, can_show, sweep_about, sweep_chart};
 pub use swept::{Cut, Overlay, SweepPicture, View};
-pub use threshold::threshold_chart;
-
-// For the command line, the window and the Python package of this workspace: pictures of what only their
-// studies return, checks before a study is run, and the parts that the window paints itself.
-#[doc(hidden)]
-pub use {
-    accuracy::{accuracy_chart, cost_panel, scene_accuracy_chart, steps_panel},
-    basins::can_show_starts,
-    comparison::three_digits,
-    curve::{force_panel, zero_of_energy},
-    font::{HACK, INTER, width as text_width},
-    ledger::{LedgerTerm, ledger_bars, ledger_decimals, ledger_number, share_of_work},
-    mechanism::depends_on_place,
-    names::{
-        BASE_ACCELERATION, DISPLACEMENT, FREQUENCY, HOLDING_FORCE, PROCESSOR_TIME, TIME, VELOCITY, axis_name,
-    },
-    over_field::{can_show_over_field, escape_chart},
-    over_time::OverTime,
-    page::Room,
-    portrait::portrait_panel,
-    projection::Projection,
-    quantity::{suited_unit, words_of},
-    record::{measured_chart, measured_force_chart},
-    role::Look,
-    run::{RunPanel, run_chart},
-    style::{BLACK, TICK, is_fine, viridis},
-    sweep::{can_show, sweep_about},
-    threshold::can_show_thresholds,
-};
+pub use threshold::{can_show_thresholds, threshold_chart};
 
 words! {
     /// A kind of file that holds a picture.

@@ -71,6 +71,7 @@ pub enum NoPicture {
 
 /// Checks that the column that a person calls `quantity`, of a sweep of this grid, can be shown in this way,
 /// and returns its full name; `table` is that of its rows, which may still be empty.
+#[doc(hidden)]
 pub fn can_show<'a>(
     grid: &'a Grid,
     quantity: &str,
@@ -186,6 +187,7 @@ pub(super) fn distinct(values: &[f64]) -> Vec<f64> {
 
 /// A description of the runs in one line, with the directions in which they were `walked`, if each continued
 /// from the one before, and the time in s up to which runs continued until they repeat, if they did.
+#[doc(hidden)]
 pub fn sweep_about(grid: &Grid, scene: &Scene, walked: &[Direction], until_settled: Option<f64>) -> String {
     let lengths = grid.axes().iter().map(|axis| axis.values.len());
     let counts = Some(walked.len()).filter(|ways| *ways > 1).into_iter().chain(lengths);

@@ -16,6 +16,7 @@ use crate::study::{Grid, Onset, Table, Values};
 const MELNIKOV: [&str; 3] = ["melnikov_g", "melnikov_m_per_s2", "melnikov_n"];
 
 /// Whether thresholds over this grid can be shown.
+#[doc(hidden)]
 pub fn can_show_thresholds(grid: &Grid) -> Result<(), NoPicture> {
     match grid.axes().len() {
         0 => Err(NoPicture::SingleThreshold),

@@ -83,6 +83,7 @@ pub struct Variation {
 }
 
 /// A search for the best design.
+#[doc(hidden)]
 #[derive(Debug, Clone)]
 pub struct BestQuestion {
     /// The fields of the design, 1 to 4.
