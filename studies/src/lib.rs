@@ -8,7 +8,9 @@
 // Tests compare with the functions of std.
 #![cfg_attr(test, allow(clippy::disallowed_methods))]
 
-pub(crate) use interwell_kernel::{dynamics, mechanics, numeric, scene, system};
+// Examples in the documentation find all layers in one crate, as programs do in `interwell`.
+#[doc(hidden)]
+pub use interwell_kernel::{dynamics, mechanics, numeric, scene, system};
 
 pub mod output;
 #[macro_use]

@@ -7,12 +7,16 @@
 //! with the same bits, [`Model::run_reference`] computes with about 31 digits, [`StroboscopicMap`] gives the
 //! state one forcing period later with its derivatives, and [`Live`] continues a motion without a fixed end.
 //!
-//! Method: between events a Taylor series of order 9 to 23, by tolerance (Moore 1966; Jorba and Zou 2005),
+//! # Method
+//!
+//! Between events a Taylor series of order 9 to 23, by tolerance (Moore 1966; Jorba and Zou 2005),
 //! whose polynomial gives samples and contacts too. A contact is a root of that polynomial; none is missed.
 //! The rest of a chatter is summed in closed form once it is short (Nordmark and Piiroinen 2009). Compliant
 //! stops follow Hertz and Hunt and Crossley (1975). The tolerance of the scene bounds the local error of a
 //! step relative to [`Scales`]; a smaller one costs higher orders more than shorter steps, so from 1e-3 to
 //! 1e-12 a run without stops costs two to three times as much.
+//!
+//! # Example
 //!
 //! ```
 //! # use interwell_kernel as interwell;
@@ -33,28 +37,6 @@
 //! assert!((landing.v_out + 0.8 * landing.v_in).abs() < 1e-12);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
-//!
-//! # Parts
-//!
-//! The parts, lowest first; each uses only those above it in this list, and no two files use each other:
-//!
-//! - `clock`: time as whole cycles and a phase.
-//! - `result`: the request for a run and its results, in SI.
-//! - `model`: a scene prepared for a run, in SI: its data, checks, scales and description.
-//! - `equation`: the model in kernel units, cut into modes of one polynomial each, and the laws of the stops.
-//! - `series`: Taylor series of displacement and force, and functions of their polynomials.
-//! - `drive`: the excitation in kernel units, its series, and the search for release roots.
-//! - `state`: all data that the next step depends on.
-//! - `step`: the stepper, which makes a step from a state: its length, its first event, its evaluation.
-//! - `record`: the recorder, which takes statistics, events and samples from steps, and the log of its calls.
-//! - `motion`: state, stepper, recorder and log together.
-//! - `contact`: events of a motion: impact, rest, release, compliant contact, breaks.
-//! - `run`: the loop from event to event, the fast path of event-free steps, recurrence, and the verdict.
-//! - `map`: the stroboscopic map with its derivatives, through every event.
-//! - `lanes`: batches, which take event-free steps of several runs by the same instructions.
-//! - `live`: a run without a fixed end, whose model may be changed while it runs.
-//!
-//! [`Model::run`] is defined in `run`, [`Model::run_all`] in `lanes`.
 
 mod clock;
 mod contact;

@@ -6,7 +6,8 @@
 //! of the motion: it changes only at a located crossing of a break and is never looked up by x, because
 //! rounding could put x on the wrong side of the break.
 
-/// One polynomial piece: `F(x) = sum coefficients[i] (x - origin)^i`.
+/// One polynomial piece: `F(x) = sum coefficients[i] (x - origin)^i`. [`ForceCurve::from_pieces`] joins
+/// several.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Piece {
     /// Origin of the local coordinate in m.
@@ -76,6 +77,9 @@ impl Piece {
 }
 
 /// How well a fitted curve follows its data.
+///
+/// [`ForceCurve::fit`] gives it for a curve of a table, a function, samples or magnets. For flexures see
+/// [`Flexures::accuracy`](super::Flexures::accuracy).
 #[derive(Debug, Clone, PartialEq)]
 pub struct FitReport {
     /// Largest |fit - data| over the samples in N.
@@ -98,7 +102,8 @@ pub struct FitReport {
 /// well it follows what it was made of.
 ///
 /// ```
-/// use interwell_kernel::mechanics::ForceCurve;
+/// # use interwell_kernel as interwell;
+/// use interwell::mechanics::ForceCurve;
 ///
 /// // F = -40 x + 8e5 x^3: wells at sqrt(40 / 8e5) m
 /// let curve = ForceCurve::polynomial(&[0.0, -40.0, 0.0, 8e5]);

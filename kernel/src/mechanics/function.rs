@@ -42,6 +42,8 @@ const CORNER_ERROR: f64 = 1e-3;
 const CORNER_WIDTH: f64 = 1e-10;
 
 /// Why a function or samples have no force curve.
+///
+/// It is the error of [`ForceCurve::from_fn`], [`ForceCurve::from_samples`] and [`ForceCurve::from_pieces`].
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum FunctionError {
     /// The range is empty or not finite.
@@ -120,12 +122,19 @@ impl ForceCurve {
     /// for bit. The function is called at most 30 000 times.
     ///
     /// ```
-    /// use interwell_kernel::mechanics::ForceCurve;
+    /// # use interwell_kernel as interwell;
+    /// use interwell::mechanics::ForceCurve;
     ///
     /// let curve = ForceCurve::from_fn(|x| -40.0 * x + 8e5 * x.powi(3), (-9e-3, 9e-3), 1e-8, &[])?;
     /// assert!((curve.force(7e-3) - (-0.28 + 0.2744)).abs() < 1e-9);
-    /// # Ok::<(), interwell_kernel::mechanics::FunctionError>(())
+    /// # Ok::<(), interwell::mechanics::FunctionError>(())
     /// ```
+    ///
+    /// # Errors
+    ///
+    /// [`FunctionError::Range`], [`FunctionError::Tolerance`] and [`FunctionError::Break`] for these
+    /// arguments, [`FunctionError::NotFinite`] and [`FunctionError::Step`] for a force that is not finite or
+    /// has a step, and [`FunctionError::Rough`] if the allowed calls are not enough.
     pub fn from_fn(
         force: impl Fn(f64) -> f64,
         range: (f64, f64),
@@ -166,6 +175,11 @@ impl ForceCurve {
     /// The curve through samples: forces in N at positions in m, at least four, in order of position. It
     /// follows them to `tolerance` (1e-10 to 0.1) times the largest force between the wells, as that of a
     /// table in a scene does. The error that was found at the samples is in [`fit`](Self::fit).
+    ///
+    /// # Errors
+    ///
+    /// [`FunctionError::Tolerance`] for the tolerance, [`FunctionError::Samples`] for samples that are no
+    /// force table, [`FunctionError::Fit`] if their numbers leave the range of double precision.
     pub fn from_samples(x: &[f64], force: &[f64], tolerance: f64) -> Result<Self, FunctionError> {
         Self::from_samples_cancellable(x, force, tolerance, &AtomicBool::new(false))
     }

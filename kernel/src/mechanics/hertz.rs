@@ -39,7 +39,9 @@ const TIME_POINTS: usize = 40;
 /// of its position give all digits of its value.
 const PEAK_STEPS: usize = 60;
 
-/// A compliant stop, in SI units.
+/// A compliant stop, in SI units: at the depth d it pushes back with k d^1.5 (1 + a d') and never pulls
+/// (Hertz 1882; Hunt and Crossley 1975). The methods are closed forms or quadratures for one impact without
+/// other forces.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hertz {
     /// Stiffness k in N/m^1.5.

@@ -29,6 +29,10 @@ const DOUBLINGS: i32 = 60;
 const SAME_HEIGHT: f64 = 1e-6;
 
 /// The orbit of one barrier into one of its wells.
+///
+/// The motion without damping and drive that leaves the top of the barrier and returns to it. Melnikov's
+/// threshold is made of its integrals (Guckenheimer and Holmes 1983, section 4.5); see
+/// `questions::Threshold::melnikov`.
 #[derive(Debug, Clone)]
 pub struct Homoclinic<'a> {
     curve: &'a ForceCurve,

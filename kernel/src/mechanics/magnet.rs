@@ -59,18 +59,27 @@ fn transverse_force(u: f64) -> f64 {
     -3.0 * u / (squared * squared * squared.sqrt())
 }
 
-/// Force dU/dx in N at `x` in m of a magnet with facing moments, of `strength` in N m^4 at a `gap` in m.
+/// Force dU/dx in N at `x` in m of two magnets with facing moments, of `strength` K in N m^4 at a `gap` g in
+/// m.
+///
+/// F = 3 K x (4 g^2 - x^2)/r^7 with r^2 = x^2 + g^2, the force of two point dipoles (Griffiths 1999, equation
+/// 6.35).
 pub fn magnet_force(strength: f64, gap: f64, x: f64) -> f64 {
     strength / gap.powi(4) * facing_force(x / gap)
 }
 
-/// Force dU/dx in N at `x` in m of a magnet with transverse moments, of `strength` in N m^4 at a `gap` in m.
+/// Force dU/dx in N at `x` in m of two magnets with transverse moments, of `strength` K in N m^4 at a `gap` g
+/// in m.
+///
+/// F = -3 K x/r^5 with r^2 = x^2 + g^2 (Cottone, Vocca and Gammaitoni 2009).
 pub fn transverse_magnet_force(strength: f64, gap: f64, x: f64) -> f64 {
     strength / gap.powi(4) * transverse_force(x / gap)
 }
 
-/// Energy in J at `x` in m over that at x = 0, of a magnet with transverse moments, of `strength` in N m^4 at
-/// a `gap` in m.
+/// Energy in J at `x` in m over that at x = 0, of two magnets with transverse moments, of `strength` K in N
+/// m^4 at a `gap` g in m.
+///
+/// U = K/r^3 with r^2 = x^2 + g^2, less K/g^3.
 pub fn transverse_magnet_potential(strength: f64, gap: f64, x: f64) -> f64 {
     // 1/r^3 - 1 without cancellation: with s = r^2 - 1 and p = r^3 it is -(p - 1)/p, and
     // p - 1 = ((1 + s)^3 - 1)/(p + 1)
@@ -79,8 +88,10 @@ pub fn transverse_magnet_potential(strength: f64, gap: f64, x: f64) -> f64 {
     strength / gap.powi(3) * (-(s * (3.0 + s * (3.0 + s))) / ((p + 1.0) * p))
 }
 
-/// Energy in J at `x` in m over that at x = 0, of a magnet with facing moments, of `strength` in N m^4 at a
-/// `gap` in m.
+/// Energy in J at `x` in m over that at x = 0, of two magnets with facing moments, of `strength` K in N m^4
+/// at a `gap` g in m.
+///
+/// U = K (1/r^3 - 3 g^2/r^5) with r^2 = x^2 + g^2, plus 2 K/g^3.
 pub fn magnet_potential(strength: f64, gap: f64, x: f64) -> f64 {
     // 1/r^3 - 3/r^5 + 2 without cancellation: with s = r^2 - 1 and p = r^5 it is (s - 2 + 2 p)/p, and
     // 2 p - 2 = 2 ((1 + s)^5 - 1)/(p + 1)

@@ -12,8 +12,12 @@
 //! function needs higher degrees or more pieces; the error that was found is in [`ForceCurve::fit`].
 //! Compliant stops have their law in [`Hertz`] (Johnson 1985).
 //!
-//! Errors: [`BuildError::Wrong`] names the field or file that is wrong, [`BuildError::Unsolved`] says that
+//! # Errors
+//!
+//! [`BuildError::Wrong`] names the field or file that is wrong, [`BuildError::Unsolved`] says that
 //! valid flexures have no solution; a table gives a [`TableError`], a function a [`FunctionError`].
+//!
+//! # Example
 //!
 //! ```
 //! # use interwell_kernel as interwell;
@@ -60,6 +64,20 @@ use crate::scene::{self, Fault, Files, FlexureGroup, Moments};
 ///
 /// Building it is the slow part of a scene with flexures or a table, so that it is shared by all models with
 /// the same mechanism. Errors are those of its fields, or flexures without a solution.
+///
+/// ```
+/// # use interwell_kernel as interwell;
+/// use interwell::mechanics::Mechanism;
+/// use interwell::scene::Document;
+///
+/// let document = Document::preset("paper")?;
+/// let mechanism = Mechanism::build(&document.scene.mechanism, &document.files)?;
+/// let barrier = mechanism.landscape.barrier.unwrap();
+/// // the mass rests where the force is 0, here within rounding of the scale of 1 N
+/// assert!(mechanism.curve.force(barrier.right_well).abs() < 1e-9);
+/// assert!(barrier.from_left_j > 0.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mechanism {
     /// The force curve.
@@ -76,6 +94,8 @@ pub struct Mechanism {
 }
 
 /// Parameters of a mechanism that is a spring or a pair of magnets, in SI units.
+///
+/// [`Mechanism::element`] has them, for pictures and descriptions; the motion is computed with the curve.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Element {
     /// A spring without force at x = 0.
@@ -117,11 +137,15 @@ impl From<Fault> for BuildError {
 pub const FLEXURE_TOLERANCE: f64 = 1e-8;
 
 impl Mechanism {
-    /// Builds the curve of the mechanism in a scene that has passed its range check.
+    /// Builds the curve of the mechanism in a scene that has passed its range check. A polynomial becomes one
+    /// exact piece; a table is read from `files` and fitted; flexures are solved, which takes much longer
+    /// than anything else.
     ///
-    /// A polynomial becomes one exact piece; a table is read from `files` and fitted; flexures are solved,
-    /// which takes much longer than anything else. The fault of a table names `mechanism.path`; that of a
-    /// polynomial with too many terms names `mechanism.coefficients_si`.
+    /// # Errors
+    ///
+    /// [`BuildError::Wrong`] for a table that cannot be read or fitted, a polynomial with too many terms, a
+    /// magnet whose forces leave the range of double precision and parts of a sum that have no range in
+    /// common; the fault names the field. [`BuildError::Unsolved`] for flexures without a solution.
     pub fn build(described: &scene::Mechanism, files: &Files) -> Result<Self, BuildError> {
         Self::build_with(described, files, FLEXURE_TOLERANCE)
     }

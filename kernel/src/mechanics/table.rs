@@ -14,7 +14,7 @@ pub const MAX_POINTS: usize = 100_000;
 const X: &str = "x_m";
 const FORCE: &str = "force_n";
 
-/// The points of a force curve.
+/// The points of a measured or computed force; [`fit()`](super::fit()) makes a curve of them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ForceTable {
     /// Positions in m, strictly increasing.
@@ -59,6 +59,11 @@ impl ForceTable {
     /// Parses a CSV table; rows from right to left are reversed.
     ///
     /// Guarantee: at least [`MIN_POINTS`] finite points with strictly increasing `x`.
+    ///
+    /// # Errors
+    ///
+    /// For a text without the columns `x_m,force_n`, a value that is no finite number, a position that occurs
+    /// twice or turns back, and a number of points out of [`MIN_POINTS`] to [`MAX_POINTS`].
     pub fn parse(text: &str) -> Result<Self, TableError> {
         let columns = read_columns(text, [X, FORCE], MAX_POINTS, true)?;
         let (mut x, mut force): (Vec<f64>, Vec<f64>) =

@@ -125,6 +125,7 @@ impl Ratio {
 }
 
 /// Greatest common divisor (Euclid).
+#[doc(hidden)]
 pub fn greatest_common_divisor(mut a: u128, mut b: u128) -> u128 {
     while b != 0 {
         (a, b) = (b, a % b);

@@ -10,7 +10,18 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 use super::quadrature::{GaussLegendre, Rules};
 use super::scalar::{Number, Scalar, assign_operators};
 
-/// high + low with |low| at most half an ulp of high.
+/// A number with about 31 digits: the sum high + low of two doubles with |low| at most half an ulp of high
+/// (Dekker 1971). [`Model::run_reference`](crate::dynamics::Model::run_reference) computes with it, to
+/// measure the error of a run in doubles.
+///
+/// ```
+/// # use interwell_kernel as interwell;
+/// use interwell::numeric::{DoubleDouble, Number, Scalar};
+///
+/// let root = DoubleDouble::of(2.0).sqrt();
+/// let error = root * root - DoubleDouble::of(2.0);
+/// assert!(error.to_f64().abs() < 1e-30);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DoubleDouble {
     high: f64,

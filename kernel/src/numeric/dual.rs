@@ -12,6 +12,9 @@ use super::quadrature::{GaussLegendre, Rules};
 use super::scalar::{Number, Scalar, assign_operators};
 
 /// A value and its derivatives with respect to `N` quantities. It is a [`Scalar`] for two and three of them.
+///
+/// A function that is written for any [`Scalar`] gives its derivatives without a formula for them
+/// (forward-mode differentiation); the stroboscopic map gets those of a motion in this way.
 #[derive(Debug, Clone, Copy)]
 pub struct Dual<const N: usize = 2> {
     /// The value.

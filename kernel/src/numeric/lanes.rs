@@ -10,6 +10,8 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 use super::scalar::{Number, assign_operators};
 
 /// `W` numbers side by side.
+///
+/// Its arithmetic is that of each number alone, bit for bit; batches of runs compute with it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(C, align(64))]
 pub struct Lanes<const W: usize, T = f64>(pub [T; W]);

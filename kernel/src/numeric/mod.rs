@@ -37,11 +37,13 @@ mod lanes;
 mod normal;
 pub mod orthogonal;
 mod periodogram;
+#[doc(hidden)]
 pub mod pieces;
 mod quadrature;
 pub mod real_roots;
 pub mod regression;
 mod roots;
+#[doc(hidden)]
 pub mod round;
 mod scalar;
 pub(crate) mod single_root;

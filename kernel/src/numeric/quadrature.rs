@@ -99,6 +99,7 @@ fn roots<T: Number>(points: usize, first: usize, count: usize) -> ([T; MAX_POINT
 
 /// The half at x > 0 of the rule with 2 `half` points on \[-1, 1]: descending points and their weights, whose
 /// sum is 1. It integrates an even polynomial from 0 to 1 exactly up to degree 4 `half` - 1.
+#[doc(hidden)]
 pub fn even_half(half: usize) -> Vec<(f64, f64)> {
     let mut rule = Vec::with_capacity(half);
     for first in (0..half).step_by(MAX_POINTS) {

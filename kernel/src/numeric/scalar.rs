@@ -10,6 +10,8 @@ use super::double_double::DoubleDouble;
 use super::quadrature::{GaussLegendre, Rules};
 
 /// A number type whose arithmetic has no branches.
+///
+/// `f64`, [`DoubleDouble`], [`Dual`](super::Dual) and [`Lanes`](super::Lanes) are such types.
 pub trait Number:
     'static
     + Copy
@@ -82,6 +84,9 @@ macro_rules! assign_operators {
 pub(super) use assign_operators;
 
 /// A real number with comparison and a few functions.
+///
+/// The integrator is written for it, so that one code computes in `f64`, with about 31 digits
+/// ([`DoubleDouble`]) or with derivatives ([`Dual`](super::Dual)).
 pub trait Scalar: Number + PartialOrd {
     /// Relative spacing of the numbers just above 1.
     const EPSILON: f64;

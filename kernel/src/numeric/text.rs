@@ -7,6 +7,7 @@ use super::round::decade;
 /// Appends `value` in its shortest form: plain (`0.58`) or with an exponent (`1e-9`), whichever has fewer
 /// characters, and plain if they are equal. It parses back to the same double. Zero of either sign is `0`,
 /// infinities are `inf` and `-inf`, and NaN appends nothing.
+#[doc(hidden)]
 pub fn push_number(text: &mut String, value: f64) {
     if value.is_nan() {
         return;
@@ -30,6 +31,7 @@ pub fn push_number(text: &mut String, value: f64) {
 }
 
 /// A number in plain digits from 1e-4 to 1e6, otherwise with an exponent. It parses back to the same double.
+#[doc(hidden)]
 pub fn number_text(value: f64) -> String {
     let size = value.abs();
     if size == 0.0 || !size.is_finite() || (1e-4..1e6).contains(&size) {
@@ -40,6 +42,7 @@ pub fn number_text(value: f64) -> String {
 }
 
 /// `value` rounded to four significant digits, for sentences.
+#[doc(hidden)]
 pub fn short(value: f64) -> String {
     let rounded: f64 = format!("{value:.3e}").parse().unwrap_or(value);
     if rounded == 0.0 || (1e-3..1e6).contains(&rounded.abs()) {
@@ -52,6 +55,7 @@ pub fn short(value: f64) -> String {
 
 /// The number of decimals that shows a number of this size with `digits` significant digits; at most 12, and
 /// none for 0.
+#[doc(hidden)]
 pub fn decimals(value: f64, digits: i32) -> usize {
     let power = if value == 0.0 { digits } else { decade(value.abs()) };
     (digits - 1 - power).clamp(0, 12) as usize

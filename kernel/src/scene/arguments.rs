@@ -9,6 +9,7 @@ use super::text;
 /// `FIELD=VALUE` for each field in which `to` differs from `from`, as `--set` takes them: single numbers
 /// if both scenes have the same fields, otherwise whole parts. Title, notes, sweep and hints for the
 /// window are ignored.
+#[doc(hidden)]
 pub fn arguments(from: &Scene, to: &Scene) -> Vec<String> {
     [
         changes(from, to, "mass_g", |scene| &scene.mass_g),

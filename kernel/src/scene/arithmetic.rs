@@ -36,6 +36,11 @@ pub(super) struct Problem {
 }
 
 /// Reads a number: a plain one, which [`str::parse`] reads, or arithmetic. The error is a sentence.
+///
+/// ```
+/// # use interwell_kernel as interwell;
+/// assert_eq!(interwell::scene::read_number("2 * 0.25"), Ok(0.5));
+/// ```
 pub fn read_number(text: &str) -> Result<f64, String> {
     let text = text.trim();
     match text.parse() {

@@ -231,6 +231,7 @@ fn too_long(count: impl std::fmt::Display) -> String {
 /// Column names for swept fields: the shortest ending of each path that no other path shares and that
 /// contains a name (`travel_limit_mm`; for two amplitudes `0.amplitude_g` and `1.amplitude_g`; for one
 /// coefficient `coefficients_si.2`, because `2` alone is not a name).
+#[doc(hidden)]
 pub fn column_names<S: AsRef<str>>(fields: &[S]) -> Vec<String> {
     let ending = |field: &str, parts: usize| -> String {
         let all: Vec<&str> = field.split('.').collect();

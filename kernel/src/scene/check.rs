@@ -29,7 +29,7 @@ const MAX_PARTS: usize = 16;
 /// smaller room displacements have too few digits.
 const ROOM_OVER_DISTANCE: f64 = 1e-6;
 
-/// Result of a check.
+/// Result of [`check`].
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Checked {
     /// Faults, in the order of the scene's fields; empty if the scene can be run.
@@ -38,7 +38,8 @@ pub struct Checked {
     pub warnings: Vec<String>,
 }
 
-/// Checks ranges and the relations between fields.
+/// Checks ranges and the relations between fields. A fault that depends on the force curve, such as a start
+/// beyond its end, is found by [`Model::build`](crate::dynamics::Model::build).
 pub fn check(scene: &Scene) -> Checked {
     let mut checked = Checked::default();
     ranges(scene, &mut checked);
@@ -425,6 +426,7 @@ fn sweep(scene: &Scene, checked: &mut Checked) {
 
 /// Checks the scene at the corners of a sweep of at most [`MAX_AXES`] axes. The relations between fields are
 /// linear, so that they hold in every cell if they hold at the corners.
+#[doc(hidden)]
 pub fn corners(scene: &Scene, axes: &[Axis]) -> Vec<Fault> {
     let ends: Vec<[usize; 2]> = axes.iter().map(extremes).collect();
     let corners = 1_usize << axes.len().min(MAX_AXES);

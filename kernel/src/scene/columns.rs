@@ -61,6 +61,7 @@ pub enum ColumnsError {
 }
 
 /// Columns of a table with the line numbers of their rows.
+#[doc(hidden)]
 #[derive(Debug, Clone, PartialEq)]
 pub struct Columns<const N: usize> {
     /// The numbers of each row in the order of the requested names; all finite.
@@ -75,6 +76,7 @@ pub struct Columns<const N: usize> {
 ///
 /// Accepts a byte order mark, line ends of any system, blank lines, blanks around values and further columns;
 /// if `ragged`, also rows with more values than the header has names.
+#[doc(hidden)]
 pub fn read_columns<const N: usize>(
     text: &str,
     names: [&str; N],

@@ -61,14 +61,18 @@ pub struct Scene {
 }
 
 /// Viscous damping.
+///
+/// The force on the mass is -c v, with the velocity v relative to the base. A transducer without a state of
+/// its own adds to c.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum Damping {
     /// No damping.
     #[default]
     None,
-    /// Damping ratio xi of the right-hand stable equilibrium, 0 to 1e6: c = 2 xi sqrt(k m). Its path
-    /// is `damping.xi`.
+    /// Damping ratio xi of the right-hand stable equilibrium, 0 to 1e6: c = 2 xi sqrt(k m), where k is
+    /// [`Landscape::damping_stiffness`](crate::mechanics::Landscape::damping_stiffness). Its path is
+    /// `damping.xi`.
     Ratio(f64),
     /// Damping coefficient.
     Coefficient {
@@ -163,8 +167,8 @@ pub enum Excitation {
         lines: u64,
     },
     /// A recorded acceleration: CSV with columns `t_s,accel_m_per_s2`, or others whose names end with a unit
-    /// of time and one of acceleration; linear between samples, zero after its end; at most a million rows
-    /// and 64 MB.
+    /// of time and one of acceleration; linear between samples, zero before the first and after the last; at
+    /// most a million rows and 64 MB.
     Recorded {
         /// Path relative to the scene file, or the name of an embedded record.
         path: String,
@@ -197,6 +201,9 @@ pub enum Start {
 }
 
 /// Duration, settled window and tolerance.
+///
+/// Regime, period and averages of a run are those of the settled window, which is cut to whole forcing
+/// periods. The tolerance is relative to [`Scales`](crate::dynamics::Scales).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename = "Run", deny_unknown_fields)]
 pub struct RunSettings {
@@ -214,6 +221,8 @@ pub struct RunSettings {
 }
 
 /// One axis of a sweep: even steps (`from`, `to`, `step`), or `values` in their place.
+///
+/// It is what a scene file says; [`Axis`](super::Axis) has all values.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "WrittenAxis", into = "WrittenAxis")]
 pub struct SweepAxis {

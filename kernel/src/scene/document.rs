@@ -29,22 +29,40 @@ const MAX_VALUES: usize = 2 * MAX_AXIS_VALUES;
 /// Name in messages of a scene from standard input.
 const STANDARD_INPUT: &str = "standard input";
 
-/// Where a scene came from.
+/// Where a scene came from. [`Document::link`] writes a built-in scene by its name and changes, any other one
+/// with its text.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Source {
     /// The built-in scene of this name.
     BuiltIn(&'static str),
     /// A scene file.
     File(PathBuf),
-    /// Text without a name.
+    /// A text that is no file, as one from standard input.
     Text,
 }
 
 /// A scene with its text and the arguments that have changed it.
 ///
 /// It is what is read from a file, a preset or a text, and what a simulation is made of. The text is kept so
-/// that a fault is reported with its line, and so that arithmetic and comments survive when the scene is
-/// written.
+/// that a fault is reported with its line, and arithmetic as it was written; comments are lost when the scene
+/// is written.
+///
+/// [`set`](Self::set) changes a field, [`check`](Self::check) finds all faults, and
+/// `questions::Simulation::new` makes the model.
+///
+/// ```
+/// # use interwell_kernel as interwell;
+/// use interwell::scene::{Document, Stops};
+///
+/// let mut document = Document::preset("paper")?;
+/// document.set("stops=None")?;
+/// document.set("excitation.amplitude_g=1.3")?;
+/// assert_eq!(document.scene.stops, Stops::None);
+/// assert_eq!(document.changes().count(), 2);
+/// // as a file that can be read again
+/// assert!(document.write(&document.scene)?.contains("amplitude_g: 1.3"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Document {
     /// The scene, with every argument applied.
@@ -81,6 +99,10 @@ struct Assignment {
 impl Document {
     /// The scene in an argument of a command: anything that [`load`](Self::load) takes, the manifest of
     /// rows, or `-` for a scene on standard input.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`load`](Self::load); [`SceneError::Unreadable`] also for a manifest that cannot be read.
     pub fn of_argument(spec: &str) -> Result<Self, SceneError> {
         if is_link(spec) {
             return Self::from_link(spec);
@@ -104,6 +126,12 @@ impl Document {
 
     /// Reads a scene file, the built-in scene of that name, or the scene of a link. A path such as `./paper`
     /// is always a file.
+    ///
+    /// # Errors
+    ///
+    /// [`SceneError::NoSuchScene`] if there is neither a file nor a built-in scene of that name,
+    /// [`SceneError::Unreadable`] for a file that is no text or too large, [`SceneError::Structure`] for a
+    /// text that is no scene. Values out of their range are found by [`check`](Self::check).
     pub fn load(spec: &str) -> Result<Self, SceneError> {
         if is_link(spec) {
             return Self::from_link(spec);
@@ -115,6 +143,10 @@ impl Document {
     }
 
     /// Reads a scene file.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`load`](Self::load).
     pub fn from_file(path: &Path) -> Result<Self, SceneError> {
         let spec = path.display().to_string();
         let text = read_scene(&spec, MAX_SCENE_BYTES)?;
@@ -123,6 +155,10 @@ impl Document {
     }
 
     /// Reads the built-in scene of that name.
+    ///
+    /// # Errors
+    ///
+    /// [`SceneError::NoSuchScene`], with the names that there are.
     pub fn preset(name: &str) -> Result<Self, SceneError> {
         Self::built_in(name).unwrap_or_else(|| Err(no_such_scene(name)))
     }
@@ -137,6 +173,11 @@ impl Document {
 
     /// Parses a scene; `name` is its name in messages. Ranges are not checked until [`check`](Self::check),
     /// so that an argument can still correct a value.
+    ///
+    /// # Errors
+    ///
+    /// [`SceneError::Structure`] with line and column, and further errors of the text as far as they are
+    /// found.
     pub fn from_text(name: &str, text: &str, files: Files) -> Result<Self, SceneError> {
         let mut scene = match text::parse(text) {
             Ok(scene) => scene,
@@ -183,6 +224,11 @@ impl Document {
     /// Applies `FIELD=VALUE` as given to `--set`: a number, arithmetic, or any value in RON
     /// (`stops=Rigid(travel_limit_mm: 4, restitution: 0.36)`, `run.settle_s=None`). The quotes of a text may
     /// be left out.
+    ///
+    /// # Errors
+    ///
+    /// For a field that the scene does not have, with the names that there are, and for a value that does not
+    /// parse; the scene is then unchanged. The range is checked by [`check`](Self::check).
     pub fn set(&mut self, argument: &str) -> Result<(), ArgumentError> {
         let shown = format!("--set {argument}");
         let Some((field, value)) = argument.split_once('=') else {
@@ -288,6 +334,11 @@ impl Document {
     /// The axes of a sweep of this scene: the given `--over` arguments or, without any, the `sweep` of the
     /// scene, which may be empty. Every value is within its field's range, no field is swept twice, and the
     /// relations between fields hold on the whole grid.
+    ///
+    /// # Errors
+    ///
+    /// [`SceneError::Argument`] for a field or values that are wrong, [`SceneError::Faults`] for cells that
+    /// are no valid scene.
     pub fn axes<S: AsRef<str>>(&self, over: &[S]) -> Result<Vec<Axis>, SceneError> {
         // Checked before any axis is expanded: a hundred long axes would fill the memory.
         if over.len() > MAX_AXES {
@@ -427,11 +478,13 @@ pub(super) fn structure_error<E: ToString>(
 }
 
 /// The paths of the files that a scene names, as written: its table and its records.
+#[doc(hidden)]
 pub fn named_paths(scene: &mut Scene) -> Vec<&mut String> {
     scene.mechanism.paths_mut().into_iter().chain(record::paths_mut(&mut scene.excitation)).collect()
 }
 
 /// Whether the file at `path` is a scene: its name ends in `.ron`, or its text parses as a scene.
+#[doc(hidden)]
 pub fn is_scene_file(path: &Path) -> bool {
     let named = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("ron"));
     files::is_file(path)
@@ -439,6 +492,7 @@ pub fn is_scene_file(path: &Path) -> bool {
 }
 
 /// The texts of the files that a scene names, by their paths in it, as far as they can be read.
+#[doc(hidden)]
 pub fn named_texts(scene: &Scene, files: &Files) -> BTreeMap<String, String> {
     let mut scene = scene.clone();
     let paths = named_paths(&mut scene).into_iter();
@@ -446,6 +500,7 @@ pub fn named_texts(scene: &Scene, files: &Files) -> BTreeMap<String, String> {
 }
 
 /// Reads the records that a scene names. One that cannot be read is missing.
+#[doc(hidden)]
 pub fn read_records(scene: &mut Scene, files: &Files) {
     record::attach(&mut scene.excitation, "excitation", files);
 }

@@ -5,6 +5,8 @@ use serde::{Deserialize, Serialize};
 use super::scanner::Place;
 
 /// One thing that is wrong with a scene.
+///
+/// [`Document::error_from`](super::Document::error_from) adds file and line.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Fault {
     /// Dotted path of the field, without variant names: `stops.travel_limit_mm`.

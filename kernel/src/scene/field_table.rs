@@ -43,6 +43,7 @@ impl fmt::Display for Range {
 }
 
 /// The quantity that the range of a slider depends on.
+#[doc(hidden)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Scale {
     /// Nothing: every scene has the range of the table.
@@ -64,6 +65,7 @@ pub enum Scale {
 }
 
 /// The control of a field in the window.
+#[doc(hidden)]
 #[derive(Debug)]
 pub struct Control {
     /// Path of the field.
@@ -79,6 +81,8 @@ pub struct Control {
 }
 
 /// A numeric field of a scene.
+///
+/// [`FIELDS`] lists them, and [`field_info`] finds that of a path.
 #[derive(Debug)]
 pub struct FieldInfo {
     /// Dotted path in the scene, without the indices of parts of a sum and of elements of a list.
@@ -88,10 +92,13 @@ pub struct FieldInfo {
     /// Advice for a value outside the range, as a clause.
     pub remedy: &'static str,
     /// Its name on the screen; without one the path is shown.
+    #[doc(hidden)]
     pub name: Option<&'static str>,
     /// Its control in the window, if it has one.
+    #[doc(hidden)]
     pub control: Option<Control>,
     /// Its place among the fields that are offered as axes of a map, if it is offered.
+    #[doc(hidden)]
     pub axis: Option<u8>,
 }
 
@@ -140,6 +147,7 @@ pub fn field_info(path: &str) -> Option<&'static FieldInfo> {
 }
 
 /// A path without the indices of parts of a sum and of elements of a list.
+#[doc(hidden)]
 pub fn without_indices(path: &str) -> String {
     path.split('.').filter(|part| part.parse::<usize>().is_err()).collect::<Vec<_>>().join(".")
 }

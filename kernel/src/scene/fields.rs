@@ -55,6 +55,19 @@ pub(super) fn in_range(scene: &mut Scene) -> bool {
 }
 
 /// The dotted path of a field, split once so that it can be followed many times.
+///
+/// A study of one's own reads and sets a number of many scenes with it, as a sweep does.
+///
+/// ```
+/// # use interwell_kernel as interwell;
+/// use interwell::scene::{Document, FieldPath};
+///
+/// let mut scene = Document::preset("nominal-cubic")?.scene;
+/// let limit = FieldPath::new("stops.travel_limit_mm");
+/// assert_eq!(limit.get(&scene), Some(4.0));
+/// assert!(limit.set(&mut scene, 2.5)); // the range is checked when the model is built
+/// # Ok::<(), interwell::scene::SceneError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FieldPath {
     parts: Vec<Part>,

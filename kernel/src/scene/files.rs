@@ -61,6 +61,11 @@ impl Files {
     ///
     /// An absolute path is read as it is. A relative path starts at the folder of the scene; without a folder
     /// it is the name of an embedded table.
+    ///
+    /// # Errors
+    ///
+    /// [`FileError::Missing`] for a file that does not exist; [`FileError::Unusable`] for one that is too
+    /// large or no text, and for a name that no built-in table has where there is no folder.
     pub fn read(&self, path: &str) -> Result<String, FileError> {
         if let Some(text) = self.cached.get(path) {
             return Ok(text.clone());

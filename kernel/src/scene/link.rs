@@ -69,11 +69,13 @@ struct Payload {
 }
 
 /// Whether a text is a link, and not the name of a scene or of a file.
+#[doc(hidden)]
 pub fn is_link(text: &str) -> bool {
     query(text).is_some()
 }
 
 /// The lesson that a link opens, if it opens one.
+#[doc(hidden)]
 pub fn linked_lesson(text: &str) -> Option<&str> {
     match query(text)? {
         ("lesson", name, _) => Some(name),
@@ -93,6 +95,10 @@ fn query(text: &str) -> Option<(&str, &str, &str)> {
 
 impl Document {
     /// The link to the scene with its changes. It begins with `?scene=`; put the address of a page before it.
+    ///
+    /// # Errors
+    ///
+    /// For a file of the scene that cannot be read, and a scene or file that is too large for a link.
     pub fn link(&self) -> Result<String, LinkError> {
         let mut payload = Payload::default();
         let mut name = "";

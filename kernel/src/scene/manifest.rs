@@ -12,6 +12,7 @@ use super::error::{SceneError, clip};
 use super::files::{Files, MAX_TABLE_BYTES, read_text};
 
 /// Value of the key `program` in manifests of this program.
+#[doc(hidden)]
 pub const PROGRAM: &str = "interwell";
 
 /// Largest size of a manifest in bytes: it contains tables and its grid.
@@ -91,6 +92,7 @@ fn parse(text: &str) -> Result<Manifest, String> {
 }
 
 /// Whether the file at `path` is a manifest of this program.
+#[doc(hidden)]
 pub fn is_manifest(path: &Path) -> bool {
     read_text(path, MAX_BYTES).is_ok_and(|text| parse(&text).is_ok())
 }

@@ -18,6 +18,8 @@ pub const MAX_MEASURED_ROWS: usize = 10_000_000;
 pub const MAX_MEASURED_BYTES: usize = 1 << 30;
 
 /// Request for a column.
+///
+/// It is what [`read_measured`] takes, one for each column.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ColumnRequest {
     /// Accepted quantities. Without a column name, the first quantity of which a column has a unit is chosen.
@@ -76,7 +78,25 @@ pub enum MeasuredError {
     Unusable(String),
 }
 
-/// Reads the record in the file at `path`.
+/// Reads columns of a measured record, the CSV file at `path` with a header, and converts them to SI. A
+/// column is chosen by its name, or by the unit at its end, such as `x_mm`.
+///
+/// ```
+/// # use interwell_kernel as interwell;
+/// use interwell::scene::{ColumnRequest, Measured, Quantity};
+///
+/// let request = |quantity| ColumnRequest { quantities: vec![quantity], options: None };
+/// let requests = [request(Quantity::Time), request(Quantity::Displacement)];
+/// let record = Measured::parse("t_ms,x_mm\n0,1.5\n10,1.25\n", &requests)?; // or read_measured of a file
+/// assert_eq!(record.channels[0].values, [0.0, 0.01]);
+/// assert_eq!(record.channels[1].values, [1.5e-3, 1.25e-3]);
+/// # Ok::<(), interwell::scene::MeasuredError>(())
+/// ```
+///
+/// # Errors
+///
+/// For a file that is missing, larger than [`MAX_MEASURED_BYTES`] or no CSV, a column that is not found, a
+/// value that is no finite number, fewer than two rows, and times that do not increase.
 pub fn read_measured<const N: usize>(
     path: &Path,
     requests: &[ColumnRequest; N],
@@ -96,6 +116,7 @@ fn text_of(path: &Path) -> Result<String, MeasuredError> {
 }
 
 /// The text of a record with its header parsed, so that columns can be chosen.
+#[doc(hidden)]
 #[derive(Debug)]
 pub struct MeasuredText {
     text: String,
@@ -104,6 +125,7 @@ pub struct MeasuredText {
 }
 
 /// Index of a column, and its unit if known.
+#[doc(hidden)]
 pub type ChosenColumn = (usize, Option<Unit>);
 
 impl MeasuredText {
@@ -143,6 +165,10 @@ impl MeasuredText {
 impl<const N: usize> Measured<N> {
     /// Parses a record: CSV with a header and values separated by commas, or by semicolons or tabs with
     /// decimal points or decimal commas.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`read_measured`].
     pub fn parse(text: &str, requests: &[ColumnRequest; N]) -> Result<Self, MeasuredError> {
         let wanted: Vec<String> = requests.iter().map(ColumnRequest::wanted).collect();
         let sheet = Sheet::open(text, &wanted.join(","), Separators::Any, MAX_MEASURED_ROWS)?;

@@ -3,6 +3,12 @@
 use serde::{Deserialize, Serialize};
 
 /// Source of the restoring force.
+///
+/// F(x) is what holds the mass at x, the derivative of the potential, so that the mechanism pushes the mass
+/// with -F(x). [`mechanics::Mechanism::build`](crate::mechanics::Mechanism::build) makes its force curve; a
+/// force that a program has as a function becomes `Pieces` by
+/// [`ForceCurve::from_fn`](crate::mechanics::ForceCurve::from_fn) and
+/// [`ForceCurve::to_scene`](crate::mechanics::ForceCurve::to_scene).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum Mechanism {

@@ -1,17 +1,25 @@
 //! Scenes: their fields, checks and files, and the presets.
 //!
 //! A [`Scene`] is what a person writes: mass, [`Mechanism`], damping, [`Stops`], [`Transducer`], excitation,
-//! start and run. A [`Document`] is a scene with its text, the changes to it and the files that it names.
-//! Every number has its unit in the name of its field (`mass_g`, `travel_limit_mm`, `amplitude_g` in units of
-//! [`STANDARD_GRAVITY`]) and a range in [`FIELDS`]. An [`Axis`] is a field with the values that it takes in a
-//! sweep; [`read_measured`] and [`read_record`] read measured data.
+//! start and run. A [`Document`] is a scene with its text, the changes to it and the files that it names. An
+//! [`Axis`] is a field with the values that it takes in a sweep; [`read_measured`] and [`read_record`] read
+//! measured data. [`PRESETS`] lists the built-in scenes.
 //!
-//! Errors: a [`SceneError`] has all faults of a scene at once, each a [`Fault`] with field, value, problem
+//! # Units
+//!
+//! Every number has its unit in the name of its field (`mass_g`, `travel_limit_mm`, `amplitude_g` in units of
+//! [`STANDARD_GRAVITY`]) and a range in [`FIELDS`]. `docs/scene.md` of the repository describes the file.
+//!
+//! # Errors
+//!
+//! A [`SceneError`] has all faults of a scene at once, each a [`Fault`] with field, value, problem
 //! and remedy, and the line where the value is written.
 //!
 //! A scene is read by [`Document::load`], changed by [`Document::set`] and checked by [`Document::check`]. A
 //! scene that passes becomes a `dynamics::Model`, which is always valid. [`Document::error_from`] adds file
 //! and line to faults that only the model can find.
+//!
+//! # Example
 //!
 //! ```
 //! # use interwell_kernel as interwell;
@@ -38,6 +46,7 @@ mod field_table;
 mod fields;
 mod files;
 mod harmonic;
+#[doc(hidden)]
 pub mod lesson;
 mod link;
 mod manifest;

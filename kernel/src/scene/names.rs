@@ -18,6 +18,7 @@ const SIMILAR: f64 = 0.87;
 /// assert!(find_name("column", "first_crossing", &known).unwrap_err().contains("is short for"));
 /// assert!(find_name("column", "first_crosing_s", &known).unwrap_err().contains("did you mean"));
 /// ```
+#[doc(hidden)]
 pub fn find_name<'a>(kind: &str, name: &str, known: &[&'a str]) -> Result<&'a str, String> {
     let name = name.trim();
     if let Some(same) = known.iter().find(|known| **known == name) {

@@ -35,7 +35,8 @@ const LEFT_OUT: f64 = 0.25;
 /// Share of the largest value below which a harmonic of samples is rounding.
 const ROUNDING: f64 = 1e-15;
 
-/// Why a function or samples give no drive.
+/// Why a function or samples give no drive; the error of [`Excitation::from_fn`] and
+/// [`Excitation::from_samples`].
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum DriveError {
     /// The frequency is out of its range.
@@ -76,7 +77,8 @@ pub enum DriveError {
     Unresolved(f64, f64),
 }
 
-/// A periodic drive as a sum of harmonics.
+/// A periodic drive as a sum of harmonics; `questions::Simulation::with_drive` takes its
+/// [`excitation`](Self::excitation).
 #[derive(Debug, Clone, PartialEq)]
 pub struct PeriodicDrive {
     /// The sum.
@@ -103,6 +105,12 @@ impl Excitation {
     /// assert!(drive.error <= 20.0 * 1e-6);
     /// # Ok::<(), interwell_kernel::scene::DriveError>(())
     /// ```
+    ///
+    /// # Errors
+    ///
+    /// [`DriveError::Frequency`], [`DriveError::Digits`] and [`DriveError::Tolerance`] for these numbers,
+    /// [`DriveError::NotFinite`] and [`DriveError::TooLarge`] for a value of the function, and
+    /// [`DriveError::Unresolved`] for a function with jumps or corners that 4096 samples do not resolve.
     pub fn from_fn(
         acceleration: impl Fn(f64) -> f64,
         frequency_hz: f64,
@@ -143,6 +151,11 @@ impl Excitation {
     /// A drive with the period 1/`frequency_hz` through samples of one period in m/s^2: n of them, 1 to 4096,
     /// at the times 0, 1/n, .., (n - 1)/n of the period. Between them it is the trigonometric polynomial of
     /// least degree, which overshoots where the samples jump.
+    ///
+    /// # Errors
+    ///
+    /// [`DriveError::Frequency`] and [`DriveError::Digits`] for the frequency, [`DriveError::Samples`] for
+    /// none or too many samples, [`DriveError::NotFinite`] and [`DriveError::TooLarge`] for one of them.
     pub fn from_samples(values: &[f64], frequency_hz: f64) -> Result<PeriodicDrive, DriveError> {
         check_frequency(frequency_hz)?;
         if !(1..=MAX_SAMPLES).contains(&values.len()) {

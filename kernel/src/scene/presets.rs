@@ -3,7 +3,7 @@
 //! Each scene is a file in `presets/` that is embedded with the tables that it names, so that every command
 //! works from any folder. The program opens with the first one.
 
-/// A built-in scene.
+/// A built-in scene, which [`Document::preset`](super::Document::preset) reads.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Preset {
     /// The name that a command takes.
@@ -14,7 +14,7 @@ pub struct Preset {
     pub text: &'static str,
 }
 
-/// An embedded table or record.
+/// A built-in table or record, which a built-in scene, or one from a text, names as its path.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct EmbeddedTable {
     /// The name that a scene gives as its path.
@@ -68,6 +68,7 @@ pub(super) fn names() -> String {
 }
 
 /// File names and contents of all presets and their tables. In one folder each scene finds its table.
+#[doc(hidden)]
 pub fn export() -> Vec<(String, &'static str)> {
     let scenes = PRESETS.iter().map(|preset| (format!("{}.ron", preset.name), preset.text));
     scenes.chain(TABLES.iter().map(|table| (table.name.to_owned(), table.text))).collect()

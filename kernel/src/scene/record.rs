@@ -20,6 +20,9 @@ const TIME: &str = "t_s";
 const ACCELERATION: &str = "accel_m_per_s2";
 
 /// Samples of base acceleration, linear between them.
+///
+/// It is the drive [`Excitation::Recorded`](super::Excitation::Recorded), which is zero before the first and
+/// after the last sample.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Record {
     /// Times in s, strictly increasing; at least two.
@@ -54,7 +57,14 @@ impl PartialEq for Derived {
     }
 }
 
-/// Reads the record in the file at `path` in the same way as for a scene; the error is a clause.
+/// Reads a record of base acceleration as a scene does: CSV with the columns `t_s,accel_m_per_s2`, or others
+/// whose names end with a unit of time and one of acceleration. `path` is absolute, or the name of a built-in
+/// record.
+///
+/// # Errors
+///
+/// A clause that follows the path: the file is missing or too large, a column is missing, or a value is no
+/// number or out of order.
 pub fn read_record(path: &Path) -> Result<Record, String> {
     read(&Files::default(), &path.to_string_lossy())
 }

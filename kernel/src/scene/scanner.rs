@@ -31,6 +31,7 @@ impl Part {
 const MAX_DEPTH: usize = 200;
 
 /// Whether a scene's text has comments: `//` or `/*` outside of strings and raw strings.
+#[doc(hidden)]
 pub fn has_comments(text: &str) -> bool {
     Scanner::over(text).comments
 }
@@ -339,6 +340,7 @@ impl Place {
 ///
 /// Each field stores only the index of the field around it and the last part of its path. Whole paths could
 /// exceed the memory for a hostile text of a few megabytes with long names around a million fields.
+#[doc(hidden)]
 #[derive(Debug, Clone)]
 pub struct Places<'t> {
     text: &'t str,

@@ -3,6 +3,10 @@
 use serde::{Deserialize, Serialize};
 
 /// Travel limits.
+///
+/// At a rigid stop the velocity changes from v to -e v, with the restitution e; a mass that is pressed on it
+/// rests until the net force changes sign. A compliant stop has a mode of motion of its own
+/// ([`Hertz`](crate::mechanics::Hertz); Hunt and Crossley 1975).
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum Stops {

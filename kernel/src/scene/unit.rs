@@ -55,6 +55,7 @@ impl Quantity {
 }
 
 /// A unit of measurement.
+#[doc(hidden)]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Unit {
     /// Quantity that it measures.
@@ -180,6 +181,7 @@ const ENDINGS: [(&str, &str); 29] = [
 ];
 
 /// The ending of the name of a field or column that says its unit, and the unit as a person writes it.
+#[doc(hidden)]
 pub fn unit_ending(name: &str) -> Option<(&'static str, &'static str)> {
     ENDINGS.into_iter().find(|(ending, _)| name.ends_with(ending))
 }

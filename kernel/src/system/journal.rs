@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::checksum::checksum;
 
 /// A block that was written and synced.
+#[doc(hidden)]
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Block {
     /// Number of rows.

@@ -1,14 +1,16 @@
 //! Access to threads, clocks and files of the machine; no other folder uses those of the standard library.
 //!
-//! [`threads`] distributes work so that the answer has the same bits for any number of threads; [`clock`] has
-//! wall and CPU time in s; [`files`] reads, and [`Sink`] and [`write_file`] write a file as a whole or not at
-//! all. [`Part`] writes a long file in blocks with a journal, so that an interruption loses no complete
-//! block, and [`checksum`] has the SHA-256 by which it is resumed. A block is synced before it counts, which
-//! costs a wait for the disk on a thread of its own. In a web page the calling thread does all work, files
-//! are those that the user has opened there, and a file that is written is a download.
+//! [`threads::Pool`] distributes work so that the answer has the same bits for any number of threads;
+//! [`clock`] has wall and CPU time in s; [`checksum`](mod@checksum) has the SHA-256 of files; [`Sink`] and
+//! [`write_file`] write a file as a whole or not at all. In a web page the calling thread does all work,
+//! files are those that the user has opened there, and a file that is written is a download.
 //!
-//! Errors: [`OpenError`] for an output that cannot be opened, [`PartError`] for a file that cannot be begun
-//! or resumed; `std::io::Error`, or a sentence, for the rest.
+//! # Errors
+//!
+//! [`OpenError`] for an output that cannot be opened, [`threads::NoThreads`] where the system grants no
+//! thread; `std::io::Error`, or a sentence, for the rest.
+//!
+//! # Example
 //!
 //! ```
 //! # use interwell_kernel as interwell;
@@ -19,6 +21,7 @@
 
 pub mod checksum;
 pub mod clock;
+#[doc(hidden)]
 pub mod files;
 mod journal;
 #[cfg(target_arch = "wasm32")]
@@ -33,6 +36,7 @@ pub use sink::{OpenError, Sink, is_regular, same_target, write_file};
 
 /// The address that stands before a link: in a web page that of the page, elsewhere what the environment
 /// variable `INTERWELL_PAGE` has, up to a `?` or `#`. The error is a sentence.
+#[doc(hidden)]
 pub fn page_address() -> Result<String, String> {
     #[cfg(target_arch = "wasm32")]
     return Ok(page::address().to_owned());

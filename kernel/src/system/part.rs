@@ -27,6 +27,7 @@ enum Message {
 const MAX_WAITING: usize = 256;
 
 /// A locked file with the rows and the journal found in it.
+#[doc(hidden)]
 #[derive(Debug)]
 pub struct Opened {
     paths: Paths,
@@ -43,6 +44,7 @@ struct Paths {
 }
 
 /// Reason why a file cannot be begun or continued.
+#[doc(hidden)]
 #[derive(Debug, thiserror::Error)]
 pub enum PartError {
     /// Another process is writing it.
@@ -69,6 +71,7 @@ pub enum PartError {
 }
 
 /// A file that is being written.
+#[doc(hidden)]
 #[derive(Debug)]
 pub struct Part {
     paths: Paths,

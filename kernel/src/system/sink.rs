@@ -35,7 +35,8 @@ pub enum OpenError {
     },
 }
 
-/// An open output.
+/// An open output, to which text and bytes are appended. A regular file gets its name, or replaces the file
+/// of that name, when it is [finished](Self::finish), so that no part of a file is ever left.
 #[derive(Debug)]
 pub struct Sink {
     name: String,
@@ -65,6 +66,10 @@ const BUFFER: usize = 1 << 16;
 impl Sink {
     /// Opens `path` for writing; `-` and the system's names of standard output are standard output. A regular
     /// file is not changed until [`finish`](Self::finish).
+    ///
+    /// # Errors
+    ///
+    /// [`OpenError`] for a folder that is missing, a path that is a folder, and what the system refuses.
     pub fn open(path: &Path) -> Result<Self, OpenError> {
         #[cfg(target_arch = "wasm32")]
         return Ok(Self::new(path.display().to_string(), Kind::Download(path.to_owned()), None));
@@ -183,6 +188,10 @@ impl Sink {
 
     /// Writes all collected bytes and gives a regular file its name. If a sink is dropped without this, a
     /// regular file is not created or changed.
+    ///
+    /// # Errors
+    ///
+    /// Those of the system; a regular file is then as it was before.
     pub fn finish(mut self) -> io::Result<()> {
         self.flush()?;
         match self.kind {
@@ -194,8 +203,11 @@ impl Sink {
     }
 }
 
-/// Writes a whole file; an existing one is replaced only after all bytes are written. The error
-/// is a sentence.
+/// Writes a whole file; an existing one is replaced only after all bytes are written.
+///
+/// # Errors
+///
+/// A sentence with the path and what the system reports.
 pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), String> {
     let mut sink = Sink::open(path).map_err(|error| error.to_string())?;
     let refused = |error: io::Error| format!("cannot write {}: {error}", path.display());
@@ -205,6 +217,7 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), String> {
 
 /// Whether an output at `path` would be a regular file, and not standard output, a device or a pipe. This
 /// does not open `path`, since opening and closing a pipe ends it for its reader.
+#[doc(hidden)]
 pub fn is_regular(path: &Path) -> bool {
     let existing = fs::metadata(follow_links(path));
     !is_stdout(path) && existing.map_or(true, |existing| existing.is_file() && !is_descriptor(path))
@@ -220,6 +233,7 @@ fn is_descriptor(path: &Path) -> bool {
 }
 
 /// Whether two outputs would overwrite each other: both are standard output, or two names of one file.
+#[doc(hidden)]
 pub fn same_target(a: &Sink, b: &Sink) -> bool {
     let is_same_name = match (&a.kind, &b.kind) {
         (Kind::Stdout, Kind::Stdout) => true,

@@ -25,6 +25,7 @@ const STACK: usize = 16 << 20;
 
 /// Runs `work` on a new thread; in a web page on this one, before it returns. Returns false if the thread
 /// cannot be started.
+#[doc(hidden)]
 pub fn spawn(work: impl FnOnce() + Send + 'static) -> bool {
     if cfg!(target_arch = "wasm32") {
         work();
@@ -34,12 +35,23 @@ pub fn spawn(work: impl FnOnce() + Send + 'static) -> bool {
 }
 
 /// Suspends this thread.
+#[doc(hidden)]
 pub fn sleep(time: Duration) {
     std::thread::sleep(time);
 }
 
 /// A pool of threads that share the parts of one study; or the calling thread alone, which works on one part
 /// after the other, as in a web page, where no thread can be started.
+///
+/// ```
+/// # use interwell_kernel as interwell;
+/// use interwell::system::threads::{Pool, processors};
+///
+/// let pool = Pool::new(processors())?;
+/// let squares = pool.map(4, || (), |_, part| Ok::<_, std::convert::Infallible>(part * part));
+/// assert_eq!(squares, Ok(vec![0, 1, 4, 9]));
+/// # Ok::<(), interwell::system::threads::NoThreads>(())
+/// ```
 #[derive(Debug)]
 pub struct Pool {
     /// `None` for the calling thread.
@@ -63,6 +75,10 @@ fn process() -> u32 {
 
 impl Pool {
     /// Starts `count` threads. In a web page, where there are none, the pool is the calling thread.
+    ///
+    /// # Errors
+    ///
+    /// [`NoThreads`] where the system grants no thread.
     pub fn new(count: usize) -> Result<Self, NoThreads> {
         if cfg!(target_arch = "wasm32") {
             return Ok(Self::calling_thread());
@@ -83,6 +99,7 @@ impl Pool {
     }
 
     /// Whether its threads are there: they are not in a process that was forked from the one of the pool.
+    #[doc(hidden)]
     pub fn is_alive(&self) -> bool {
         self.process == process()
     }
@@ -127,6 +144,7 @@ impl Pool {
     /// are begun beyond the last one whose results have all been received. The function returns early if
     /// `receive` returns false. It also returns early if a `work` returns while tasks remain, after passing
     /// on the results that are complete and in order.
+    #[doc(hidden)]
     pub fn in_order<R: Send>(
         &self,
         count: usize,
@@ -246,6 +264,7 @@ impl<R, F: FnMut(Vec<R>) -> bool> Delivery<'_, R, F> {
 /// The results of tasks 0 to `count` (exclusive) in order, or an error of one of them. Each thread of the
 /// pool, or this thread without a pool, calls `work`, which takes tasks as from a [`Queue`] and returns their
 /// results.
+#[doc(hidden)]
 pub fn share<R: Send, E: Send>(
     pool: Option<&Pool>,
     count: usize,
@@ -256,6 +275,7 @@ pub fn share<R: Send, E: Send>(
 }
 
 /// Like [`share`], for the tasks that `take` returns, as from a [`Queue`].
+#[doc(hidden)]
 pub fn share_from<R: Send, E: Send>(
     pool: Option<&Pool>,
     take: &(dyn Fn(UnderWay) -> Option<usize> + Sync),
@@ -278,6 +298,7 @@ const MAX_BATCH: usize = 256;
 
 /// Work in progress of a thread that asks for a task.
 #[derive(Debug, Clone, Copy, Default)]
+#[doc(hidden)]
 pub struct UnderWay {
     /// Number of runs in progress.
     pub runs: usize,
@@ -292,6 +313,7 @@ const LAST_PER_THREAD: usize = 16;
 
 /// Queue of tasks, given by their indices; each is taken once, by one of several threads.
 #[derive(Debug)]
+#[doc(hidden)]
 pub struct Queue {
     count: usize,
     /// Largest number of unfinished tasks that have been taken.
@@ -389,6 +411,7 @@ impl Drop for StopOnDrop<'_> {
 }
 
 /// Runs `work`, and sets its argument after `timeout` so that it can stop.
+#[doc(hidden)]
 pub fn within<R>(timeout: Duration, work: impl FnOnce(&AtomicBool) -> R) -> R {
     let cancel = AtomicBool::new(false);
     std::thread::scope(|scope| {

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 /// An argument of a command.
+#[doc(hidden)]
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Argument {
     /// The option without its dashes; `None` for the scene.
@@ -55,6 +56,7 @@ fn recorded(option: &str) -> Recorded {
 /// The command line that makes the same picture again, from the arguments `given` to `command` in the order
 /// of `--help`. Options that do not affect the picture are left out, so that equal pictures have equal bytes.
 /// For the same reason the path of the picture is reduced to its file format.
+#[doc(hidden)]
 pub fn picture_arguments(command: &str, given: impl IntoIterator<Item = Argument>) -> Vec<String> {
     let is_nowhere = |option: &String| recorded(option) == Recorded::Nowhere;
     let kept = given.into_iter().filter(|argument| !argument.option.as_ref().is_some_and(is_nowhere));
@@ -77,6 +79,7 @@ pub(super) const REPEATED_SCENE: usize = 2;
 /// The arguments that write the same rows to standard output, from the arguments `given` to `command` in the
 /// order of `--help`, with the `manifest` in place of the scenes, or with the file that was given where the
 /// command reads no scene.
+#[doc(hidden)]
 pub fn repeated(
     command: &str,
     manifest: Option<&Path>,

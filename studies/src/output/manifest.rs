@@ -26,6 +26,7 @@ pub struct Provenance {
 }
 
 /// The file of the rows of a sweep, or of those of a shard.
+#[doc(hidden)]
 #[derive(Debug, Clone, Copy)]
 pub struct Made<'a> {
     /// Its [plan](super::plan()).
@@ -197,6 +198,7 @@ fn file_name(path: &Path) -> String {
 /// The manifest of a whole sweep, from the manifests of its shards. `out` is the path of the merged file,
 /// `sha256` its checksum, and `arguments` those of the call that merged it. Counts and CPU times are added;
 /// of the wall-clock times the longest is kept.
+#[doc(hidden)]
 pub fn merged_manifest(shards: &[Value], out: &Path, sha256: &str, arguments: &[String]) -> String {
     let Some(mut merged) = shards.first().cloned() else { return String::new() };
     for other in &shards[1..] {

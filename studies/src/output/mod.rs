@@ -9,16 +9,31 @@
 //! [`Format::bytes`] makes PNG, SVG or PDF of the [`Figure`]. [`Sink`] writes a file as a whole or not at
 //! all. A [`Manifest`] says what made a file, so that it can be made again.
 //!
-//! Errors: [`NoPicture`] and [`SheetError`] say why there is no picture, [`OpenError`] why there is no file.
+//! Tables are in SI units, as the names of their columns say; axes of pictures have the units of their
+//! labels.
+//!
+//! # Errors
+//!
+//! [`NoPicture`] and [`SheetError`] say why there is no picture, [`OpenError`] why there is no file.
+//!
+//! # Example
 //!
 //! ```
-//! use interwell_studies::output::csv;
-//! use interwell_studies::questions::{Curve, Simulation};
+//! # use interwell_studies as interwell;
+//! use interwell::output::{Caption, Format, Ranges, Theme, csv, curve_chart};
+//! use interwell::questions::{Curve, Simulation};
 //!
 //! let simulation = Simulation::preset("nominal-cubic")?;
 //! let table = Curve { positions: Some(vec![0.0]) }.run(&simulation)?;
 //! assert_eq!(csv(&table), "x_m,force_n,potential_j,stiffness_n_per_m\n0,0,0,-40\n");
-//! # Ok::<(), interwell_studies::questions::Error>(())
+//!
+//! // the force curve between the stops at 4 mm as a picture
+//! let table = Curve::default().run(&simulation)?;
+//! let chart = curve_chart(&table, simulation.mechanism(), (-4e-3, 4e-3), Ranges::default());
+//! let caption = Caption { title: simulation.scene().title.clone(), ..Caption::default() };
+//! let figure = chart.figure(&caption, &Theme::LIGHT);
+//! assert!(Format::Svg.bytes(&figure).unwrap().starts_with(b"<svg"));
+//! # Ok::<(), interwell::questions::Error>(())
 //! ```
 
 mod arguments;

@@ -13,6 +13,7 @@ const MAX_LISTED: usize = 4;
 /// The plan of `sweep`, whose rows have these `columns` after those of its fields, for this `version` of the
 /// program. Two sweeps with equal plans have the same rows, byte for byte. `document` is that of the sweep
 /// and must hold its files, whose checksums are part of the plan.
+#[doc(hidden)]
 pub fn plan(document: &Document, sweep: &Sweep, columns: &[String], version: &str) -> Value {
     let mut scene = document.scene.clone();
     // the scene's own value of a swept field is never run, so it is not part of the plan
@@ -52,6 +53,7 @@ fn axis(axis: &Axis) -> String {
 }
 
 /// The differences of two plans in words, called `there` and `here`; empty if the plans are equal.
+#[doc(hidden)]
 pub fn plan_differences(there: &Value, here: &Value) -> String {
     let mut found = Vec::new();
     differences("", there, here, &mut found);

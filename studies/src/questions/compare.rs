@@ -15,17 +15,24 @@ use crate::system::threads::Pool;
 /// `impact_speed_max_m_per_s`, `crosses_from_hz`, `crosses_to_hz`, `threshold_sensitivity` (a share) and
 /// `most_sensitive_to`. A value is missing where a scene has no such number.
 ///
-/// Method: the release has a closed form; the crossing amplitude is found by a scan and bisection, as by
+/// # Method
+///
+/// The release has a closed form; the crossing amplitude is found by a scan and bisection, as by
 /// [`Threshold`](super::Threshold); the band of frequencies by 40 steps per decade, from a tenth to ten times
 /// the frequency of the sine, whose ends are bisected to a thousandth; the sensitivity by changing one
 /// length, thickness or gap of the mechanism at a time by 1 % up and down. Each of these changes is a search
 /// of its own, for which flexures are solved anew.
 ///
-/// Errors: [`Error::Unfit`] if the common excitation is no sine; [`Error::Scene`] if a scene has faults under
+/// # Errors
+///
+/// [`Error::Unfit`] if the common excitation is no sine; [`Error::Scene`] if a scene has faults under
 /// it; [`Error::Argument`] for `until_settled`; [`Error::Cancelled`].
 ///
+/// # Example
+///
 /// ```
-/// use interwell_studies::questions::{Compare, Progress, Simulation};
+/// # use interwell_studies as interwell;
+/// use interwell::questions::{Compare, Progress, Simulation};
 ///
 /// // Stops at 2 mm release the mass at a lower amplitude than stops at 4 mm.
 /// let far = Simulation::preset("nominal-cubic")?.with("run.tolerance", 1e-6)?;
@@ -34,7 +41,7 @@ use crate::system::threads::Pool;
 /// let answer = question.run(&far, &Progress::none())?;
 /// assert!(answer.rated[1].release_g < answer.rated[0].release_g);
 /// assert_eq!(answer.table().rows(), 2);
-/// # Ok::<(), interwell_studies::questions::Error>(())
+/// # Ok::<(), interwell::questions::Error>(())
 /// ```
 #[derive(Debug, Clone, Default)]
 pub struct Compare {
@@ -89,6 +96,8 @@ impl Compare {
 }
 
 /// The answer of [`Compare::run`].
+///
+/// [`comparison_chart`](crate::output::comparison_chart) draws it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CompareAnswer {
     /// The results of each scene, the first one first.

@@ -15,18 +15,25 @@ use crate::system::files::{canonical, is_file};
 /// one row: the fields, `maximised`, `value` (the mean over the environments), `margin_low` and `margin_high`
 /// of each field in its unit, `worst` and `quantile_5` of the samples, and where it is safer to step back to.
 ///
-/// Method: results are discontinuous functions of the design, so no gradients are used. The whole range is
+/// # Method
+///
+/// Results are discontinuous functions of the design, so no gradients are used. The whole range is
 /// scanned (by default 256, 32, 12 or 8 intervals per field for one to four fields) and the scan is repeated
 /// in smaller and smaller boxes around the best places. A maximum narrower than a step may be missed: a
 /// smaller step (`FIELD=A:B:STEP`) costs more runs, the more the more fields there are. `vary` adds 200
 /// random samples to the answer, and each environment adds a run at each place.
 ///
-/// Errors: [`Error::Argument`] for a text that cannot be read, a field that an environment lacks, constraints
+/// # Errors
+///
+/// [`Error::Argument`] for a text that cannot be read, a field that an environment lacks, constraints
 /// that no place in the range keeps (the nearest one is named), or a result that no run has; [`Error::Scene`]
 /// for a scene with faults; [`Error::Unfit`] for a result of a transducer that the scene lacks.
 ///
+/// # Example
+///
 /// ```
-/// use interwell_studies::questions::{Best, Progress, Simulation};
+/// # use interwell_studies as interwell;
+/// use interwell::questions::{Best, Progress, Simulation};
 ///
 /// // The RMS velocity rises with the travel limit, so the constraint on the travel decides.
 /// let question = Best {
@@ -36,7 +43,7 @@ use crate::system::files::{canonical, is_file};
 /// };
 /// let best = question.run(&Simulation::preset("nominal-cubic")?, &Progress::none())?;
 /// assert!((best.design.optimum.at[0] - 3.0).abs() < 0.01);
-/// # Ok::<(), interwell_studies::questions::Error>(())
+/// # Ok::<(), interwell::questions::Error>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Best {
@@ -72,10 +79,11 @@ impl Default for Best {
 }
 
 /// The answer of [`Best::run`]: the best design, with the parsed question.
+///
+/// The best place may stand at the edge of a jump: see [`BestDesign::margins`] before it is built.
 #[derive(Debug, Clone)]
 pub struct BestAnswer {
-    /// The parsed question.
-    #[doc(hidden)]
+    /// The parsed question, as [`best_chart`](crate::output::best_chart) takes it.
     pub question: BestQuestion,
     /// The best design.
     pub design: BestDesign,

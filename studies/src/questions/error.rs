@@ -17,14 +17,15 @@ use crate::study::{CellFaults, GridError, followed_until};
 /// no answer without the end of the run.
 ///
 /// ```
-/// use interwell_studies::questions::Simulation;
+/// # use interwell_studies as interwell;
+/// use interwell::questions::Simulation;
 ///
 /// let error = Simulation::preset("nominal-cubic")?.with("stops.restitution", 1.2).unwrap_err();
 /// assert!(error.is_wrong_input());
 /// let fault = &error.faults()[0];
 /// assert_eq!((fault.field.as_str(), fault.value.as_str()), ("stops.restitution", "1.2"));
 /// assert!(fault.problem.contains("must be 0 to 1"));
-/// # Ok::<(), interwell_studies::questions::Error>(())
+/// # Ok::<(), interwell::questions::Error>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
@@ -60,7 +61,7 @@ pub enum Error {
     Cancelled,
 }
 
-/// One thing that is wrong with a scene or an argument.
+/// One thing that is wrong with a scene or an argument; [`Error::faults`] lists them.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct FaultAt {
@@ -80,7 +81,7 @@ pub struct FaultAt {
 const MAX_LISTED_CELLS: usize = 8;
 
 impl Error {
-    /// A wrong argument.
+    /// A wrong argument, as a study of a program's own refuses it.
     pub fn argument(name: impl Into<String>, value: impl fmt::Display, problem: impl fmt::Display) -> Self {
         Self::Argument { name: name.into(), value: value.to_string(), problem: problem.to_string() }
     }
@@ -101,11 +102,13 @@ impl Error {
     }
 
     /// Faults of a scene.
+    #[doc(hidden)]
     pub fn faults_of(document: &Document, faults: Vec<Fault>) -> Self {
         Self::Scene(document.error_from(faults))
     }
 
     /// Faults of cells of a grid.
+    #[doc(hidden)]
     pub fn cells_of(document: &Document, cells: Vec<CellFaults>) -> Self {
         let error = |cell: CellFaults| (cell.cell, document.error_from(cell.faults));
         Self::Cells(cells.into_iter().map(error).collect())
@@ -113,6 +116,7 @@ impl Error {
 
     /// A mechanism that cannot be built. Wrong fields are a fault of the scene; valid flexures without a
     /// solution are a failed computation.
+    #[doc(hidden)]
     pub fn unbuilt(document: &Document, error: BuildError) -> Self {
         match error {
             BuildError::Wrong(fault) => Self::faults_of(document, vec![fault]),
@@ -139,7 +143,8 @@ impl Error {
         }
     }
 
-    /// The message for users of the command line: its remedies name options such as `--until-settled`.
+    /// The message for users of the command line: its remedies name options such as `--until-settled`, where
+    /// those of [`faults`](Self::faults) and of `Display` name arguments.
     pub fn message(&self) -> String {
         match self {
             Self::Scene(error) => error.to_string(),

@@ -12,12 +12,16 @@ use crate::study::{
 /// How often, and after which time, a motion under noise leaves its well: runs that differ in the seed of the
 /// noise, for one scene or in every cell of a grid.
 ///
-/// Columns: the fields, `runs`, `escaped`, `ended_early`, `observed_s`, then `escape_rate_per_s`,
+/// # Columns
+///
+/// The fields, `runs`, `escaped`, `ended_early`, `observed_s`, then `escape_rate_per_s`,
 /// `mean_first_passage_s` (its inverse), both with `low` and `high` of a 95 % interval,
 /// `median_first_passage_s`, `kramers_rate_per_s` and `kramers_fails`. Without an escape, the rate is 0, and
 /// the mean time and the upper end of its interval are missing.
 ///
-/// Method: the rate is the number of escapes over the time observed in all runs, those without an escape
+/// # Method
+///
+/// The rate is the number of escapes over the time observed in all runs, those without an escape
 /// included, which is the estimate of largest likelihood for exponential waiting times; its interval is that
 /// of chi-squared quantiles (Garwood 1936; Epstein and Sobel 1953; Cox 1953). The median is that of Kaplan
 /// and Meier (1958). Run number i, from 0, has the seed of the scene plus i. The relative width of the
@@ -25,14 +29,21 @@ use crate::study::{
 ///
 /// Kramers' rate is (sqrt(g^2/4 + w_b^2) - g/2)/w_b * w_0/(2 pi) * exp(-E/k_B T) with the rates w_0 of the
 /// well and w_b of the barrier, g = c/m and the height E of the barrier over the well (Kramers 1940; Hänggi,
-/// Talkner and Borkovec 1990, equation 4.33), times a factor that leads over to weak damping. It is missing
-/// where it does not hold, and `kramers_fails` says why.
+/// Talkner and Borkovec 1990, equation 4.33), times a factor that leads over to weak damping (Mel'nikov and
+/// Meshkov 1986). Noise with the two-sided spectral density S = rms^2/(2 (high - low)) of the base
+/// acceleration acts as k_B T = m^2 S/(2 c). The rate is missing where it does not hold, and `kramers_fails`
+/// says why.
 ///
-/// Errors: [`Error::Argument`] for a wrong number of runs or time; [`Error::Cells`] for cells without noise,
+/// # Errors
+///
+/// [`Error::Argument`] for a wrong number of runs or time; [`Error::Cells`] for cells without noise,
 /// with one well, or whose start lies on the barrier.
 ///
+/// # Example
+///
 /// ```
-/// use interwell_studies::questions::{Escape, Progress, Simulation};
+/// # use interwell_studies as interwell;
+/// use interwell::questions::{Escape, Progress, Simulation};
 ///
 /// let simulation = Simulation::from_text("example.ron", r#"(
 ///     title: "Two wells under noise",
@@ -46,7 +57,7 @@ use crate::study::{
 /// let number = |name: &str| table.numbers(name).unwrap()[0];
 /// assert!(number("escape_rate_low_per_s") < number("kramers_rate_per_s"));
 /// assert!(number("kramers_rate_per_s") < number("escape_rate_high_per_s"));
-/// # Ok::<(), interwell_studies::questions::Error>(())
+/// # Ok::<(), interwell::questions::Error>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Escape {
@@ -106,21 +117,30 @@ over_fields!(Escape);
 /// The value of a field at which a share of the runs under noise crosses the barrier within a time: for one
 /// scene, or in every cell of a grid.
 ///
-/// Columns: the fields of the grid, `of`, `probability`, `value` with `low` and `high` of a 95 % interval in
+/// # Columns
+///
+/// The fields of the grid, `of`, `probability`, `value` with `low` and `high` of a 95 % interval in
 /// the unit of the searched field, `runs`, and `crossed`, the number of runs that cross at the end of the
 /// range. A number is missing if too few runs cross there, an end of the interval also if there are too few
 /// runs to have one.
 ///
-/// Method: all runs begin at rest. Each keeps its random numbers and is bisected between the ends of the
+/// # Method
+///
+/// All runs begin at rest. Each keeps its random numbers and is bisected between the ends of the
 /// range; `value` is the quantile of the values that were found, and its interval lies between two of them,
 /// whose ranks are binomial (David and Nagaraja 2003, section 7.1). A run that crosses at a value is taken to
 /// cross at higher ones; where it does not, the bisection finds one of the changes of its answer.
 ///
-/// Errors: [`Error::Argument`] for a wrong argument; [`Error::Cells`] for cells in which no value of the
+/// # Errors
+///
+/// [`Error::Argument`] for a wrong argument; [`Error::Cells`] for cells in which no value of the
 /// range gives a valid scene with noise and two wells.
 ///
+/// # Example
+///
 /// ```
-/// use interwell_studies::questions::{ProbableThreshold, Progress, Simulation};
+/// # use interwell_studies as interwell;
+/// use interwell::questions::{ProbableThreshold, Progress, Simulation};
 ///
 /// let noise = "Noise(rms_g: 0.3, low_hz: 1, high_hz: 20, seed: 1, lines: 64)";
 /// let simulation = Simulation::preset("nominal-cubic")?.with("excitation", noise)?;
@@ -129,7 +149,7 @@ over_fields!(Escape);
 /// let table = question.run(&simulation, &Progress::none())?;
 /// let number = |name: &str| table.numbers(name).unwrap()[0];
 /// assert!(number("low") <= number("value") && number("value") <= number("high"));
-/// # Ok::<(), interwell_studies::questions::Error>(())
+/// # Ok::<(), interwell::questions::Error>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct ProbableThreshold {

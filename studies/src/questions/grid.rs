@@ -76,23 +76,31 @@ const KEPT: RangeInclusive<u64> = 1..=MAX_SECTION;
 /// The states of a motion once per forcing period (Poincaré's section) or at its impacts; over a field they
 /// give a bifurcation diagram.
 ///
-/// Columns: the fields, with `carry` the `direction`, `index`, `t_s`, then `x_m,v_m_per_s` (at an event the
+/// # Columns
+///
+/// The fields, with `carry` the `direction`, `index`, `t_s`, then `x_m,v_m_per_s` (at an event the
 /// state after it), or at impacts `side,phase_deg,v_in_m_per_s`. The states are values of the integrator's
 /// polynomials. The more periods `options` skips, the fewer rows belong to a transient; at most 1e9 are
 /// skipped, and 1 to 4194304 kept. The cost is that of the forcing periods that are run.
 ///
-/// Errors: [`Error::Scene`], in a grid [`Error::Cells`], if the drive does not repeat (impacts alone need no
-/// period) or the settled window holds no forcing period; [`Error::Unfit`] as for a [`Sweep`].
+/// # Errors
+///
+/// [`Error::Argument`] for wrong fields, numbers of periods, phase or `until_settled`, and for `carry`
+/// without a field; [`Error::Scene`], in a grid [`Error::Cells`], if the drive does not repeat (impacts alone
+/// need no period) or the settled window holds no forcing period or more than 4194304.
+///
+/// # Example
 ///
 /// ```
-/// use interwell_studies::questions::{Progress, Section, Simulation};
+/// # use interwell_studies as interwell;
+/// use interwell::questions::{Progress, Section, Simulation};
 ///
 /// // From 5 to 10 s at 3 Hz: 15 states, all at rest on the stop at 4 mm.
 /// let simulation = Simulation::preset("nominal-cubic")?;
 /// let table = Section::default().run(&simulation, &Progress::none())?;
 /// assert_eq!(table.rows(), 15);
 /// assert!(table.numbers("x_m").unwrap().iter().all(|x| (x - 4e-3).abs() < 1e-9));
-/// # Ok::<(), interwell_studies::questions::Error>(())
+/// # Ok::<(), interwell::questions::Error>(())
 /// ```
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Section {
@@ -156,20 +164,30 @@ impl Section {
 
 /// Lyapunov exponents of the settled motion: the rates in 1/s at which small perturbations grow or decay.
 ///
-/// Columns: the fields, `exponent_1_per_s`, `exponent_1_se`, `exponent_2_per_s`, `exponent_2_se` (standard
+/// # Columns
+///
+/// The fields, `exponent_1_per_s`, `exponent_1_se`, `exponent_2_per_s`, `exponent_2_se` (standard
 /// errors), `sum_per_s`, `exact_sum_per_s` (from damping, circuit and impacts alone) and `dimension` (Kaplan
 /// and Yorke 1979); where there may be a circuit also `exponent_3_per_s`, `exponent_3_se`. The exponents are
 /// minus infinity where the mass rests on a stop, except that of a circuit.
 ///
-/// Method: of a motion that repeats, ln|multiplier| over its period; otherwise averages over
+/// # Method
+///
+/// Of a motion that repeats, ln|multiplier| over its period; otherwise averages over
 /// `options.periods`, 1 to 1e7 (Benettin et al. 1980), through impacts by saltation (Müller 1995), with
 /// standard errors by batch means (Flegal and Jones 2010). More periods cost more and reduce these errors.
 ///
-/// Errors: [`Error::Scene`] or [`Error::Cells`] if the drive changes and does not repeat; [`Error::Failed`]
-/// if the motion ends early or touches a stop without speed (in a grid the values of that cell are missing).
+/// # Errors
+///
+/// [`Error::Argument`] for wrong fields, `periods` or `until_settled`; [`Error::Scene`], in a grid
+/// [`Error::Cells`], if the drive changes and does not repeat; [`Error::Failed`] if the motion ends early or
+/// touches a stop without speed (in a grid the values of that cell are missing).
+///
+/// # Example
 ///
 /// ```
-/// use interwell_studies::questions::{Exponents, Progress, Simulation};
+/// # use interwell_studies as interwell;
+/// use interwell::questions::{Exponents, Progress, Simulation};
 ///
 /// // Inside one well the exponents add up to -c/m, here -2 ratio sqrt(stiffness / mass).
 /// let simulation = Simulation::preset("nominal-cubic")?.with("stops", "None")?;
@@ -177,7 +195,7 @@ impl Section {
 /// let table = Exponents::default().run(&weak, &Progress::none())?;
 /// let sum = table.numbers("sum_per_s").unwrap()[0];
 /// assert!((sum + 2.0 * 0.023 * (80.0_f64 / 15.2e-3).sqrt()).abs() < 1e-6);
-/// # Ok::<(), interwell_studies::questions::Error>(())
+/// # Ok::<(), interwell::questions::Error>(())
 /// ```
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Exponents {
@@ -199,7 +217,7 @@ impl Exponents {
         all_rows(&self.cells(document, grid, progress)?, document, progress)
     }
 
-    /// The exponents of the scene itself, and how they were computed.
+    /// The exponents of the scene itself, whatever `over` says, and how they were computed.
     pub fn of_one(&self, simulation: &Simulation, progress: &Progress) -> Result<ExponentsAnswer, Error> {
         self.check()?;
         let document = simulation.document();
@@ -239,20 +257,31 @@ impl Exponents {
 /// The smallest value of a field at which the mass is released, or its settled motion crosses or is
 /// interwell: for one scene, or in every cell of a grid.
 ///
-/// Columns: the fields of the grid, `of`, then `value`, `low`, `high` in the unit of the searched field,
+/// # Columns
+///
+/// The fields of the grid, `of`, then `value`, `low`, `high` in the unit of the searched field,
 /// `undecided` and `windows`. `value` is missing if no value of the range has the motion. `low` and `high`
 /// are the nearest values that were tried whose motion is known; `windows` counts the changes above `value`.
 ///
-/// Method: the release under one sine has a closed form. Otherwise all steps of the range are run from rest,
+/// # Method
+///
+/// The release under one sine has a closed form. Otherwise all steps of the range are run from rest,
 /// each until its motion repeats (by default for at most 1000 forcing periods beyond the run of the scene),
 /// and the first change is bisected, since the values that cross need not form an interval. A window narrower
 /// than a step may be missed; a smaller step costs more runs.
 ///
-/// Errors: [`Error::Argument`] for a wrong `field` or `resolution`; [`Error::Cells`] for cells in which no
-/// value of the range gives a valid scene, or one whose drive repeats, which interwell motion needs.
+/// # Errors
+///
+/// [`Error::Argument`] for a wrong `field`, `resolution` or `until_settled`, for a release (`of`) without
+/// stops, for a grid over the searched field, and for `melnikov` of a field that is not the amplitude of one
+/// sine; [`Error::Cells`] for cells in which no value of the range gives a valid scene, or one whose drive
+/// repeats, which interwell motion needs.
+///
+/// # Example
 ///
 /// ```
-/// use interwell_studies::questions::{Onset, Progress, Simulation, Threshold};
+/// # use interwell_studies as interwell;
+/// use interwell::questions::{Onset, Progress, Simulation, Threshold};
 ///
 /// // The mass is released when mass times base acceleration exceeds the force on the stop at 4 mm.
 /// let question = Threshold { of: Onset::Release, ..Threshold::default() };
@@ -260,17 +289,18 @@ impl Exponents {
 /// let force_n = 40.0 * 4e-3 - 816_326.530_612_245 * 4e-3_f64.powi(3);
 /// let amplitude_g = force_n / (15.2e-3 * 9.806_65);
 /// assert!((table.numbers("value").unwrap()[0] - amplitude_g).abs() < 1e-9);
-/// # Ok::<(), interwell_studies::questions::Error>(())
+/// # Ok::<(), interwell::questions::Error>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Threshold {
     /// The fields of the grid, the slowest first; if there are none, the table has one row.
     pub over: Over,
-    /// The field that is searched and its range: `FIELD=FROM:TO` or `FIELD=FROM:TO:STEP`.
+    /// The field that is searched and its range: `FIELD=FROM:TO`, in 200 steps, or `FIELD=FROM:TO:STEP`.
     pub field: String,
     /// The onset that is searched.
     pub of: Onset,
-    /// Resolution of the threshold in the unit of the field; by default a 1000th of the step.
+    /// Resolution of the threshold in the unit of the field; by default a 1000th of the step, or 1 for a
+    /// field of whole numbers.
     pub resolution: Option<f64>,
     /// Each run continues until its motion repeats, at most up to this time in s.
     pub until_settled: Option<f64>,

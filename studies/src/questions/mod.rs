@@ -4,6 +4,22 @@
 //! `run`, which takes a simulation and, unless it is short, a [`Progress`]. It returns tables in SI units, or
 //! an [`Error`] that lists all faults.
 //!
+//! ```
+//! # use interwell_studies as interwell;
+//! use interwell::questions::{Onset, Progress, Simulation, Threshold};
+//!
+//! // From which amplitude on does the mass leave its stop, for three travel limits?
+//! let simulation = Simulation::preset("nominal-cubic")?;
+//! let question = Threshold { of: Onset::Release, ..Threshold::over("stops.travel_limit_mm", 2.0..=4.0, 3) };
+//! let table = question.run(&simulation, &Progress::none())?;
+//! let (limits_mm, release_g) = (table.numbers("travel_limit_mm"), table.numbers("value").unwrap());
+//! assert_eq!(limits_mm, Some(&[2.0, 3.0, 4.0][..]));
+//! assert!(release_g.windows(2).all(|pair| pair[0] < pair[1]));
+//! # Ok::<(), interwell::questions::Error>(())
+//! ```
+//!
+//! # The questions
+//!
 //! | question | what it answers | answer |
 //! | --- | --- | --- |
 //! | [`Simulation::run`] | how the mass moves from one start | `dynamics::Run` |
@@ -25,15 +41,16 @@
 //! | [`Best`] | which design is the best for an environment, and with which margins | [`BestAnswer`] |
 //! | [`Identify`] | damping, restitution or force of a measured record | [`IdentifyAnswer`] |
 //!
-//! Each answer that is no [`Table`] has a method `table`. `docs/output.md` of the repository has the meaning
-//! of every column, `docs/studies.md` pictures and costs.
+//! An answer of a type of its own has a method `table`, but for [`Recorded`], which has two tables, samples
+//! and events. [`output`](crate::output) writes tables as files and pictures. `docs/output.md` of the
+//! repository has the meaning of every column, `docs/studies.md` pictures and costs.
 //!
 //! # Units
 //!
 //! A column has its unit in its name: `x_m`, `v_m_per_s`, `release_g`; [`Column::unit`] gives it as text.
 //! Columns are in SI units, except those of fields and starts, which have the unit of the scene file
-//! (`travel_limit_mm`, `x_mm`), and amplitudes in g. A missing number is NaN, a missing count is `None`, a
-//! missing word is empty.
+//! (`travel_limit_mm`, `x_mm`), amplitudes in g, and phases in degrees. A missing number is NaN, a missing
+//! count is `None`, a missing word is empty.
 //!
 //! # Options that questions share
 //!
@@ -42,7 +59,8 @@
 //! - `until_settled`: a run continues, window after window, until its motion repeats, at most up to this time
 //!   in s. It costs most where a motion never repeats. It is at least the duration of the scene's run and at
 //!   most 1e9 s, and needs a drive that repeats. Thresholds, exponents, comparisons and designs continue by
-//!   default for at most 1000 forcing periods beyond the run; the others do not.
+//!   default for at most 1000 periods of the drive, of a sum those of its fastest sine, beyond the run; the
+//!   others do not.
 //! - `carry`: the last field of a grid is walked, each run from the end of the one before. It needs a drive
 //!   that repeats.
 //! - [`Progress`]: reports, cancellation, threads. The answer has the same bits for any number of threads.
@@ -103,14 +121,12 @@ pub use sweep::{SweepCells, assign as assign_uncertain};
 pub use crate::mechanics::flexure::State as FlexureState;
 pub use crate::scene::Uncertain;
 
-#[doc(hidden)]
-pub use crate::study::BestQuestion;
 pub use crate::study::accuracy::methods::{Scheme, Statistics};
 pub use crate::study::accuracy::scene::{AtTolerance, Course, Lateness, StepSize, Tolerances, Trust};
 pub use crate::study::{
-    Answer, Attractor, BestDesign, Branch as BranchAnswer, BranchEnd, BranchEvent, Carry, Column, Estimate,
-    EvenRange, ExponentOptions, Exponents as ExponentsAnswer, FieldRange, Found, Grid, Identified, Identity,
-    Locus as OneLocus, LocusEnd, LocusEvent, Onset, Optimum, Orbit as OrbitAnswer, Rated, Recorded, Sampling,
-    SectionAt, SectionOptions, Shares, Signal, Spectrum as SpectrumAnswer, Spread, Table, Tried, Until,
-    Values,
+    Answer, Attractor, BestDesign, BestQuestion, Branch as BranchAnswer, BranchEnd, BranchEvent, Carry,
+    Column, Estimate, EvenRange, ExponentOptions, Exponents as ExponentsAnswer, FieldRange, Found, Grid,
+    Identified, Identity, Locus as OneLocus, LocusEnd, LocusEvent, Onset, Optimum, Orbit as OrbitAnswer,
+    Rated, Recorded, Sampling, SectionAt, SectionOptions, Shares, Signal, Spectrum as SpectrumAnswer, Spread,
+    Table, Tried, Until, Values,
 };

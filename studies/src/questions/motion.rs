@@ -17,21 +17,28 @@ use crate::study::{
 
 /// Force, potential and stiffness of the mechanism over displacement.
 ///
-/// Columns: `x_m`, `force_n` (dV/dx, what must be applied to hold the mass there), `potential_j` (which is 0
-/// at x = 0), `stiffness_n_per_m`. They are those of the piecewise polynomial with which every run computes;
-/// how well it follows a table or a function is in `Simulation::mechanism().curve.fit()`.
+/// # Columns
 ///
-/// Errors: [`Error::Argument`] for a position outside a curve that ends.
+/// `x_m`, `force_n` (dV/dx, what must be applied to hold the mass there), `potential_j` (which is 0
+/// at x = 0), `stiffness_n_per_m`. They are those of the piecewise polynomial with which every run computes;
+/// [`ForceCurve::fit`](crate::mechanics::ForceCurve::fit) says how well it follows a table or a function.
+///
+/// # Errors
+///
+/// [`Error::Argument`] for a position outside a curve that ends.
+///
+/// # Example
 ///
 /// ```
-/// use interwell_studies::questions::{Curve, Simulation};
+/// # use interwell_studies as interwell;
+/// use interwell::questions::{Curve, Simulation};
 ///
 /// // The wells of this double well lie at 7 mm, 0.49 mJ below the top of the barrier.
 /// let simulation = Simulation::preset("nominal-cubic")?;
 /// let table = Curve { positions: Some(vec![0.0, 7e-3]) }.run(&simulation)?;
 /// assert!(table.numbers("force_n").unwrap()[1].abs() < 1e-12);
 /// assert!((table.numbers("potential_j").unwrap()[1] + 0.49e-3).abs() < 1e-9);
-/// # Ok::<(), interwell_studies::questions::Error>(())
+/// # Ok::<(), interwell::questions::Error>(())
 /// ```
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Curve {
@@ -78,11 +85,16 @@ impl Curve {
 
     /// The flexures of the mechanism at the positions, each solved anew.
     ///
-    /// Errors: [`Error::Argument`] for a position outside the curve; [`Error::Unfit`] if the mechanism is not
+    /// # Errors
+    ///
+    /// [`Error::Argument`] for a position outside the curve; [`Error::Unfit`] if the mechanism is not
     /// made of flexures; [`Error::Failed`] if there is no solution at a position; [`Error::Cancelled`].
     ///
+    /// # Example
+    ///
     /// ```
-    /// use interwell_studies::questions::{Curve, Progress, Simulation};
+    /// # use interwell_studies as interwell;
+    /// use interwell::questions::{Curve, Progress, Simulation};
     ///
     /// // At the middle the buckling flexures are straight: their bump has vanished, and they push hardest.
     /// let question = Curve { positions: Some(vec![0.0, 1e-3]) };
@@ -90,7 +102,7 @@ impl Curve {
     /// let axial = flexures.table();
     /// let axial = axial.numbers("axial_n").unwrap();
     /// assert!(axial[0].abs() > axial[1].abs());
-    /// # Ok::<(), interwell_studies::questions::Error>(())
+    /// # Ok::<(), interwell::questions::Error>(())
     /// ```
     pub fn flexures(&self, simulation: &Simulation, progress: &Progress) -> Result<FlexuresAnswer, Error> {
         self.flexures_of(simulation.document(), simulation.mechanism(), progress)
@@ -117,6 +129,8 @@ impl Curve {
 }
 
 /// The answer of [`Curve::flexures`]: the flexures at some positions of the mass.
+///
+/// [`shapes_chart`](crate::output::shapes_chart) draws their shapes.
 #[derive(Debug, Clone)]
 pub struct FlexuresAnswer {
     /// The state of the flexures at each position, in SI units.
@@ -162,17 +176,24 @@ pub fn may_have_circuit(document: &Document, axes: &[Axis]) -> bool {
 /// The table of the answer has one row per line, from 0 to half the rate: `frequency_hz`, `amplitude` (half
 /// of peak to peak; m, m/s or m/s^2 by the signal) and `psd` (one-sided, the square of that unit per Hz).
 ///
-/// Method: the settled window is sampled evenly, over whole periods where the drive repeats. Where the motion
+/// # Method
+///
+/// The settled window is sampled evenly, over whole periods where the drive repeats. Where the motion
 /// repeats too, its lines are exact and no window function is needed; otherwise that of von Hann is taken,
 /// and amplitude and density are scaled as in Heinzel et al. (2002). Components above half the rate fold
 /// back: a higher `rate_hz` reduces this, which matters with impacts. Two runs are made, one for the verdict
 /// and one for the samples.
 ///
-/// Errors: [`Error::Argument`] for `rate_hz` (at most 1e7 samples) or `until_settled`; [`Error::Unfit`] if
+/// # Errors
+///
+/// [`Error::Argument`] for `rate_hz` (at most 1e7 samples) or `until_settled`; [`Error::Unfit`] if
 /// the settled window has no length; [`Error::Failed`] if the run ends early.
 ///
+/// # Example
+///
 /// ```
-/// use interwell_studies::questions::{Progress, Signal, Simulation, Spectrum};
+/// # use interwell_studies as interwell;
+/// use interwell::questions::{Progress, Signal, Simulation, Spectrum};
 ///
 /// // The base moves with one sine of 1.5 g at 3 Hz.
 /// let question = Spectrum { of: Signal::BaseAcceleration, ..Spectrum::default() };
@@ -181,7 +202,7 @@ pub fn may_have_circuit(document: &Document, axes: &[Axis]) -> bool {
 /// let frequencies = table.numbers("frequency_hz").unwrap();
 /// let line = frequencies.iter().position(|frequency| (frequency - 3.0).abs() < 1e-9).unwrap();
 /// assert!((table.numbers("amplitude").unwrap()[line] - 1.5 * 9.806_65).abs() < 1e-9);
-/// # Ok::<(), interwell_studies::questions::Error>(())
+/// # Ok::<(), interwell::questions::Error>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Spectrum {
@@ -227,25 +248,32 @@ impl Spectrum {
 /// attractor: `attractor`, `regime`, `period`, `side`, `rms_velocity_m_per_s`, `x_m`, `v_m_per_s`, `starts`,
 /// `share` and its 95 % interval `share_low`, `share_high` (Wilson 1927).
 ///
-/// Method: starts that share a release share everything after it, which is computed once. Without rest a
+/// # Method
+///
+/// Starts that share a release share everything after it, which is computed once. Without rest a
 /// start is followed until it enters an ellipse around a stable orbit (motions told by their return to known
 /// ones: Datseris and Wagemakers 2022). The shares of `random` starts are the basin stability of Menck et al.
 /// (2013). `sure` compares with ten times the tolerance, which costs somewhat less than half of the time.
 /// Without rests of the mass the cost per start is many times as large; at most 1e7 starts are taken.
 ///
-/// Errors: [`Error::Argument`] for wrong ranges or numbers of starts, or if all starts lie beyond a stop or
+/// # Errors
+///
+/// [`Error::Argument`] for wrong ranges or numbers of starts, or if all starts lie beyond a stop or
 /// the end of the force curve; [`Error::Unfit`] if the drive changes and does not repeat, or nothing takes
 /// energy. A start that reaches no attractor has no number.
 ///
+/// # Example
+///
 /// ```
-/// use interwell_studies::questions::{Basins, Progress, Simulation};
+/// # use interwell_studies as interwell;
+/// use interwell::questions::{Basins, Progress, Simulation};
 ///
 /// // Below the release amplitude the mass stays at rest on the left or on the right stop.
 /// let weak = Simulation::preset("nominal-cubic")?.with("excitation.amplitude_g", 0.6)?;
 /// let found = Basins::of((-4.0, 4.0, 5), (-0.2, 0.2, 3)).run(&weak, &Progress::none())?;
 /// assert_eq!(found.table().rows(), 15);
 /// assert_eq!(found.attractors().words("side"), ["left", "right"]);
-/// # Ok::<(), interwell_studies::questions::Error>(())
+/// # Ok::<(), interwell::questions::Error>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Basins {
@@ -258,10 +286,12 @@ pub struct Basins {
 }
 
 /// The answer of [`Basins::run`].
+///
+/// It has two tables, [one row per start](Self::table) and [one row per attractor](Self::attractors), whose
+/// columns are named at [`Basins`].
 #[derive(Debug)]
 pub struct BasinsAnswer {
-    /// The starts, and what is known of each.
-    #[doc(hidden)]
+    /// The starts, as [`basins_chart`](crate::output::basins_chart) takes them.
     pub basins: study::Basins,
     /// The attractors, and the attractor of each start.
     pub answer: Answer,

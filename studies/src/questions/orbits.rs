@@ -17,18 +17,25 @@ use crate::study::{
 /// `gentlest_impact_m_per_s`, `nearest_miss_m`; beside a circuit also `current_a` or `voltage_v` and
 /// `multiplier_3_re`, `multiplier_3_im`.
 ///
-/// Method: a motion that repeats after n forcing periods is a fixed point of the stroboscopic map, found by
+/// # Method
+///
+/// A motion that repeats after n forcing periods is a fixed point of the stroboscopic map, found by
 /// Newton's method. The derivative of the map is carried through impacts and releases by saltation matrices
 /// (Müller 1995; Kong et al. 2024); its eigenvalues are the multipliers, which are 0 where the mass rests on
 /// a stop, except that of a circuit. It takes the run of the scene and some further periods.
 ///
-/// Errors: [`Error::Argument`] for `period` or `phase_deg`; [`Error::Unfit`] if the drive does not repeat or
-/// is 0; [`Error::Failed`] if the run comes to no motion that
+/// # Errors
+///
+/// [`Error::Argument`] for `period` or `phase_deg`; [`Error::Unfit`] if the drive does not repeat or is 0, or
+/// a circuit without resistance keeps its charge; [`Error::Failed`] if the run comes to no motion that
 /// repeats (name a period, start elsewhere, or lengthen the run), Newton's method does not converge, the
 /// motion touches a stop without speed or ends early, or there is only an orbit of a shorter period.
 ///
+/// # Example
+///
 /// ```
-/// use interwell_studies::questions::{Orbit, Progress, Simulation};
+/// # use interwell_studies as interwell;
+/// use interwell::questions::{Orbit, Progress, Simulation};
 ///
 /// // Without impacts the product of the multipliers is exp(-c T/m).
 /// let simulation = Simulation::preset("nominal-cubic")?.with("stops", "None")?;
@@ -37,11 +44,11 @@ use crate::study::{
 /// let rate = 2.0 * 0.023 * (80.0_f64 / 15.2e-3).sqrt();
 /// assert!(orbit.is_stable() && orbit.period == 1);
 /// assert!((orbit.determinant() - (-rate / 3.0).exp()).abs() < 1e-9);
-/// # Ok::<(), interwell_studies::questions::Error>(())
+/// # Ok::<(), interwell::questions::Error>(())
 /// ```
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Orbit {
-    /// Its period in forcing periods, at least 1; by default that of the settled motion.
+    /// Its period in forcing periods, 1 to 1000; by default that of the settled motion, at most 12.
     pub period: Option<u32>,
     /// Phase of the drive in degrees at which the state is given.
     pub phase_deg: f64,
@@ -70,16 +77,23 @@ impl OrbitAnswer {
 /// columns of [`Orbit`], and `event`: empty, `fold`, `flip`, `symmetry` or `grazing`. Its method `remarks`
 /// says where the branch ended inside the range, and why.
 ///
-/// Method: pseudo-arclength continuation (Keller 1977). Events are located to some 1e-9 of the range. At a
+/// # Method
+///
+/// Pseudo-arclength continuation (Keller 1977). Events are located to some 1e-9 of the range. At a
 /// grazing the stroboscopic map changes like the square root of the distance (Nordmark 1991), so the motion
 /// that grazes is solved for with the instant of the touch as an unknown. Two events of a kind within a
 /// hundredth of the range can be missed. A branch of the prototype takes about a second.
 ///
-/// Errors: those of [`Orbit`] for the first orbit, and [`Error::Argument`] for a field or a range that is
+/// # Errors
+///
+/// Those of [`Orbit`] for the first orbit, and [`Error::Argument`] for a field or a range that is
 /// wrong; a field of whole numbers has no branch. A branch that ends early is not an error.
 ///
+/// # Example
+///
 /// ```
-/// use interwell_studies::questions::{Branch, Progress, Simulation};
+/// # use interwell_studies as interwell;
+/// use interwell::questions::{Branch, Progress, Simulation};
 ///
 /// // The stable motion in one well ends in a fold near 0.70 g; the branch goes back as an unstable one.
 /// let simulation = Simulation::preset("nominal-cubic")?.with("stops", "None")?;
@@ -88,7 +102,7 @@ impl OrbitAnswer {
 /// let table = branch.table();
 /// let fold = table.words("event").iter().position(|event| *event == "fold").unwrap();
 /// assert!((0.70..0.71).contains(&branch.values[fold]));
-/// # Ok::<(), interwell_studies::questions::Error>(())
+/// # Ok::<(), interwell::questions::Error>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Branch {
@@ -96,7 +110,7 @@ pub struct Branch {
     pub field: String,
     /// Its value at the first orbit, and the value towards which the branch is continued.
     pub range: (f64, f64),
-    /// Period of the first orbit in forcing periods, at least 1; by default that of the settled motion.
+    /// Period of the first orbit in forcing periods, 1 to 1000; by default that of the settled motion.
     pub period: Option<u32>,
     /// Phase of the drive in degrees at which states are given.
     pub phase_deg: f64,
@@ -123,14 +137,15 @@ impl Branch {
     /// breakings of the symmetry.
     ///
     /// ```
-    /// use interwell_studies::questions::{Branch, Progress, Simulation};
+    /// # use interwell_studies as interwell;
+    /// use interwell::questions::{Branch, Progress, Simulation};
     ///
     /// // A period is doubled near 0.05503 g: the branch of twice the period begins there.
     /// let question = Branch::over("excitation.amplitude_g", 0.056, 0.0548);
     /// let simulation = Simulation::preset("impact-oscillator")?;
     /// let answer = question.with_switches(1, &simulation, &Progress::none())?;
     /// assert!(answer.branches.len() > 1);
-    /// # Ok::<(), interwell_studies::questions::Error>(())
+    /// # Ok::<(), interwell::questions::Error>(())
     /// ```
     pub fn with_switches(
         &self,
@@ -220,6 +235,8 @@ fn check_fields<'a>(
 }
 
 /// The answer of [`Branch::with_switches`]: the branch, and those that begin at its events.
+///
+/// [`branch_chart`](crate::output::branch_chart) draws them.
 #[derive(Debug, Clone)]
 pub struct BranchesAnswer {
     /// The branches, each after the one on which it begins; the first is the branch that was asked for.
@@ -275,16 +292,23 @@ impl BranchAnswer {
 /// both fields in their units, the columns of [`Orbit`], and `event`: empty, `cusp`, `fold-flip`,
 /// `grazing-fold`, `grazing-flip`, `grazing-symmetry` or `grazing-grazing`.
 ///
-/// Method: the branch is followed at the first value of the second field. From each of its events of this
+/// # Method
+///
+/// The branch is followed at the first value of the second field. From each of its events of this
 /// kind a locus is continued towards the other value, by pseudo-arclength in the state and both fields, with
 /// the characteristic polynomial of the map at 1 or -1 as one more equation (Kuznetsov 2004, section 10.3),
 /// or with the touch of the stop for a grazing. Each point is checked: a multiplier within 1e-6 of 1 or -1, a
 /// touch to 1e-9 of the scales.
 ///
-/// Errors: those of [`Branch`], for both fields; [`Error::Failed`] if the branch has no such event.
+/// # Errors
+///
+/// Those of [`Branch`], for both fields; [`Error::Failed`] if the branch has no such event.
+///
+/// # Example
 ///
 /// ```
-/// use interwell_studies::questions::{Branch, BranchEvent, FieldRange, Locus, Progress, Simulation};
+/// # use interwell_studies as interwell;
+/// use interwell::questions::{Branch, BranchEvent, FieldRange, Locus, Progress, Simulation};
 ///
 /// // The swing without impacts of a linear oscillator grazes the stop at an amplitude in closed form.
 /// let simulation = Simulation::preset("impact-oscillator")?;
@@ -296,7 +320,7 @@ impl BranchAnswer {
 ///     let reached = amplitude_g * 9.806_65 / (1.0 - w * w).hypot(0.2 * w);
 ///     assert!((reached - 1.0).abs() < 1e-8);
 /// }
-/// # Ok::<(), interwell_studies::questions::Error>(())
+/// # Ok::<(), interwell::questions::Error>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Locus {
@@ -353,7 +377,8 @@ impl Locus {
     }
 }
 
-/// The answer of [`Locus::run`].
+/// The answer of [`Locus::run`]. A locus that ends early is no error: [`remarks`](Self::remarks) say where
+/// and why; [`loci_chart`](crate::output::loci_chart) draws all of them.
 #[derive(Debug, Clone)]
 pub struct LocusAnswer {
     /// The loci, each from one event of the branch, in the order of the events.

@@ -22,8 +22,9 @@ type Report<'a> = &'a (dyn Fn(u64, Option<u64>) + Sync);
 /// 0, or that the system does not grant, is an [`Error::Argument`] named `threads`.
 ///
 /// ```
+/// # use interwell_studies as interwell;
 /// use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-/// use interwell_studies::questions::{Error, Progress, Simulation, Sweep};
+/// use interwell::questions::{Error, Progress, Simulation, Sweep};
 ///
 /// let simulation = Simulation::preset("nominal-cubic")?;
 /// let sweep = Sweep::over("excitation.amplitude_g", 0.5..=1.5, 5);

@@ -29,18 +29,25 @@ words! {
 /// with `low` and `high` in their names, the 95 % interval. The numbers of the whole record are in
 /// `found.summary`.
 ///
-/// Method: of damping an exponential envelope through the turning points, each weighted by its own error,
+/// # Method
+///
+/// Of damping an exponential envelope through the turning points, each weighted by its own error,
 /// which gives the logarithmic decrement; of restitution polynomials through the flights on both sides of an
 /// impact; of a force the mean of both directions of the pull. With more `points` a force curve follows the
 /// samples more closely and averages fewer of them. A decay needs some ten samples per period, an impact some
 /// eight in the flight after it.
 ///
-/// Errors: [`Error::Argument`] for an option that does not belong to the quantity or is out of its range;
+/// # Errors
+///
+/// [`Error::Argument`] for an option that does not belong to the quantity or is out of its range;
 /// [`Error::Unfit`] for a file that cannot be read, a column that is not found, or a record from which
 /// nothing can be identified, with the reason.
 ///
+/// # Example
+///
 /// ```
-/// use interwell_studies::questions::{Identify, Progress, WhatToIdentify};
+/// # use interwell_studies as interwell;
+/// use interwell::questions::{Identify, Progress, WhatToIdentify};
 ///
 /// // A free decay of 10 Hz with a damping ratio of 2 %, sampled at 1 kHz.
 /// let rate = std::f64::consts::TAU * 10.0;
@@ -54,7 +61,7 @@ words! {
 /// let ratio = answer?.found.summary[0];
 /// assert_eq!(ratio.name, "damping_ratio");
 /// assert!((ratio.value - 0.02).abs() < 1e-5);
-/// # Ok::<(), interwell_studies::questions::Error>(())
+/// # Ok::<(), interwell::questions::Error>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Identify {
@@ -81,6 +88,9 @@ pub struct Identify {
 }
 
 /// The answer of [`Identify::run`]: the identified quantity, and the record from which it was identified.
+///
+/// The numbers that a scene takes are in [`found.summary`](Identified::summary), each with its 95 % interval.
+/// [`identified_chart`](crate::output::identified_chart) draws the record with what was found.
 #[derive(Debug, Clone)]
 pub struct IdentifyAnswer {
     /// The result.
@@ -103,6 +113,7 @@ impl IdentifyAnswer {
 }
 
 /// A description of the columns from which a record was read.
+#[doc(hidden)]
 pub fn columns_read<const N: usize>(record: &Measured<N>) -> String {
     let from = |channel: &Channel| format!("{} from `{}`", channel.quantity.name(), channel.column);
     let commas = if record.decimal_commas { ", with decimal commas" } else { "" };

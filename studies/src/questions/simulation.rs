@@ -19,20 +19,28 @@ use crate::study::{
 ///
 /// It is made once from a built-in scene, a file or a text, which solves the mechanism (flexures take
 /// longest), and it does not change: [`with`](Self::with) returns another one, which shares the mechanism if
-/// none of its fields was changed. Fields and their units are those of scene files. Either way an unknown
-/// field or a value out of its range gives [`Error::Scene`], with all faults at once, and flexures without a
-/// solution give [`Error::Failed`]. [`run`](Self::run) never fails: if a run cannot continue, its outcome
-/// says so.
+/// none of its fields was changed. Fields and their units are those of scene files.
+///
+/// # Errors
+///
+/// Of all functions that return a simulation: [`Error::Scene`] for a scene that cannot be read, an unknown
+/// field and values out of their range, with all faults at once, and [`Error::Failed`] for flexures without a
+/// solution. [`run`](Self::run) never fails: if a run cannot continue, its outcome says so.
+///
+/// # Example
 ///
 /// ```
-/// use interwell_kernel::dynamics::Request;
-/// use interwell_studies::questions::Simulation;
+/// # use interwell_studies as interwell;
+/// use interwell::dynamics::{EventKind, Request};
+/// use interwell::questions::Simulation;
 ///
 /// let simulation = Simulation::preset("paper")?;
 /// let stronger = simulation.with("excitation.amplitude_g", 1.3)?;
-/// let run = stronger.run(&Request::default());
+/// let run = stronger.run(&Request { sample_times: &[1.0, 2.0], events: true, ..Request::default() });
 /// assert!(run.summary.crossings > 0);
-/// # Ok::<(), interwell_studies::questions::Error>(())
+/// assert_eq!(run.samples.len(), 2); // displacement in m, velocity in m/s, ..
+/// assert!(run.events.iter().any(|event| event.kind == EventKind::Crossing));
+/// # Ok::<(), interwell::questions::Error>(())
 /// ```
 #[derive(Debug, Clone)]
 pub struct Simulation {
@@ -42,7 +50,7 @@ pub struct Simulation {
 }
 
 impl Simulation {
-    /// The simulation of a built-in scene, such as `paper`.
+    /// The simulation of a built-in scene, such as `paper`; [`PRESETS`](crate::scene::PRESETS) lists them.
     pub fn preset(name: &str) -> Result<Self, Error> {
         Self::build(Document::preset(name)?, &Progress::none())
     }
@@ -52,8 +60,8 @@ impl Simulation {
         Self::build(Document::from_file(path.as_ref())?, &Progress::none())
     }
 
-    /// The simulation of a scene in RON. Messages call it `name`. Files in it must have absolute paths or be
-    /// built-in tables.
+    /// The simulation of a scene in RON, which `docs/scene.md` of the repository describes. Messages call it
+    /// `name`. Files in it must have absolute paths or be built-in tables.
     pub fn from_text(name: &str, text: &str) -> Result<Self, Error> {
         Self::build(Document::from_text(name, text, Files::default())?, &Progress::none())
     }
@@ -98,7 +106,8 @@ impl Simulation {
         Self { document, model, warnings: Vec::new() }
     }
 
-    /// The simulation with one field changed. The value is a number, or text as in a scene file.
+    /// The simulation with one field changed. The value is a number, arithmetic, or text as in a scene file,
+    /// such as `Rigid(travel_limit_mm: 4, restitution: 0.36)` for the field `stops`.
     pub fn with(&self, field: &str, value: impl Display) -> Result<Self, Error> {
         self.with_all(&[(field.to_owned(), value.to_string())])
     }
@@ -127,8 +136,12 @@ impl Simulation {
     }
 
     /// The simulation with this force curve in place of its mechanism. The fields of the mechanism are then
-    /// those of [`Pieces`](crate::scene::Mechanism::Pieces). Gives [`Error::Scene`] if the scene does not fit
-    /// the curve: its start lies beyond an end of it, or a damping ratio or a start at rest finds no well.
+    /// those of [`Pieces`](crate::scene::Mechanism::Pieces).
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Scene`] if the scene does not fit the curve: its start lies beyond an end of it, or a damping
+    /// ratio or a start at rest finds no well.
     pub fn with_force(&self, curve: &ForceCurve) -> Result<Self, Error> {
         let mut document = self.document.clone();
         document.scene.mechanism = curve.to_scene();
@@ -136,8 +149,9 @@ impl Simulation {
         Self::build(document, &Progress::none())
     }
 
-    /// The simulation with this drive in place of its excitation, such as one that
-    /// [`Excitation::from_fn`] or [`Excitation::from_samples`] makes.
+    /// The simulation with this drive in place of its excitation, such as that of the
+    /// [`PeriodicDrive`](crate::scene::PeriodicDrive) which [`Excitation::from_fn`] or
+    /// [`Excitation::from_samples`] makes.
     pub fn with_drive(&self, drive: &Excitation) -> Result<Self, Error> {
         let mut document = self.document.clone();
         document.scene.excitation = drive.clone();
@@ -153,17 +167,22 @@ impl Simulation {
     /// Runs the scene once and keeps samples and events. With `until_settled` in s, the run continues window
     /// by window until the motion repeats, at most up to that time.
     ///
-    /// Errors: [`Error::Argument`] for sample times that are not finite, lie outside the run or are too many
+    /// # Errors
+    ///
+    /// [`Error::Argument`] for sample times that are not finite, lie outside the run or are too many
     /// (at most 1e7), or for `until_settled`; [`Error::Cancelled`].
     ///
+    /// # Example
+    ///
     /// ```
-    /// use interwell_studies::questions::{Progress, Sampling, Simulation};
+    /// # use interwell_studies as interwell;
+    /// use interwell::questions::{Progress, Sampling, Simulation};
     ///
     /// let simulation = Simulation::preset("nominal-cubic")?;
     /// let recorded = simulation.record(&Sampling::Every(0.01), None, &Progress::none())?;
     /// assert_eq!(recorded.samples.rows(), 1001);
     /// assert_eq!(recorded.events.words("kind")[0], "rest");
-    /// # Ok::<(), interwell_studies::questions::Error>(())
+    /// # Ok::<(), interwell::questions::Error>(())
     /// ```
     pub fn record(
         &self,
@@ -260,7 +279,14 @@ impl Simulation {
         self.warnings.iter().cloned().chain(of_tables)
     }
 
-    /// The grid over these fields; if there are none, the grid of the scene's `sweep`.
+    /// The grid over these fields, each given by its dotted path with its values, the slowest first; if there
+    /// are none, the grid of the scene's `sweep`. Questions make it themselves; a program needs it for a
+    /// picture.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Argument`] for a field that the scene does not have, values out of its range and too many
+    /// cells (1e8); [`Error::Scene`] for cells that are no valid scene.
     pub fn grid(&self, over: &[(String, Vec<f64>)]) -> Result<Grid, Error> {
         if over.is_empty() {
             return Ok(Grid::new(self.document.axes::<&str>(&[])?)?);

@@ -13,26 +13,36 @@ use crate::study::{
 
 /// What the settled motion does in each cell of a grid over fields: one run and one row per cell.
 ///
-/// Columns: the swept fields in their own units, named by the shortest unique end of their path
+/// # Columns
+///
+/// The swept fields in their own units, named by the shortest unique end of their path
 /// (`travel_limit_mm`); with `carry` the `direction`; then `rms_velocity_m_per_s`, `regime`, `crossings`,
 /// `impacts`, `max_abs_x_m`, `period`, `outcome`, or the chosen `columns`.
 ///
 /// With `uncertain` inputs each cell is also run for draws of them from normal distributions. Column `X` of
 /// numbers is then followed by `X_low` and `X_high`, between which 95 % of the draws lie, and one of words by
 /// `X_share`, the share of the draws with the same word; the last column, `draws`, counts the draws that came
-/// to their end. Their distributions and quantiles are those of [`Draws`].
+/// to their end. A distribution is truncated to the range of its field. The k-th draw is at the same
+/// probabilities in every cell, those of ChaCha8 with the seed, so that bands are smooth along the axes. The
+/// ends of a band are quantiles with straight lines between the draws (Hyndman and Fan 1996, definition 6).
 ///
 /// With `carry` a run begins in the state of the run before at its last whole forcing period, so that walks
 /// up and down show hysteresis (Duffing 1918; for the double well Holmes 1979). The cells of a walk are run
 /// one after another, other cells in batches: 41 by 101 cells of `nominal-cubic` take 0.1 s of CPU time.
 /// Energies, `mean_x_m` and `impact_share` are slower, since they need the energy ledger.
 ///
-/// Errors: [`Error::Cells`] for the first cell that is not a valid scene or, with `carry`, whose drive does
-/// not repeat; [`Error::Argument`] for uncertain inputs that the scene does not have or that lie mostly out
-/// of their range, and for them with `carry`.
+/// # Errors
+///
+/// [`Error::Argument`] for wrong fields, `columns` or `until_settled`, for uncertain inputs that the scene
+/// does not have or that lie mostly out of their range, and for them with `carry`; [`Error::Cells`] for the
+/// first cell that is not a valid scene or, with `carry`, whose drive does not repeat. A run that ends early
+/// is no error: its `outcome` says why.
+///
+/// # Example
 ///
 /// ```
-/// use interwell_studies::questions::{Progress, Simulation, Sweep};
+/// # use interwell_studies as interwell;
+/// use interwell::questions::{Progress, Simulation, Sweep};
 ///
 /// let simulation = Simulation::preset("nominal-cubic")?;
 /// let sweep = Sweep::over("stops.travel_limit_mm", 2.0..=6.0, 3);
@@ -48,7 +58,7 @@ use crate::study::{
 ///     .map(|end| table.numbers(&format!("rms_velocity_m_per_s{end}")).unwrap());
 /// assert!((0..3).all(|row| low[row] < speed[row] && speed[row] < high[row]));
 /// assert_eq!(table.numbers("regime_share"), Some(&[1.0; 3][..]));
-/// # Ok::<(), interwell_studies::questions::Error>(())
+/// # Ok::<(), interwell::questions::Error>(())
 /// ```
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Sweep {
@@ -192,6 +202,7 @@ fn parts(input: &str) -> Result<[&str; 3], Error> {
 
 /// Gives the fields of a document the values of the uncertain inputs, and says whether there are any. The
 /// document is to be checked afterwards.
+#[doc(hidden)]
 pub fn assign(uncertain: &Uncertain, document: &mut Document) -> Result<bool, Error> {
     let mut assigned = false;
     for input in &uncertain.fields {

@@ -22,8 +22,9 @@ pub enum GridError {
 
 /// The axes of a sweep; a cell has an index, from which its place on each axis follows.
 ///
-/// The last axis changes fastest. A question makes it from its fields, `Simulation::grid` for a picture; a
-/// grid has at most 1e8 cells.
+/// The last axis changes fastest. A question makes it from its fields;
+/// [`Simulation::grid`](crate::questions::Simulation::grid) makes it for a picture. A grid has at most 1e8
+/// cells.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Grid {
     axes: Vec<Axis>,
@@ -92,17 +93,20 @@ impl Grid {
     }
 
     /// Whether the cells have different mechanisms.
+    #[doc(hidden)]
     pub fn changes_mechanism(&self) -> bool {
         self.axes.iter().any(|axis| is_of_mechanism(&axis.field))
     }
 
     /// The number of different mechanisms among the cells.
+    #[doc(hidden)]
     pub fn mechanisms(&self) -> u64 {
         let axes = self.axes.iter().filter(|axis| is_of_mechanism(&axis.field));
         axes.map(|axis| axis.values.len() as u64).product()
     }
 
     /// Which of the [`mechanisms`](Self::mechanisms) cell `index` has.
+    #[doc(hidden)]
     pub fn mechanism(&self, index: u64) -> u64 {
         let places =
             self.axes.iter().zip(self.places(index)).filter(|(axis, _)| is_of_mechanism(&axis.field));

@@ -41,7 +41,7 @@ pub struct SectionOptions {
     pub periods: Option<(u64, u64)>,
     /// Each run continues until its motion repeats, at most up to this time in s.
     pub until_settled: Option<f64>,
-    /// The last field of a grid is walked, as in a [sweep](super::SweepOptions::carry).
+    /// The last field of a grid is walked, as in a [sweep](crate::questions::Sweep::carry).
     pub carry: Option<Carry>,
 }
 

@@ -50,8 +50,8 @@ pub struct SpectrumOptions {
 
 /// A spectrum, and how it was computed. SI.
 ///
-/// It is the answer of the question `Spectrum`; [`table`](Self::table) has its lines,
-/// [`describe`](Self::describe) what it was made from in one sentence.
+/// It is the answer of the question [`Spectrum`](crate::questions::Spectrum); [`table`](Self::table) has its
+/// lines, [`describe`](Self::describe) what it was made from in one sentence.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Spectrum {
     /// `frequency_hz,amplitude,psd`, one-sided, from 0 to half the rate, with one row per line.

@@ -14,7 +14,8 @@ use crate::scene::unit_ending;
 /// The type of a column is the same in every table of a question, whatever its values are.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Values {
-    /// Real numbers. NaN and plus infinity are missing values; minus infinity is the logarithm of nothing.
+    /// Real numbers. NaN is a missing value. Infinity is one, such as the load of an open circuit; minus
+    /// infinity is an exponent where nothing is left of a perturbation.
     Numbers(Vec<f64>),
     /// Whole numbers; `None` is a missing value.
     Counts(Vec<Option<u64>>),
@@ -109,7 +110,8 @@ pub fn label_and_unit(name: &str) -> (String, &'static str) {
 }
 
 impl Column {
-    /// The unit as plain text; see [`label_and_unit`].
+    /// The unit as plain text, from the end of the name, such as `mm`; empty for a pure number, a count or a
+    /// word.
     pub fn unit(&self) -> &'static str {
         label_and_unit(&self.name).1
     }
@@ -133,7 +135,8 @@ pub fn with_unit(words: String, unit: &str) -> String {
 /// values are described at [`Values`].
 ///
 /// ```
-/// use interwell_studies::questions::{Table, Values};
+/// # use interwell_studies as interwell;
+/// use interwell::questions::{Table, Values};
 ///
 /// let positions = Values::Numbers(vec![0.5e-3, 1.0e-3]);
 /// let table = Table::new().with("x_m", positions);

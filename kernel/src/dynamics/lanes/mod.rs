@@ -57,6 +57,7 @@ impl Model {
     /// number, a model and its request. `None` means that no model is available now; with no work in
     /// progress, it means that there will be no more. `ended` gets each run with its number and model as soon
     /// as the run has ended. No CPU time is measured.
+    #[doc(hidden)]
     pub fn run_from<'q>(
         next: &mut dyn FnMut(UnderWay) -> Option<(usize, Self, Request<'q>)>,
         ended: &mut dyn FnMut(usize, &Self, Run),
@@ -70,6 +71,7 @@ impl Model {
     /// that motions that meet in one release from rest have the same continuation. The model's start and
     /// duration have no effect. Precondition: its drive [repeats](Self::repeats), and the starts lie in its
     /// curve and between its stops.
+    #[doc(hidden)]
     pub fn pursue(
         &self,
         pursuits: &[Pursuit],

@@ -1,13 +1,8 @@
 //! Live run: a motion that is changed while it runs.
 //!
-//! A [`Live`] run is the integrator of [`Model::run`] without an end. It steps ahead of the time that it has
-//! been advanced to, and its output does not depend on how often it is advanced: the steps have the same bits
-//! for any sequence of calls. The state at a time between two steps is computed by repeating the last step up
-//! to that time.
-//!
-//! A change of the model takes effect at the present time: the state is kept as far as the new stops and the
-//! new curve allow, and the drive continues in phase. Energy that a change adds or removes (a stop dragged
-//! over the mass, a new potential, a mass put elsewhere) is recorded in the ledger as moved by hand.
+//! The state at a time between two steps is computed by repeating the last step up to that time. When the
+//! model changes, the state is kept as far as the new stops and the new curve allow, and the drive continues
+//! in phase.
 
 mod kernel;
 
@@ -22,7 +17,8 @@ use kernel::{Kernel, Sums};
 /// that of [`Model::run`].
 const HORIZON_UNITS: f64 = 8_589_934_592.0;
 
-/// Samples and events of a time interval, each in order of time. The caller may drain them at any time.
+/// What [`Live::advance`] appends: samples and events of a time interval, each in order of time. The caller
+/// may drain them at any time.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct LiveOutput {
     /// The state at the requested times, and right after every change.
@@ -51,7 +47,29 @@ pub struct LiveLedger {
     pub stored_j: f64,
 }
 
-/// A run that is continued from its present state; see the module.
+/// A motion without a fixed end, whose model may be changed while it runs.
+///
+/// It is the integrator of [`Model::run`], which steps ahead of the time that it has been advanced to. Its
+/// output does not depend on how often it is advanced: the steps have the same bits for any sequence of
+/// calls. A [`change`](Self::change) of the model takes effect at the present time; energy that it adds or
+/// removes (a stop dragged over the mass, a new potential, a mass put elsewhere) is in
+/// [`LiveLedger::by_hand_j`].
+///
+/// ```
+/// # use interwell_kernel as interwell;
+/// # use interwell::{dynamics::Model, mechanics::Mechanism, scene::Document};
+/// use interwell::dynamics::{Live, LiveOutput};
+///
+/// # let document = Document::preset("nominal-cubic")?;
+/// # let mechanism = Mechanism::build(&document.scene.mechanism, &document.files)?;
+/// # let model = Model::build(&document.scene, std::sync::Arc::new(mechanism)).unwrap();
+/// let (mut live, mut output) = (Live::new(&model), LiveOutput::default());
+/// live.advance(0.1, &[0.05, 0.1], &mut output);
+/// assert_eq!(output.samples.len(), 2);
+/// live.place(0.0, 0.0, &mut output); // the mass on top of the barrier
+/// assert_eq!(live.state().x, 0.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Live {
     /// The present model, its drive shifted so that its phase is continuous through every change.

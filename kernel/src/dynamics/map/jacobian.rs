@@ -13,7 +13,8 @@ pub struct Jacobian {
     has_circuit: bool,
 }
 
-/// A complex number.
+/// An eigenvalue of a [`Jacobian`]: over a period of a motion, a Floquet multiplier, the factor by which a
+/// small change of the state grows. The motion is stable if all have a magnitude below 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Multiplier {
     /// Real part.

@@ -63,6 +63,10 @@ impl DualKernel {
 }
 
 /// The map from a state to the state one forcing period later.
+///
+/// [`Model::stroboscopic_map`] makes it. A fixed point of it, or of several applications, is a periodic
+/// orbit; its derivatives are carried through impacts and releases by saltation matrices (Müller 1995). The
+/// question `questions::Orbit` finds such points.
 #[derive(Debug)]
 pub struct StroboscopicMap<'a> {
     model: Model,

@@ -14,7 +14,7 @@ use crate::dynamics::state::{Contact, MotionState, Opening};
 use crate::dynamics::step::stepper::{ROUNDINGS, Stepper};
 use crate::numeric::{PolynomialRoots, Scalar, elementary};
 
-/// The motion between two strobes.
+/// The motion between two strobes, as [`StroboscopicMap::pass`](super::StroboscopicMap::pass) gives it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Passage {
     /// Displacement in m and velocity in m/s at the end.

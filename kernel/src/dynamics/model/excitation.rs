@@ -28,6 +28,7 @@ pub(crate) enum Rhythm {
 }
 
 /// Base acceleration in SI: the sum of a constant, tones, chirps and records.
+#[doc(hidden)]
 #[derive(Debug, Clone, Default)]
 #[non_exhaustive]
 pub struct ExcitationParts {
@@ -44,6 +45,7 @@ pub struct ExcitationParts {
 }
 
 /// amplitude sin(2 pi frequency t + phase). SI.
+#[doc(hidden)]
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct TonePart {
@@ -101,6 +103,7 @@ impl TonePart {
 }
 
 /// amplitude sin(2 pi (from t + (to - from) t^2/(2 over))), then holding `to`. SI.
+#[doc(hidden)]
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct ChirpPart {
@@ -115,6 +118,7 @@ pub struct ChirpPart {
 }
 
 /// Parameters of a noise. SI.
+#[doc(hidden)]
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct NoisePart {

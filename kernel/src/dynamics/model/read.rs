@@ -15,6 +15,7 @@ use crate::numeric::{DoubleDouble, Number, Scalar};
 use crate::scene;
 
 /// Where a run of a model begins. A model that continues a live run has this and all else from its scene.
+#[doc(hidden)]
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Beginning {
     start: MapState,
@@ -162,6 +163,7 @@ impl Model {
     }
 
     /// The excitation.
+    #[doc(hidden)]
     pub fn excitation(&self) -> &ExcitationParts {
         &self.excitation
     }
@@ -195,6 +197,7 @@ impl Model {
     }
 
     /// Where its runs begin.
+    #[doc(hidden)]
     pub fn beginning(&self) -> Beginning {
         let start = MapState { x: self.start.0, v: self.start.1, electrical: self.start_electrical };
         let phases = self.excitation.tones.iter().map(|tone| tone.phase).collect();
@@ -203,6 +206,7 @@ impl Model {
 
     /// The model of the same scene whose runs begin as those of another one.
     #[must_use]
+    #[doc(hidden)]
     pub fn begun_at(&self, beginning: &Beginning) -> Self {
         let Beginning { start, motionless, phases } = beginning;
         let mut model = Self { motionless: *motionless, start_phase: phases.1, ..self.with_start(*start) };
@@ -248,6 +252,7 @@ impl Model {
 
     /// Moves a state to between the stops, or up to `depth` into them, and into the known curve. A mass that
     /// has to be moved loses its speed.
+    #[doc(hidden)]
     pub fn held_within(&self, (x, v): (f64, f64), depth: f64) -> (f64, f64) {
         let domain = self.mechanism.curve.domain();
         let (left, right) = self.stop_positions();

@@ -75,7 +75,8 @@ const NEGLIGIBLE_SHARE: f64 = 1e-2;
 /// Share by which a coil damps the motion in a time scale, below which the coil counts as an open circuit.
 const OPEN_CIRCUIT_SHARE: f64 = 1e-9;
 
-/// Output of a transducer at an instant.
+/// Output of a transducer at an instant; [`Model::output`](crate::dynamics::Model::output) gives that of a
+/// sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Output {

@@ -5,6 +5,7 @@ use super::summary::Summary;
 
 /// An ellipse, beside a circuit an ellipsoid, around a stroboscopic state of a known motion. Motions inside
 /// it are known to go to that motion.
+#[doc(hidden)]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Capture {
     /// The state of the known motion.
@@ -37,6 +38,7 @@ impl Capture {
 }
 
 /// A set of cells of the plane of stroboscopic states that motions are known not to leave.
+#[doc(hidden)]
 #[derive(Debug, Clone, PartialEq)]
 pub struct Region {
     /// Displacement in m and velocity in m/s at the lower left corner of the cell (0, 0).
@@ -62,6 +64,7 @@ impl Region {
 
 /// Identity of a release from rest on a rigid stop, known from the drive alone. Motions of one scene that
 /// were released with equal identities are equal from then on, to the last bit.
+#[doc(hidden)]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ReleaseIdentity {
     /// The stop that the mass left.
@@ -73,6 +76,7 @@ pub struct ReleaseIdentity {
 }
 
 /// Start and termination criteria of a pursuit.
+#[doc(hidden)]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pursuit<'a> {
     /// The state at time 0.
@@ -97,6 +101,7 @@ impl Pursuit<'_> {
 }
 
 /// Result of a pursuit.
+#[doc(hidden)]
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pursued {
     /// What ended it.
@@ -109,6 +114,7 @@ pub struct Pursued {
 
 /// What ended a pursuit. `periods` is the number of the first stroboscopic state after it; the start has the
 /// number 0.
+#[doc(hidden)]
 #[derive(Debug, Clone, PartialEq)]
 pub enum Arrival {
     /// A known motion.

@@ -6,14 +6,14 @@ use serde::{Deserialize, Serialize};
 ///
 /// The verdict is that of the settled window alone: a mass that crosses during the transient and then stays
 /// in one well is intrawell. Under a drive that repeats, crossings repeat if the states once a forcing period
-/// do.
+/// do, or their own instants to a hundredth of a period.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Regime {
     /// The mass never left the stop or the equilibrium.
     Rest,
     /// The mass moved without crossing the barrier.
     Intrawell,
-    /// The mass crosses, and the crossings repeat with a period of at most 12 forcing periods.
+    /// The mass crosses, and the crossings repeat after at most 12 forcing periods.
     Interwell,
     /// The mass crosses without such a period.
     Irregular,

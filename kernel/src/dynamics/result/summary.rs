@@ -5,6 +5,10 @@ use serde::{Deserialize, Serialize};
 use super::outcome::{Outcome, Place, Regime};
 
 /// Energy balance over the whole run, each term integrated separately.
+///
+/// A run has it if [`Request::ledger`](super::Request::ledger) asks for it.
+/// [`energy_residual`](Self::energy_residual) is a check of the accuracy: it is of the size of the tolerance,
+/// and a run in which it is not ends with [`Outcome::Inaccurate`](super::Outcome::Inaccurate).
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Ledger {
@@ -71,10 +75,11 @@ pub struct Firsts {
 /// [`outcome`](Self::outcome) says. Energies are in the ledger, which a [`Request`](super::Request) asks for.
 ///
 /// ```
+/// # use interwell_kernel as interwell;
 /// use std::sync::Arc;
-/// use interwell_kernel::dynamics::{Model, Outcome, Request};
-/// use interwell_kernel::mechanics::Mechanism;
-/// use interwell_kernel::scene::Document;
+/// use interwell::dynamics::{Model, Outcome, Request};
+/// use interwell::mechanics::Mechanism;
+/// use interwell::scene::Document;
 ///
 /// let document = Document::preset("nominal-cubic")?;
 /// let mechanism = Mechanism::build(&document.scene.mechanism, &document.files).unwrap();
@@ -83,7 +88,7 @@ pub struct Firsts {
 /// assert_eq!(summary.outcome, Outcome::Done);
 /// // what the base does is lost in impacts and damping, or kept
 /// assert!(summary.ledger.unwrap().energy_residual < 1e-9);
-/// # Ok::<(), interwell_kernel::scene::SceneError>(())
+/// # Ok::<(), interwell::scene::SceneError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]

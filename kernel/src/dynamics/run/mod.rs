@@ -40,6 +40,7 @@ impl Model {
 
     /// Cost of a step of free flight at a tolerance, and the part of it due to the excitation, in units
     /// of work.
+    #[doc(hidden)]
     pub fn cost_of_a_step(&self, tolerance: f64) -> (u64, u64) {
         let Kernel { equation, drive, .. } = Kernel::<f64>::new(self);
         let order = Settings::<f64>::new(self, equation.unit, tolerance).order;

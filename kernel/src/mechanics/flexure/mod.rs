@@ -53,6 +53,9 @@ pub struct Group {
 }
 
 /// The geometry and material of a mechanism, in SI.
+///
+/// [`Flexures::solve`] makes a force curve of it. A scene has it in mm and GPa, as
+/// [`Flexures`](crate::scene::Mechanism::Flexures).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Geometry {
     /// Axial distance in m by which the two groups are pushed together from their stress-free lengths.
@@ -158,6 +161,9 @@ pub struct State {
 }
 
 /// A solved mechanism: the states that its force curve was computed from.
+///
+/// [`Mechanism::flexures`](super::Mechanism::flexures) has it for a scene with flexures;
+/// [`state`](Self::state) solves the shape and the stress at one displacement.
 #[derive(Debug, Clone)]
 pub struct Flexures {
     geometry: Geometry,
@@ -243,6 +249,10 @@ impl Flexures {
     }
 
     /// Solves the mechanism held at `x` in m, within the domain of the curve.
+    ///
+    /// # Errors
+    ///
+    /// [`FlexureError`] if there is no stable state of the branch at `x`, or it is not found.
     pub fn state(&self, x: f64) -> Result<State, FlexureError> {
         let mut solver = self.solver.clone();
         solver.tail = FINE_TAIL;

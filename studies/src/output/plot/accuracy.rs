@@ -21,6 +21,7 @@ const LEAST: f64 = 1e-17;
 
 /// The picture of a table as [`work_table`](crate::study::accuracy::Report::work_table) gives it, and its
 /// caption.
+#[doc(hidden)]
 pub fn accuracy_chart(table: &Table, version: &str) -> (Chart, Caption) {
     let (problems, methods) = (table.words("case"), table.words("method"));
     let column = |name: &str| table.numbers(name).unwrap_or_default();
@@ -78,6 +79,7 @@ const LEAST_SHARE: f64 = 1e-16;
 /// The picture of the accuracy of one scene of this `tolerance`, with stops in m, NaN where there is none:
 /// its error over processor time at several tolerances, and beside it each run in fixed steps over the true
 /// one.
+#[doc(hidden)]
 pub fn scene_accuracy_chart(
     known: &Tolerances,
     tolerance: f64,
@@ -108,6 +110,7 @@ pub fn scene_accuracy_chart(
 
 /// Error over processor time, of each run by its tolerance, and of those in fixed steps that reached their
 /// end.
+#[doc(hidden)]
 pub fn cost_panel(known: &Tolerances, tolerance: f64, stepped: &[StepSize]) -> Panel {
     let least = LEAST_SHARE * known.travel.max(f64::MIN_POSITIVE);
     let point = |time: f64, error: f64| (time.max(1e-9), 1e3 * error.max(least));
@@ -140,6 +143,7 @@ fn in_steps(run: &StepSize) -> String {
 }
 
 /// A run in fixed steps over the true one, with stops in m; `place` is that among several.
+#[doc(hidden)]
 pub fn steps_panel(run: &StepSize, place: usize, stops: (f64, f64)) -> Panel {
     let path = |points: &[Point]| points.iter().map(|(t, x)| (*t, x * 1e3)).collect::<Vec<_>>();
     let (truth, stepped) = (path(&run.truth), path(&run.ghost));

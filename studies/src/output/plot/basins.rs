@@ -14,12 +14,14 @@ use crate::study::{Answer, Attractor, Basins, Edges, Shares, Starts, Table};
 const MAX_NAMED: usize = 9;
 
 /// Whether a map of these starts can be drawn.
+#[doc(hidden)]
 pub fn can_show_starts(starts: &Starts) -> Result<(), NoPicture> {
     let count = starts.count() as u64;
     if count > MAX_PICTURE_CELLS { Err(NoPicture::Starts(count)) } else { Ok(()) }
 }
 
-/// The picture of a map that may be incomplete.
+/// The picture of a map of basins, of the fields of a [`BasinsAnswer`](crate::questions::BasinsAnswer), or of
+/// a map that is still incomplete.
 pub fn basins_chart(basins: &Basins, answer: &Answer) -> Chart {
     let starts = basins.starts();
     let all = || (0..starts.count()).map(|row| starts.at(row));

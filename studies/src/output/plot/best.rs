@@ -20,6 +20,8 @@ const BROKEN: &str = "a constraint broken";
 /// over two a map of the scan with the further designs in the colours of their values, over more the values
 /// in the order in which they were tried. The design that was found is marked, and designs that break a
 /// constraint are crossed.
+///
+/// `question` and `design` are the fields of a [`BestAnswer`](crate::questions::BestAnswer).
 pub fn best_chart(question: &BestQuestion, design: &BestDesign, ranges: Ranges) -> Chart {
     let shown = Shown::new(question, design, ranges);
     let panel = match question.over.len() {

@@ -13,7 +13,8 @@ use super::role::Role;
 use crate::mechanics::{Equilibrium, Landscape};
 use crate::study::Table;
 
-/// A picture as data.
+/// A picture as data: panels with axes and layers, without pixels and colours. [`figure`](Self::figure) lays
+/// it out.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Chart {
     /// The columns of panels, side by side; on a narrow canvas they are stacked.

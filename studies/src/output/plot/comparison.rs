@@ -89,6 +89,7 @@ impl Shown {
 }
 
 /// A number rounded to three digits, as text without zeros at its end.
+#[doc(hidden)]
 pub fn three_digits(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return short(value);
@@ -97,7 +98,8 @@ pub fn three_digits(value: f64) -> String {
     short((value / digit).round() * digit)
 }
 
-/// The picture of a comparison of scenes, one row each, under a drive of this frequency in Hz.
+/// The picture of a comparison of scenes, one row each, under a drive of this frequency in Hz, of the fields
+/// of a [`CompareAnswer`](crate::questions::CompareAnswer).
 pub fn comparison_chart(rated: &[Rated], frequency_hz: f64) -> Chart {
     let shown = shown(rated, frequency_hz);
     let count = shown.len().div_ceil(shown.len().div_ceil(COLUMNS).max(1)).max(1);

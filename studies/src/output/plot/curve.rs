@@ -12,8 +12,9 @@ use crate::numeric::round::decade;
 use crate::numeric::{elementary, extent, short};
 use crate::study::{Table, yield_speed};
 
-/// The picture of the curve in `table` (as [`curve`](crate::study::curve) gives it), with stops at these
-/// positions in m, NaN where there is none. `ranges` are those of displacement and force.
+/// The picture of the force curve of a mechanism with its potential, from the `table` of
+/// [`Curve`](crate::questions::Curve), with stops at these positions in m, NaN where there is none. `ranges`
+/// are those of displacement and force.
 pub fn curve_chart(table: &Table, mechanism: &Mechanism, stops: (f64, f64), ranges: Ranges) -> Chart {
     let column = |name: &str| table.numbers(name).unwrap_or_default();
     let x: Vec<f64> = column("x_m").iter().map(|x| x * 1e3).collect();
@@ -50,6 +51,7 @@ pub fn curve_chart(table: &Table, mechanism: &Mechanism, stops: (f64, f64), rang
 
 /// The potential in J from which the energy of the mass is counted: of the deepest well, or else of the lower
 /// of the stops at these positions in m, NaN where there is none, or else 0. Beside it the name of an axis.
+#[doc(hidden)]
 pub fn zero_of_energy(mechanism: &Mechanism, stops: (f64, f64)) -> (f64, &'static str) {
     let lowest = |places: &mut dyn Iterator<Item = f64>| {
         places.map(|x| mechanism.curve.potential(x)).filter(|joule| joule.is_finite()).reduce(f64::min)
@@ -64,6 +66,7 @@ pub fn zero_of_energy(mechanism: &Mechanism, stops: (f64, f64)) -> (f64, &'stati
 
 /// Panel of the holding force over displacement in mm, with `per_newton` units of the axis per N: stops in
 /// mm, kinks, equilibria, and the curve with its name and points.
+#[doc(hidden)]
 pub fn force_panel(
     mechanism: &Mechanism,
     axes: (PlotAxis, PlotAxis),
@@ -160,8 +163,8 @@ pub(super) fn telling(points: &[Point], ends: Option<(f64, f64)>) -> (f64, f64) 
     if more > 0.0 { (low.max(inner_low - more), high.min(inner_high + more)) } else { (low, high) }
 }
 
-/// The picture of restitution over impact speed, beside a rigid stop's constant, from `table` (as
-/// [`contact`](crate::study::contact) gives it), for `stop` and a mass in kg.
+/// The picture of restitution over impact speed, beside a rigid stop's constant, from the `table` of
+/// [`Simulation::impact`](crate::questions::Simulation::impact), for `stop` and a mass in kg.
 pub fn contact_chart(table: &Table, stop: &Hertz, mass: f64) -> Chart {
     let names = ["speed_m_per_s", "restitution", "rigid_restitution"];
     let [speeds, compliant, rigid] = names.map(|name| table.numbers(name).unwrap_or_default());

@@ -180,7 +180,7 @@ pub enum Shape {
     Text(Text),
 }
 
-/// A picture.
+/// A picture laid out as plain shapes, which [`Format::bytes`](super::Format::bytes) paints.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Figure {
     /// The shapes in the order in which they are painted.

@@ -41,12 +41,14 @@ pub struct Letter {
 }
 
 /// The font files of pictures and of the window: the regular and the heavier weight.
+#[doc(hidden)]
 pub static INTER: [&[u8]; 2] = [
     include_bytes!("../../../assets/fonts/Inter-Regular.ttf"),
     include_bytes!("../../../assets/fonts/Inter-SemiBold.ttf"),
 ];
 
 /// The font file of code in the window, and of letters that [`INTER`] lacks.
+#[doc(hidden)]
 pub static HACK: &[u8] = include_bytes!("../../../assets/fonts/Hack-Regular.ttf");
 
 impl Face {

@@ -8,6 +8,7 @@ use crate::dynamics::LiveLedger;
 use crate::numeric::{decimals, elementary, extent};
 
 /// A row of a ledger.
+#[doc(hidden)]
 #[derive(Debug, Clone, Copy)]
 pub struct LedgerTerm {
     /// Its name.
@@ -51,6 +52,7 @@ const ROOM: f64 = 0.45;
 
 /// Decimals of all numbers of a ledger: three, or one if any number has three digits before the point, or
 /// where all are small as many as give the largest three digits, but no more than five.
+#[doc(hidden)]
 pub fn ledger_decimals(ledger: &LiveLedger, unit: f64) -> usize {
     let largest = LedgerTerm::ALL.iter().map(|term| (term.energy)(ledger).abs()).fold(0.0, f64::max) / unit;
     match largest {
@@ -65,6 +67,7 @@ fn is_nothing(joule: f64, unit: f64, decimals: usize) -> bool {
 }
 
 /// An energy of a ledger as text with its sign, in the given unit in J.
+#[doc(hidden)]
 pub fn ledger_number(joule: f64, unit: f64, decimals: usize) -> String {
     match is_nothing(joule, unit, decimals) {
         true => format!("{:.decimals$}", 0.0),
@@ -74,6 +77,7 @@ pub fn ledger_number(joule: f64, unit: f64, decimals: usize) -> String {
 
 /// What was taken as a share of the work of the base, in whole percent; `None` for what was put in, and where
 /// there is no work or the energy rounds to nothing.
+#[doc(hidden)]
 pub fn share_of_work(joule: f64, ledger: &LiveLedger, (unit, decimals): (f64, usize)) -> Option<String> {
     let share = -100.0 * joule / ledger.work_j;
     let is_taken = ledger.work_j > 0.0 && joule < 0.0 && !is_nothing(joule, unit, decimals);
@@ -82,6 +86,7 @@ pub fn share_of_work(joule: f64, ledger: &LiveLedger, (unit, decimals): (f64, us
 
 /// The bars of these rows of a ledger in a unit in J, without their numbers, and beside them those of other
 /// motions by the places of their letters. The axis of the energy reaches to `largest` in J both ways.
+#[doc(hidden)]
 pub fn ledger_bars(
     terms: &[LedgerTerm],
     ledger: &LiveLedger,

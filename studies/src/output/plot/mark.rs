@@ -122,7 +122,9 @@ pub fn mark(figure: &mut Figure, look: &Look, at: Point, size: f64, theme: &Them
 }
 
 /// Captions of a picture.
-#[derive(Debug, Clone, PartialEq)]
+///
+/// [`Chart::figure`](super::Chart::figure) takes it.
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Caption {
     /// Over it: the scene's title.
     pub title: String,

@@ -31,6 +31,7 @@ const TURNS: usize = 14;
 
 /// Whether the force of a mechanism without its springs and magnets depends on the displacement between these
 /// ends in m.
+#[doc(hidden)]
 pub fn depends_on_place(mechanism: &Mechanism, (low, high): (f64, f64)) -> bool {
     let depends = |part: &&Mechanism| {
         let forces = [0.0, 0.21, 0.5, 0.83, 1.0].map(|share| {
@@ -44,6 +45,10 @@ pub fn depends_on_place(mechanism: &Mechanism, (low, high): (f64, f64)) -> bool 
 
 /// The picture of the mechanism of a model with the mass at `x` in m. Flexures have their true shape; mass,
 /// stops and the parts beside them are not to scale.
+///
+/// # Errors
+///
+/// If the flexures have no solution at `x`.
 pub fn mechanism_chart(model: &Model, x: f64) -> Result<Chart, StatesError> {
     let mechanism = model.mechanism();
     let task = Task { tick: &|| (), cancel: &AtomicBool::new(false) };

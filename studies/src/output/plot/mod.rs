@@ -109,12 +109,20 @@ pub struct UnknownFormat;
 
 impl Format {
     /// The format for the ending of a file name.
+    ///
+    /// # Errors
+    ///
+    /// [`UnknownFormat`] for any other ending.
     pub fn of(path: &Path) -> Result<Self, UnknownFormat> {
         let ending = path.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
         ending.and_then(|ending| Self::named(&ending)).ok_or(UnknownFormat)
     }
 
     /// The picture as a file of this kind.
+    ///
+    /// # Errors
+    ///
+    /// [`PaintError`] for PNG, if its pixels do not fit into memory or a file.
     pub fn bytes(self, figure: &Figure) -> Result<Vec<u8>, PaintError> {
         match self {
             Self::Png => png::png(figure),

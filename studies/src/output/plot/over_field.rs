@@ -12,6 +12,7 @@ use crate::scene::Scene;
 use crate::study::{EscapeOptions, Grid, Table, Until};
 
 /// Checks that `what` can be shown over the field of this grid.
+#[doc(hidden)]
 pub fn can_show_over_field(grid: &Grid, what: &'static str) -> Result<(), NoPicture> {
     match grid.axes().len() {
         1 if grid.cells() > MAX_PICTURE_CELLS => Err(NoPicture::Cells(grid.cells())),
@@ -22,6 +23,7 @@ pub fn can_show_over_field(grid: &Grid, what: &'static str) -> Result<(), NoPict
 
 /// The rate of escape over the field of the grid with its interval, on a logarithmic axis in 1/s, beside
 /// Kramers' rate; from all rows.
+#[doc(hidden)]
 pub fn escape_chart(
     rows: &Table,
     grid: &Grid,
@@ -67,6 +69,10 @@ pub fn escape_chart(
 }
 
 /// Both Lyapunov exponents over the field of the grid, each with its standard error as a band; from all rows.
+///
+/// # Errors
+///
+/// [`NoPicture::OneField`] unless the grid has one field.
 pub fn exponents_chart(rows: &Table, grid: &Grid, scene: &Scene, ranges: Ranges) -> Result<Chart, NoPicture> {
     can_show_over_field(grid, "exponents")?;
     let x = grid.columns()[0].as_str();

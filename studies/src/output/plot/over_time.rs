@@ -7,6 +7,7 @@ use super::role::Role;
 use super::run::RunPanel;
 
 /// Events and positions that a panel over time shows in addition to the values. Unknown numbers are NaN.
+#[doc(hidden)]
 #[derive(Debug, Clone, PartialEq)]
 pub struct OverTime {
     /// The axis of time in s.

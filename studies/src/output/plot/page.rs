@@ -108,6 +108,7 @@ impl Lines {
 }
 
 /// Margins in a pane of the window whose pictures are aligned one above the other.
+#[doc(hidden)]
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Room {
     /// From the left edge to the frames, independent of their numbers.

@@ -13,6 +13,7 @@ const POINTS: usize = 400;
 
 /// A phase portrait of a mass in kg over these axes, of displacement in mm and of velocity, of which
 /// `per_speed` units are a m/s: its stops in mm, the separatrix, the layers of a motion, and the equilibria.
+#[doc(hidden)]
 pub fn portrait_panel(
     (mechanism, mass): (&Mechanism, f64),
     (x, y): (PlotAxis, PlotAxis),

@@ -20,6 +20,7 @@ pub type BoxPlace = (f64, f64, f64);
 pub type BoxLine = (BoxPlace, BoxPlace);
 
 /// A rectangle that a box in projection fills.
+#[doc(hidden)]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Projection {
     /// Left edge.

@@ -13,6 +13,7 @@ use crate::study::{Grid, RMS_VELOCITY, Read, SummaryField, Table, Values, label_
 pub const RMS: &str = RMS_VELOCITY.name;
 
 /// The words that the column called `name` can have, in the order of their colours; `None` for numbers.
+#[doc(hidden)]
 pub fn words_of(name: &str) -> Option<&'static [&'static str]> {
     let words: &[&str] = match name {
         "outcome" => &[
@@ -179,6 +180,7 @@ const MILLIWATTS: std::ops::Range<f64> = 1e-5..1.0;
 
 /// The factor from the SI unit `unit` to a unit in which these values are short numbers, and its name.
 /// Lengths and speeds below 2 are shown in thousandths.
+#[doc(hidden)]
 pub fn suited_unit(unit: &'static str, values: impl Iterator<Item = f64>) -> (f64, &'static str) {
     let finite = values.filter(|value| value.is_finite());
     let greatest = finite.fold(0.0_f64, |greatest, value| greatest.max(value.abs()));

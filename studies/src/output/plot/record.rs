@@ -65,6 +65,9 @@ struct RecordPicture {
 
 /// The picture of what was identified `of` a record, from the two columns that it was identified from in SI,
 /// the second one of this quantity; of impact times alone there is one column.
+///
+/// `of` is the name of the quantity; the others are fields of an
+/// [`IdentifyAnswer`](crate::questions::IdentifyAnswer).
 pub fn identified_chart(
     of: &str,
     found: &Identified,
@@ -130,6 +133,7 @@ pub fn identified_chart(
 }
 
 /// The picture of a measured force over the computed curve, of which `curve` is the table.
+#[doc(hidden)]
 pub fn measured_force_chart(found: &ForceComparison, curve: &Table, ranges: Ranges) -> Chart {
     let (scale, up, unit) = axis_of(Quantity::Force, &found.measured);
     let mm = |values: &[f64]| -> Vec<Point> {
@@ -316,6 +320,7 @@ fn parted(record: &[Point]) -> Vec<Point> {
 
 /// The picture of a run from its trace, with the measured values of this quantity over it; `inset` are the
 /// times in s that a second panel shows closer, `ranges` those of the first.
+#[doc(hidden)]
 pub fn measured_chart(
     trace: &Trace,
     (found, quantity): (&Comparison, Quantity),

@@ -135,6 +135,7 @@ const PINS: [(f64, f64); 3] = [(36.0, 14.0), (4.5, 9.0), (14.0, 9.0)];
 const FAINTEST: f64 = 0.12;
 
 /// How a role looks.
+#[doc(hidden)]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Look {
     /// Colour.

@@ -21,6 +21,7 @@ use crate::study::{Table, Trace, words};
 
 words! {
     /// A panel of the picture of a run, in the order in which they stand.
+    #[doc(hidden)]
     RunPanel {
         /// Displacement over time.
         Displacement = "displacement",
@@ -51,6 +52,7 @@ impl RunPanel {
 
 /// The picture of a run from its trace and its summary, of a mass in kg, with these panels. The trace says
 /// which times it shows; `ranges` may give the axis of the displacement, in mm.
+#[doc(hidden)]
 pub fn run_chart(
     trace: &Trace,
     summary: &Summary,

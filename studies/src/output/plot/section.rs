@@ -10,9 +10,9 @@ use super::swept::label;
 use crate::numeric::short;
 use crate::study::{DIRECTION, Direction, Grid, IMPACTS, Table, Values};
 
-/// The picture of a section from all of its rows: a single one, or those `over` the field of a grid. The
-/// states are at the phase `phase_deg` of the drive in degrees; without it the rows are impacts. `stops` are
-/// positions in m, where they are the same for all rows.
+/// The picture of the answer of a [`Section`](crate::questions::Section), a single one or that `over` the
+/// field of a grid. The states are at the phase `phase_deg` of the drive in degrees; without it the rows are
+/// impacts. `stops` are positions in m, where they are the same for all rows.
 pub fn section_chart(
     rows: &Table,
     over: Option<&Grid>,

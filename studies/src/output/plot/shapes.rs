@@ -14,8 +14,9 @@ use crate::study::Table;
 /// Number of states up to which each has a name in the legend; of more the first and the last have one.
 const NAMED: usize = 6;
 
-/// The picture of these states of the flexures of a mechanism, with stops at these positions in m, NaN where
-/// there is none.
+/// The picture of these states of the flexures of a mechanism, as in a
+/// [`FlexuresAnswer`](crate::questions::FlexuresAnswer), with stops at these positions in m, NaN where there
+/// is none.
 pub fn shapes_chart(states: &[State], mechanism: &Mechanism, stops: (f64, f64)) -> Chart {
     let point = |[_, along, across]: &[f64; 3]| (across * 1e3, along * 1e3);
     let lines = |state: &State| -> Vec<Vec<Point>> {

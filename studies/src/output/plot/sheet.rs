@@ -8,6 +8,8 @@ use super::style::{SIZE, TICK};
 const MM_A_POINT: f64 = 25.4 / 72.0;
 
 /// A picture of a given width on paper.
+///
+/// It is a part of a [`Theme`](super::Theme): [`Theme::of`](super::Theme::of) takes it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Sheet {
     /// Width in mm.
@@ -51,6 +53,10 @@ pub struct SheetError {
 
 impl Sheet {
     /// Parses a sheet; `has_pixels` says whether the file format has pixels.
+    ///
+    /// # Errors
+    ///
+    /// [`SheetError`] with the part that is no number or out of its range, and the range.
     pub fn read(text: &SheetText<'_>, has_pixels: bool) -> Result<Self, SheetError> {
         let error = |option, value: &str, problem| SheetError { option, value: value.to_owned(), problem };
         let within = |option, text: &str, (least, most): (f64, f64), what: &str, example: &str| {

@@ -36,6 +36,7 @@ pub const SUBTITLE: f64 = 28.0;
 /// Labels of axes.
 pub const AXIS: f64 = 29.0;
 /// Numbers at ticks, and legends.
+#[doc(hidden)]
 pub const TICK: f64 = 26.0;
 /// The footer.
 pub const FOOTER: f64 = 20.0;
@@ -65,6 +66,7 @@ pub const SHORT_DASH: (f64, f64) = (9.0, 7.0);
 pub const DOT: (f64, f64) = (3.0, 7.0);
 
 /// Whether a line of this width belongs to a frame, a grid or a hatching.
+#[doc(hidden)]
 pub fn is_fine(width: f64) -> bool {
     width == FRAME || width < THIN
 }
@@ -197,12 +199,14 @@ pub fn kind_hatch(place: usize) -> Option<Ink> {
 /// White, for lines over a map in both themes.
 pub const WHITE: Ink = Ink(0xff, 0xff, 0xff);
 /// Black, for outlines over a map.
+#[doc(hidden)]
 pub const BLACK: Ink = Ink(0, 0, 0);
 /// Interwell motion over a map.
 pub const OVER_MAP: Ink = VERMILION;
 
 /// The colour of `share` from 0 to 1 on the map's scale: viridis (van der Walt and Smith 2015), whose
 /// lightness increases evenly, so that it can be read with any colour blindness and in black and white.
+#[doc(hidden)]
 pub fn viridis(share: f64) -> Ink {
     const STOPS: [Ink; 16] = [
         Ink(0x44, 0x01, 0x54),

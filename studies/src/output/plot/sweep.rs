@@ -15,7 +15,7 @@ use crate::study::{DIRECTION, Direction, Grid, SUMMARY_FIELDS, Table};
 /// Largest number of cells in a picture: more than its pixels can distinguish.
 pub const MAX_PICTURE_CELLS: u64 = 500_000;
 
-/// Why a sweep has no picture.
+/// Why a table has no picture. The messages are those of the command line and name its options.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum NoPicture {
     /// Neither a line nor a map.
@@ -71,6 +71,7 @@ pub enum NoPicture {
 
 /// Checks that the column that a person calls `quantity`, of a sweep of this grid, can be shown in this way,
 /// and returns its full name; `table` is that of its rows, which may still be empty.
+#[doc(hidden)]
 pub fn can_show<'a>(
     grid: &'a Grid,
     quantity: &str,
@@ -123,6 +124,12 @@ const VISIBLE: f64 = 2e-3;
 
 /// The picture of a sweep: a line over one field; over two fields a map, or one line per value of a field
 /// with few values.
+///
+/// # Errors
+///
+/// [`NoPicture::Fields`] over more than two fields, [`NoPicture::Cells`] for more cells than a picture can
+/// show, [`NoPicture::Quantity`] for a column that is not there or has no picture, and the others for rows
+/// of another sweep and for a surface or cuts that the map does not allow.
 pub fn sweep_chart(picture: &SweepPicture) -> Result<Chart, NoPicture> {
     let SweepPicture { rows, grid, scene, until_settled, .. } = *picture;
     let quantity = can_show(grid, picture.quantity, &picture.view, rows)?;
@@ -180,6 +187,7 @@ pub(super) fn distinct(values: &[f64]) -> Vec<f64> {
 
 /// A description of the runs in one line, with the directions in which they were `walked`, if each continued
 /// from the one before, and the time in s up to which runs continued until they repeat, if they did.
+#[doc(hidden)]
 pub fn sweep_about(grid: &Grid, scene: &Scene, walked: &[Direction], until_settled: Option<f64>) -> String {
     let lengths = grid.axes().iter().map(|axis| axis.values.len());
     let counts = Some(walked.len()).filter(|ways| *ways > 1).into_iter().chain(lengths);

@@ -54,7 +54,7 @@ pub struct Cut {
     pub value: f64,
 }
 
-/// The data of the picture of a sweep.
+/// The data of the picture of a sweep, which [`sweep_chart`](super::sweep_chart) draws.
 #[derive(Debug, Clone)]
 pub struct SweepPicture<'a> {
     /// All rows.
@@ -73,7 +73,7 @@ pub struct SweepPicture<'a> {
     pub view: View,
     /// Ranges of the axes of the fields and, over one field, of the vertical axis.
     pub ranges: Ranges,
-    /// [What the bands are](crate::study::Draws::about); empty if there are none.
+    /// What the bands are, in one sentence; empty if there are none.
     pub draws: &'a str,
 }
 

@@ -16,6 +16,7 @@ use crate::study::{Grid, Onset, Table, Values};
 const MELNIKOV: [&str; 3] = ["melnikov_g", "melnikov_m_per_s2", "melnikov_n"];
 
 /// Whether thresholds over this grid can be shown.
+#[doc(hidden)]
 pub fn can_show_thresholds(grid: &Grid) -> Result<(), NoPicture> {
     match grid.axes().len() {
         0 => Err(NoPicture::SingleThreshold),
@@ -25,9 +26,12 @@ pub fn can_show_thresholds(grid: &Grid) -> Result<(), NoPicture> {
 }
 
 /// The picture of the thresholds of a `field`, given by its dotted path, from the rows of
-/// [`threshold_table`](crate::study::threshold_table): a line over one field; over two fields one line per
-/// value of a field with few values, otherwise a map. Over one field the vertical axis is that of the
-/// threshold.
+/// [`Threshold`](crate::questions::Threshold): a line over one field; over two fields one line per value of a
+/// field with few values, otherwise a map. Over one field the vertical axis is that of the threshold.
+///
+/// # Errors
+///
+/// [`NoPicture::SingleThreshold`] without a grid, [`NoPicture::Fields`] over more than two fields.
 pub fn threshold_chart(
     rows: &Table,
     grid: &Grid,

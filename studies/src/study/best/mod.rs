@@ -83,6 +83,7 @@ pub struct Variation {
 }
 
 /// A search for the best design.
+#[doc(hidden)]
 #[derive(Debug, Clone)]
 pub struct BestQuestion {
     /// The fields of the design, 1 to 4.
@@ -120,7 +121,7 @@ pub struct Optimum {
     pub of_each: Vec<f64>,
 }
 
-/// A design that was tried.
+/// A design that was tried, one of [`BestDesign::tried`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Tried {
     /// The fields' values.
@@ -132,7 +133,8 @@ pub struct Tried {
     pub keeps: bool,
 }
 
-/// The value under variation. NaN if a sample has no value.
+/// The maximised value under variation: over 200 random samples of the fields with manufacturing tolerances.
+/// NaN if a sample has no value.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Spread {
     /// The worst of the samples.

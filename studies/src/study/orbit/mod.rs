@@ -55,9 +55,9 @@ const TOLERANCE: f64 = 1e-14;
 
 /// A periodic orbit.
 ///
-/// It is the answer of the question `Orbit`, and a point of a branch. Its state is in m and m/s, that of a
-/// circuit in A or V. [`multipliers`](Self::multipliers) are the eigenvalues of its Jacobian: it is stable if
-/// all lie within the unit circle.
+/// It is the answer of the question [`Orbit`](crate::questions::Orbit), and a point of a branch. Its state is
+/// in m and m/s, that of a circuit in A or V. [`multipliers`](Self::multipliers) are the eigenvalues of its
+/// Jacobian: it is stable if all lie within the unit circle.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Orbit {
@@ -360,8 +360,8 @@ words! {
 
 /// A branch: its orbits in order, each with the value of the field and an event, if any.
 ///
-/// It is the answer of the question `Branch`. Values are in the unit of the field; around a fold they turn
-/// back.
+/// It is the answer of the question [`Branch`](crate::questions::Branch). Values are in the unit of the
+/// field; around a fold they turn back.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Branch {
@@ -391,7 +391,7 @@ impl Branch {
         }
     }
 
-    /// One row per orbit: the field, the columns of [`orbit_table`](super::orbit_table), and `event`.
+    /// One row per orbit: the field, the columns of [`Orbit`](crate::questions::Orbit), and `event`.
     pub fn table(&self) -> Table {
         let column = column_names(&[&self.field]).concat();
         let table = Table::new().with(column, self.values.iter().copied().collect());

@@ -52,7 +52,8 @@ words! {
 
 /// A locus over two fields: its orbits in order, each with both values and an event, if any.
 ///
-/// It is a part of the answer of the question `Locus`. Values are in the units of the fields.
+/// It is a part of the answer of the question [`Locus`](crate::questions::Locus). Values are in the units of
+/// the fields.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Locus {
