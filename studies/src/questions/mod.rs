@@ -21,6 +21,7 @@
 //! | [`Spectrum`] | which frequencies the motion holds | [`SpectrumAnswer`] |
 //! | [`Basins`] | which attractor each start goes to, and the share of each | [`BasinsAnswer`] |
 //! | [`Compare`] | how designs rate under one sine | [`CompareAnswer`] |
+//! | [`Distance`] | how far the motions of other scenes are from this one, over time | [`DistanceAnswer`] |
 //! | [`Best`] | which design is the best for an environment, and with which margins | [`BestAnswer`] |
 //! | [`Identify`] | damping, restitution or force of a measured record | [`IdentifyAnswer`] |
 //!
@@ -61,6 +62,7 @@
 
 mod compare;
 mod design;
+mod distance;
 mod error;
 mod escape;
 mod grid;
@@ -74,6 +76,7 @@ mod sweep;
 
 pub use compare::{Compare, CompareAnswer};
 pub use design::{Best, BestAnswer};
+pub use distance::{Distance, DistanceAnswer};
 pub use error::{Error, FaultAt};
 pub use escape::{Escape, ProbableThreshold};
 pub use grid::{Exponents, Section, Threshold};

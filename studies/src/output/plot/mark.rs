@@ -122,7 +122,7 @@ pub fn mark(figure: &mut Figure, look: &Look, at: Point, size: f64, theme: &Them
 }
 
 /// Captions of a picture.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Caption {
     /// Over it: the scene's title.
     pub title: String,
@@ -146,6 +146,16 @@ impl Caption {
         let mut footer = format!("interwell {version}{PART}{name}{PART}tolerance {:e}", scene.run.tolerance);
         document.changes().for_each(|change| footer += &format!("{PART}{change}"));
         Self { title: scene.title.clone(), footer, origin: origin(document, version) }
+    }
+
+    /// The caption with other scenes, called by letters, at its foot.
+    #[must_use]
+    pub fn with_others<'a>(mut self, others: impl IntoIterator<Item = &'a Document>) -> Self {
+        for (letter, other) in ('A'..).zip(others) {
+            self.footer += &format!("{PART}{letter}: {}", other.name);
+            other.changes().for_each(|change| self.footer += &format!(", {change}"));
+        }
+        self
     }
 
     /// The caption of a picture of what was identified from the record in a file called `name`, made by this

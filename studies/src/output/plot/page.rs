@@ -319,6 +319,7 @@ fn sample(layer: &Layer, theme: &Theme) -> Sample {
         | Marks::Intervals(_)
         | Marks::Verticals(_)
         | Marks::Horizontals(_)
+        | Marks::Mechanism(_)
         | Marks::Words(_) => Sample::Line(look),
     }
 }
