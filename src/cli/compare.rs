@@ -3,7 +3,7 @@
 use clap::Args;
 use interwell::dynamics::Regime;
 use interwell::numeric::short;
-use interwell::output::comparison_chart;
+use interwell::output::{compared_name, comparison_chart, comparison_title};
 use interwell::questions::{Compare, Rated, Simulation};
 use interwell::scene::{Document, RunSettings, Stops, Transducer};
 
@@ -72,8 +72,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     grouped(remarks).iter().for_each(|(names, words)| common.say(&format!("{names}: {words}")));
     if let Some(picture) = picture {
         let mut caption = caption(environment);
-        let [amplitude, frequency] = [found.amplitude_g, found.frequency_hz].map(short);
-        caption.title = format!("{} scenes under a sine of {amplitude} g at {frequency} Hz", scenes.len());
+        caption.title = comparison_title(&found);
         picture.write(&mut outputs, &comparison_chart(&found.rated, found.frequency_hz), &caption)?;
     }
     let documents = scenes.into_iter().map(|(name, scene)| (name, scene.document().clone()));
@@ -103,11 +102,11 @@ fn named<'a>(specs: &'a [String], common: &Common) -> Result<Vec<(String, &'a st
         let mut document = support::read(spec, common)?;
         let compared = std::mem::take(&mut document.compared);
         if compared.is_empty() {
-            all.push((plain(spec), &**spec, document));
+            all.push((compared_name(spec, &document), &**spec, document));
         }
         for (name, mut document) in compared {
             change(&mut document, common)?;
-            all.push((plain(&name), &**spec, document));
+            all.push((compared_name(&name, &document), &**spec, document));
         }
     }
     Ok(all)
@@ -188,9 +187,4 @@ fn why_empty(column: &str, simulation: &Simulation, rated: &Rated, given: &str) 
         _ => "its mechanism has no length, thickness or gap to change",
     }
     .to_owned()
-}
-
-/// A name with the characters that CSV would have to quote replaced by `_`.
-fn plain(name: &str) -> String {
-    name.replace([',', '"', '\n', '\r'], "_")
 }

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use interwell::dynamics::Model;
 use interwell::numeric::extent;
 use interwell::output::{
     contact_chart, curve_chart, landscape, measured_force_chart, mechanism_chart, shapes_chart,
@@ -13,8 +14,8 @@ use interwell_studies::study::{
 };
 
 use super::measured::MeasuredForceOptions;
-use super::support::{inputs, load_with_mechanism, number, numbers, range};
-use super::{ChartOptions, Common, Failure, Output, Outputs, Picture, interrupt, whole};
+use super::support::{beside, inputs, load_with_mechanism, number, numbers, range};
+use super::{ChartOptions, Common, Failure, Output, Outputs, Picture, caption, interrupt, whole};
 
 #[derive(Debug, Args)]
 pub struct Arguments {
@@ -34,6 +35,11 @@ pub struct Arguments {
     /// At these positions in mm, in this order
     #[arg(long, value_name = "X1,X2,..", allow_hyphen_values = true)]
     pub at_mm: Option<String>,
+
+    /// With --mechanism-plot: draw the mechanism of this scene, called A, on its right, with the mass at the
+    /// second of the positions that are named, else where its run starts. --set changes the first scene alone
+    #[arg(long, value_name = "SCENE", requires = "mechanism_plot")]
+    pub beside: Option<String>,
 
     /// Of flexures: more columns, axial_n (compression of the buckling flexures together), bump_m (height of
     /// their bump) and max_stress_pa (largest bending stress), each row solved afresh; warns where the stress
@@ -154,6 +160,8 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let impacts = contact_output.map(impact).transpose()?;
     let mut read = inputs(&options.scene, &document);
     read.extend(options.measured.measured.clone());
+    let other = options.beside.as_deref().map(beside).transpose()?;
+    read.extend(options.beside.iter().zip(&other).flat_map(|(spec, other)| inputs(spec, other.document())));
     let mut outputs = Outputs::new(&read)
         .with_rows(Some(common.out()))?
         .with(Output::LANDSCAPE, options.landscape.as_deref())?
@@ -199,12 +207,17 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         let at = if is_named { positions(SHAPES) } else { equilibria() };
         Ok(shapes_chart(&flexures(at, "--shapes-plot")?.states, &mechanism, stops))
     })?;
-    outputs.draw(mechanism_picture, &document, |_| {
-        let (simulation, named) = (Simulation::new(&document)?, listed.as_ref().and_then(|at| at.first()));
-        let model = simulation.model();
-        let drawn = mechanism_chart(model, named.copied().unwrap_or(model.start().0));
-        drawn.map_err(|problem| Failure::argument(format!("--mechanism-plot: {}: {problem}", document.name)))
-    })?;
+    if let Some(picture) = mechanism_picture {
+        let simulation = Simulation::new(&document)?;
+        let models = [Some(&simulation), other.as_ref()].into_iter().flatten().map(Simulation::model);
+        let named = |place: usize| listed.as_ref().and_then(|at| at.get(place)).copied();
+        let at = |(place, model): (usize, _)| (model, named(place).unwrap_or(Model::start(model).0));
+        let chart = mechanism_chart(&models.enumerate().map(at).collect::<Vec<_>>()).map_err(|problem| {
+            Failure::argument(format!("--mechanism-plot: {}: {problem}", document.name))
+        })?;
+        let caption = caption(&document).with_others(other.iter().map(Simulation::document));
+        picture.write(&mut outputs, &chart, &caption)?;
+    }
     if let Some((table, simulation)) = &impacts {
         let model = simulation.model();
         outputs.table(Output::CONTACT, table)?;

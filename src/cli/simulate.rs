@@ -5,13 +5,13 @@ use std::path::PathBuf;
 use clap::Args;
 use interwell::dynamics::{Model, Outcome};
 use interwell::numeric::{extent, short};
-use interwell::output::{RunPanel, measured_chart, push_number, run_chart, summary};
-use interwell::questions::Sampling;
+use interwell::output::{RunPanel, distance_chart, measured_chart, push_number, run_chart, summary};
+use interwell::questions::{Distance, Sampling, Simulation};
 use interwell_studies::study::{Keep, ended_remedy, yield_warning};
 
 use super::measured::MeasuredOptions;
-use super::support::{Watch, inputs, load_simulation, number, numbers, settle_limit};
-use super::{ChartOptions, Common, Failure, Output, Outputs, Picture, interrupt, refuse, say};
+use super::support::{Watch, beside, inputs, load_simulation, number, numbers, settle_limit};
+use super::{ChartOptions, Common, Failure, Output, Outputs, Picture, caption, interrupt, refuse, say};
 
 #[derive(Debug, Args)]
 pub struct Arguments {
@@ -53,6 +53,11 @@ pub struct Arguments {
           value_parser = RunPanel::ALL.map(RunPanel::name))]
     pub panels: Vec<String>,
 
+    /// With --plot: draw how far the motion of this scene is from that of SCENE over time, each from its start,
+    /// in place of the panels; up to three times. --set and --tolerance change the first scene alone
+    #[arg(long, value_name = "SCENE", requires = "plot", conflicts_with_all = ["measured", "panels", "plot_y"])]
+    pub beside: Vec<String>,
+
     /// A measured motion to compare with.
     #[command(flatten)]
     pub measured: MeasuredOptions,
@@ -93,6 +98,11 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     }
     let mut read = inputs(&options.scene, document);
     read.extend(options.measured.measured.clone());
+    if options.beside.len() > 3 {
+        refuse!("--beside {}: it can be given three times", options.beside[3]);
+    }
+    let others = options.beside.iter().map(|spec| beside(spec)).collect::<Result<Vec<_>, _>>()?;
+    read.extend(options.beside.iter().zip(&others).flat_map(|(spec, other)| inputs(spec, other.document())));
     let mut outputs = Outputs::new(&read)
         .with_rows(Some(common.out()))?
         .with(Output::EVENTS, options.events.as_deref())?
@@ -101,7 +111,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         .with(Output::COMPARISON, options.measured.comparison.as_deref())?;
     let watch = Watch::start();
     let progress = interrupt::progress();
-    let (run, trace) = match picture {
+    let (run, trace) = match picture.filter(|_| others.is_empty()) {
         None => (simulation.kept(&keep, &progress)?, None),
         Some(_) => {
             let (run, trace) = simulation.traced(&keep, inset.or(window), &progress)?;
@@ -122,6 +132,11 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
             }
             None => Ok(run_chart(&trace, &run.summary, of, &panels, ranges)),
         })?;
+    }
+    if let Some(picture) = picture.filter(|_| !others.is_empty()) {
+        let caption = caption(document).with_others(others.iter().map(Simulation::document));
+        let found = Distance { of: others, times: window }.run(&simulation, &progress)?;
+        picture.write(&mut outputs, &distance_chart(&found), &caption)?;
     }
     if let Some((_, found)) = compared {
         outputs.table(Output::COMPARISON, &found.table)?;

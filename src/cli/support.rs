@@ -10,7 +10,7 @@ use interwell::scene::{Document, SceneError, read_number};
 use interwell::system::clock::{ProcessClock, WallClock};
 use interwell::system::threads::Pool;
 
-use super::{Common, Failure, Outputs, refuse};
+use super::{Common, Failure, Outputs, interrupt, refuse};
 
 /// Wall-clock and CPU time since a command began its work.
 #[derive(Debug, Clone, Copy)]
@@ -138,6 +138,11 @@ pub fn load_with_mechanism(spec: &str, common: &Common) -> Result<(Document, Arc
 /// Loads the scene and builds its model; prints the warnings of both.
 pub fn load_simulation(spec: &str, common: &Common) -> Result<Simulation, Failure> {
     simulation(&read(spec, common)?, common)
+}
+
+/// The simulation of a scene that is drawn beside another one, which no `--set` changes.
+pub fn beside(spec: &str) -> Result<Simulation, Failure> {
+    Ok(Simulation::build(Document::of_argument(spec)?, &interrupt::progress())?)
 }
 
 /// Checks a scene and builds its model; prints the warnings of both.

@@ -6,6 +6,7 @@ use std::path::Path;
 use eframe::egui::{Key, Modifiers, accesskit::Role};
 use egui_kittest::{Harness, kittest::Queryable as _};
 use interwell::app::session::explore::WalkQuantity;
+use interwell::app::session::pins::PinKind;
 use interwell::app::views::View;
 use interwell::app::window::{Command, Window};
 use interwell::output::RunPanel;
@@ -228,6 +229,29 @@ fn of_a_record_the_copied_command_makes_the_same_bytes() {
 }
 
 #[test]
+fn of_several_scenes_the_copied_command_makes_the_same_bytes() {
+    let mut harness = window("nominal-cubic", WIDE);
+    harness.state_mut().session.edit_once(|scene| {
+        (scene.run.duration_s, scene.run.settle_s, scene.run.tolerance) = (2.0, None, 1e-6);
+    });
+    harness.run_steps(3);
+    harness.state_mut().session.pin(PinKind::Twin).unwrap();
+    harness.state_mut().session.player.tick(1.0);
+    harness.state_mut().session.edit_once(|scene| scene.mass_g = 16.0);
+    harness.run_steps(3);
+    let line = same_bytes(&mut harness, View::Distance, "svg");
+    assert!(line.contains("simulate nominal-cubic --beside '?scene=nominal-cubic#"), "{line}");
+    assert!(line.contains("--plot-x 0:") && line.contains("--set mass_g=16"), "{line}");
+    let line = same_bytes(&mut harness, View::SideBySide, "pdf");
+    assert!(line.contains("curve nominal-cubic --at-mm ") && line.contains(" --mechanism-plot "), "{line}");
+    // --set would change the other scenes too
+    for view in [View::Compare, View::BeforeNow] {
+        let line = same_bytes(&mut harness, view, "svg");
+        assert!(line.contains("compare '?scene=nominal-cubic#") && !line.contains("--set"), "{line}");
+    }
+}
+
+#[test]
 fn of_the_basins_the_copied_command_makes_the_same_bytes() {
     let mut harness = window("uneven-stops", WIDE);
     let folder = tempfile::tempdir().unwrap();
@@ -266,9 +290,10 @@ fn each_box_of_the_dialog_is_the_panel_that_it_names() {
 fn a_view_without_a_figure_says_so_and_the_keyboard_alone_saves_one() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = window("first-look", WIDE);
-    for view in [View::Compare, View::Events] {
+    let no_other = "There is no other scene yet";
+    for (view, words) in [(View::Compare, no_other), (View::Events, "There is no figure of")] {
         open(&mut harness, view, &folder.path().join("a.pdf"));
-        harness.get_by_label_contains("There is no figure of");
+        harness.get_by_label_contains(words);
         press(&mut harness, Key::Escape);
     }
     press_with_ctrl(&mut harness, Key::E);

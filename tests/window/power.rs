@@ -371,10 +371,15 @@ fn the_window_offers_the_search_and_marks_its_answer_on_the_map() {
     harness.run_steps(3);
     let limit = harness.state().session.best.limit_mm();
     assert!(is_painted(&harness, "Best stops: ±2.") && is_painted(&harness, "best stops"));
+    for view in [View::Mechanism, View::Well] {
+        View::ALL.map(|other| command(&mut harness, Command::Show(other, other == view)));
+        harness.run_steps(3);
+        assert!(is_painted(&harness, "best stops"), "{}", view.name());
+    }
     harness.get_by_label("Take the stops there").click();
     harness.run_steps(3);
     assert_eq!(number(&harness.state().session, LIMIT), limit);
-    assert!(is_painted(&harness, "The stops stand there."));
+    assert!(is_painted(&harness, "The stops stand there.") && !is_painted(&harness, "best stops"));
     harness.get_by_label("Close").click();
     harness.run_steps(3);
     assert!(!is_painted(&harness, "est stops: ±"));

@@ -70,7 +70,7 @@ pub use roots::{MAX_DEGREE, PolynomialRoots};
 pub use scalar::{Number, Scalar};
 pub use sum::CompensatedSum;
 pub use survival::{QuantileRanks, Rate, Waiting, median};
-pub use text::{decimals, number_text, push_number, short};
+pub use text::{Ending, decimals, number_text, push_number, rounded, short, significant};
 pub use turns::{Turn, extent, turns};
 
 /// The coefficients of the polynomial `factor` times (x - root) for each root.

@@ -1,6 +1,7 @@
 //! Numbers as text: the shortest form that parses back, and few digits for sentences.
 
 use std::fmt::Write;
+use std::ops::Range;
 
 use super::round::decade;
 
@@ -41,16 +42,42 @@ pub fn number_text(value: f64) -> String {
     }
 }
 
+/// `value` rounded to so many significant digits.
+pub fn rounded(value: f64, digits: usize) -> f64 {
+    format!("{value:.*e}", digits.saturating_sub(1)).parse().unwrap_or(value)
+}
+
+/// How a number in a sentence ends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Ending {
+    /// Without zeros at the end.
+    Trimmed,
+    /// With all its significant digits.
+    Padded,
+    /// The same, and with all digits before the point.
+    Whole,
+}
+
+/// `value` with so many significant digits, and with an exponent where its size is not among the `plain` ones.
+pub fn significant(value: f64, digits: usize, ending: Ending, plain: Range<f64>) -> String {
+    let rounded = rounded(value, digits);
+    if rounded == 0.0 || !rounded.is_finite() {
+        // adding 0 makes -0 a plain 0
+        return format!("{}", rounded + 0.0);
+    }
+    let places = decimals(rounded, digits as i32);
+    match (plain.contains(&rounded.abs()), ending) {
+        (true, Ending::Trimmed) => format!("{rounded}"),
+        (true, Ending::Padded) => format!("{rounded:.places$}"),
+        (true, Ending::Whole) => format!("{value:.places$}"),
+        (false, _) => format!("{rounded:e}"),
+    }
+}
+
 /// `value` rounded to four significant digits, for sentences.
 #[doc(hidden)]
 pub fn short(value: f64) -> String {
-    let rounded: f64 = format!("{value:.3e}").parse().unwrap_or(value);
-    if rounded == 0.0 || (1e-3..1e6).contains(&rounded.abs()) {
-        // Adding 0 makes -0 a plain 0.
-        format!("{}", rounded + 0.0)
-    } else {
-        format!("{rounded:e}")
-    }
+    significant(value, 4, Ending::Trimmed, 1e-3..1e6)
 }
 
 /// The number of decimals that shows a number of this size with `digits` significant digits; at most 12, and
@@ -70,6 +97,11 @@ mod tests {
         let written = [7.18234e-3, -0.0, 1.0 / 3.0, 4123.4, 8.2e5, 1.2e-9, 8.2e7].map(short);
         assert_eq!(written, ["0.007182", "0", "0.3333", "4123", "820000", "1.2e-9", "8.2e7"]);
         assert_eq!([0.0, 7.18e-3, 41.2, 4123.4].map(|value| decimals(value, 3)), [0, 5, 1, 0]);
+        // rounding reaches the next power of ten
+        let of = |ending| [9.996, 41.0, 4123.4, 3e-7].map(|value| significant(value, 3, ending, 1e-6..1e9));
+        assert_eq!(of(Ending::Trimmed), ["10", "41", "4120", "3e-7"]);
+        assert_eq!(of(Ending::Padded), ["10.0", "41.0", "4120", "3e-7"]);
+        assert_eq!(of(Ending::Whole), ["10.0", "41.0", "4123", "3e-7"]);
     }
 
     fn shortest(value: f64) -> String {

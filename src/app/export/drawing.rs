@@ -13,12 +13,13 @@ use crate::mechanics::Mechanism;
 use crate::numeric::extent;
 use crate::output::{
     Caption, Chart, Figure, Overlay, Ranges, RunPanel, SpectrumQuantity, SweepPicture, Theme, View,
-    basins_chart, can_show, curve_chart, measured_chart, measured_force_chart, mechanism_chart, run_chart,
-    scene_accuracy_chart, section_chart, spectrum_chart, sweep_chart,
+    basins_chart, can_show, compared_name, comparison_chart, comparison_title, curve_chart, distance_chart,
+    measured_chart, measured_force_chart, mechanism_chart, run_chart, scene_accuracy_chart, section_chart,
+    spectrum_chart, sweep_chart,
 };
 use crate::questions::{
-    Accuracy, Basins, Carry, Curve, EvenRange, Grid, Progress, Scheme, Section, SectionOptions, Signal,
-    Simulation, Spectrum, Sweep,
+    Accuracy, Basins, Carry, Compare, Curve, Distance, EvenRange, Grid, Progress, Scheme, Section,
+    SectionOptions, Signal, Simulation, Spectrum, Sweep,
 };
 use crate::scene::{Document, FieldPath, arguments};
 use interwell_studies::study::{Keep, metres, stop_positions};
@@ -37,17 +38,20 @@ pub(super) fn draw(order: &FigureOrder, cancel: &AtomicBool) -> Result<Option<Fi
 /// The figure; if cancelled, any error.
 fn figure(order: &FigureOrder, cancel: &AtomicBool) -> Result<Figure> {
     let document = document(order)?;
-    let caption = Caption::new(&document, env!("CARGO_PKG_VERSION"));
+    let mut caption = Caption::new(&document, env!("CARGO_PKG_VERSION"));
     let drawing = Drawing { progress: progress(cancel), document };
     let chart = match &order.subject {
         Subject::Run(times, panels) => drawing.run(*times, panels),
         Subject::Curve => drawing.curve(),
         Subject::Mechanism(mm) => drawing.mechanism_at(*mm),
+        Subject::SideBySide(mm, other) => drawing.side_by_side(*mm, other, &mut caption),
         Subject::Accuracy(stepped) => drawing.accuracy(*stepped),
         Subject::Measured(over) => drawing.measured(over),
         Subject::Sweep(_, quantity, view) => drawing.sweep(&order.subject, quantity, view.clone()),
         Subject::Diagram(_) => drawing.diagram(&order.subject),
         Subject::Section => drawing.section(),
+        Subject::Distance(times, others) => drawing.distance(*times, others, &mut caption),
+        Subject::Compare(others) => drawing.compare(others, &order.origin, &mut caption),
         Subject::Basins(x_mm, v) => drawing.basins(*x_mm, *v),
         Subject::Spectrum(signal, until) => drawing.spectrum(*signal, *until),
     };
@@ -110,7 +114,19 @@ impl Drawing<'_> {
     }
 
     fn mechanism_at(&self, mm: f64) -> Result<Chart> {
-        Ok(mechanism_chart(self.simulation()?.model(), metres(mm))?)
+        Ok(mechanism_chart(&[(self.simulation()?.model(), metres(mm))])?)
+    }
+
+    fn side_by_side(&self, mm: [f64; 2], other: &str, caption: &mut Caption) -> Result<Chart> {
+        let simulations = [self.simulation()?, self.beside(other)?];
+        *caption = std::mem::take(caption).with_others([simulations[1].document()]);
+        let [here, there] = [0, 1].map(|i| (simulations[i].model(), metres(mm[i])));
+        Ok(mechanism_chart(&[here, there])?)
+    }
+
+    /// The simulation of the scene of a link.
+    fn beside(&self, link: &str) -> Result<Simulation> {
+        Ok(Simulation::build(Document::of_argument(link)?, &self.progress)?)
     }
 
     fn accuracy(&self, stepped: Option<(Scheme, f64)>) -> Result<Chart> {
@@ -172,6 +188,24 @@ impl Drawing<'_> {
         let simulation = self.simulation()?;
         let (rows, _) = Section::default().of_one(&simulation, &self.progress)?;
         Ok(section_chart(&rows, None, Some(0.0), simulation.model().stop_positions(), Ranges::default()))
+    }
+
+    fn distance(&self, times: Option<(f64, f64)>, others: &[String], caption: &mut Caption) -> Result<Chart> {
+        let of = others.iter().map(|link| self.beside(link)).collect::<Result<Vec<_>>>()?;
+        *caption = std::mem::take(caption).with_others(of.iter().map(Simulation::document));
+        Ok(distance_chart(&Distance { of, times }.run(&self.simulation()?, &self.progress)?))
+    }
+
+    fn compare(&self, others: &[String], origin: &str, caption: &mut Caption) -> Result<Chart> {
+        let other = |link: &String| -> Result<(String, Simulation)> {
+            let simulation = self.beside(link)?;
+            Ok((compared_name(link, simulation.document()), simulation))
+        };
+        let with = others.iter().map(other).collect::<Result<Vec<_>>>()?;
+        let question = Compare { with, name: compared_name(origin, &self.document), ..Compare::default() };
+        let found = question.run(&self.simulation()?, &self.progress)?;
+        caption.title = comparison_title(&found);
+        Ok(comparison_chart(&found.rated, found.frequency_hz))
     }
 
     fn basins(&self, x_mm: (f64, f64), v: (f64, f64)) -> Result<Chart> {

@@ -32,6 +32,8 @@ pub enum Subject {
     Curve,
     /// The mechanism with the mass at a displacement in mm.
     Mechanism(f64),
+    /// The mechanisms of this scene and of one given as a link, with the masses at displacements in mm.
+    SideBySide([f64; 2], String),
     /// Error over processor time, and the run by a method of fixed step in s, if one suits the scene.
     Accuracy(Option<(Scheme, f64)>),
     /// A record over the run or over the force curve.
@@ -44,6 +46,10 @@ pub enum Subject {
     Section,
     /// The attractor of each start, for ranges of displacements in mm and of velocities in m/s.
     Basins((f64, f64), (f64, f64)),
+    /// How far the motions of other scenes, given as links, are from this one, over a range of times in s.
+    Distance(Option<(f64, f64)>, Vec<String>),
+    /// This scene and others, given as links, under its sine.
+    Compare(Vec<String>),
     /// Amplitude spectrum of a signal, and how long in s to wait for the motion to repeat.
     Spectrum(Signal, Option<f64>),
 }
@@ -137,7 +143,13 @@ impl Subject {
 
     /// The mechanism with the mass at `x` in m.
     pub fn mechanism(x: f64) -> Self {
-        Self::Mechanism((x * 1e7).round() / 1e4)
+        Self::Mechanism(tenths_of_um(x))
+    }
+
+    /// The mechanism beside that of the pin at this place, with the masses at these displacements in m.
+    pub fn side_by_side(session: &Session, place: usize, x: [f64; 2]) -> Result<Self, String> {
+        let pinned = session.pins.all().iter().map(|pin| &pin.scene).skip(place).take(1);
+        Ok(Self::SideBySide(x.map(tenths_of_um), links(session, pinned)?.remove(0)))
     }
 
     pub fn accuracy(session: &Session) -> Self {
@@ -150,6 +162,22 @@ impl Subject {
     pub fn measured(session: &Session) -> Result<Self, String> {
         let none = "There is no measured record: open one first (Ctrl+M).";
         Ok(Self::Measured(session.measured.over.clone().ok_or(none)?))
+    }
+
+    /// The distance of the pinned motions, over the times that the view shows.
+    pub fn distance(session: &Session) -> Result<Self, String> {
+        let pins = session.pins.all();
+        let since = pins.iter().map(|pin| pin.since).fold(f64::INFINITY, f64::min);
+        let times = round_times((since, session.player.time())).filter(|times| times.0 < times.1);
+        Ok(Self::Distance(times, links(session, pins.iter().map(|pin| &pin.scene))?))
+    }
+
+    /// The scene beside those that are pinned, or beside the one before the last change.
+    pub fn compare(session: &Session, is_with_before: bool) -> Result<Self, String> {
+        let (before, pins) = (session.before.iter(), session.pins.all().iter());
+        let before = before.filter(|_| is_with_before).map(|card| &card.scene);
+        let pinned = pins.filter(|_| !is_with_before).map(|pin| &pin.scene);
+        Ok(Self::Compare(links(session, before.chain(pinned))?))
     }
 
     pub fn basins(session: &Session) -> Result<Self, String> {
@@ -195,6 +223,11 @@ impl Subject {
                 options.push(Argument::of("at-mm", mm.to_string()));
                 "curve"
             }
+            Self::SideBySide([here, there], other) => {
+                options.push(Argument::of("at-mm", format!("{here},{there}")));
+                options.push(Argument::of("beside", other));
+                "curve"
+            }
             Self::Accuracy(stepped) => {
                 if let Some((scheme, step)) = stepped {
                     options.push(Argument::of("step-s", step.to_string()));
@@ -217,6 +250,16 @@ impl Subject {
                 "sweep"
             }
             Self::Diagram(_) | Self::Section => "section",
+            Self::Distance(times, others) => {
+                options.extend(others.iter().map(|other| Argument::of("beside", other)));
+                ranges.extend(times.map(|(from, to)| Argument::of("plot-x", format!("{from}:{to}"))));
+                "simulate"
+            }
+            Self::Compare(others) => {
+                let scene = |other: &String| Argument { option: None, value: Some(other.clone()) };
+                options.extend(others.iter().map(scene));
+                "compare"
+            }
             Self::Basins(x_mm, v) => {
                 let even = |(from, to): (f64, f64)| format!("{from}:{to}:{STARTS}");
                 options.extend([Argument::of("x-mm", even(*x_mm)), Argument::of("v", even(*v))]);
@@ -238,7 +281,9 @@ impl Subject {
         let (mut from, mut scene) = (editor.named().clone(), editor.scene().clone());
         keep_start_inside(&mut scene);
         match self {
-            Self::Run(Some((_, to)), _) => scene.run.duration_s = scene.run.duration_s.max(*to),
+            Self::Run(Some((_, to)), _) | Self::Distance(Some((_, to)), _) => {
+                scene.run.duration_s = scene.run.duration_s.max(*to);
+            }
             // the figure sets the starts
             Self::Basins(..) => (scene.start, from.start) = (Start::Rest, Start::Rest),
             _ if !self.axes().is_empty() => {
@@ -260,7 +305,7 @@ impl FigureOrder {
     /// The figure of `subject` in a session; the error is a sentence.
     pub fn new(session: &Session, subject: Subject, place: Place) -> Result<Self, String> {
         let no_name = "This scene has no name that a command could open: save it first (Ctrl+S).";
-        let origin = session.editor.origin().ok_or(no_name)?;
+        let mut origin = session.editor.origin().ok_or(no_name)?;
         if let Some(fault) = session.fault() {
             return Err(fault.to_owned());
         }
@@ -275,7 +320,14 @@ impl FigureOrder {
             return Err(format!("{} is read by this scene: give the figure another name.", path.display()));
         }
         let (from, scene) = subject.scenes(session);
-        let (settings, read) = (arguments(&from, &scene), ReadFiles(read));
+        let (mut settings, read) = (arguments(&from, &scene), ReadFiles(read));
+        if let Subject::Compare(_) = subject
+            && !settings.is_empty()
+        {
+            // --set would change all scenes of a comparison
+            origin = links(session, std::iter::once(&scene))?.remove(0);
+            settings.clear();
+        }
         Ok(Self { origin, settings, scene, subject, place, read })
     }
 
@@ -285,7 +337,10 @@ impl FigureOrder {
         let mut all = vec![Argument { option: None, value: Some(self.origin.clone()) }];
         all.extend(options);
         let Place { path, sheet, data, .. } = &self.place;
-        let plot = if let Subject::Mechanism(_) = self.subject { "mechanism-plot" } else { "plot" };
+        let plot = match self.subject {
+            Subject::Mechanism(_) | Subject::SideBySide(..) => "mechanism-plot",
+            _ => "plot",
+        };
         all.push(Argument::of(plot, path.to_string_lossy()));
         all.push(Argument::of("plot-width-mm", sheet.width_mm.to_string()));
         all.push(Argument::of("font-pt", sheet.font_pt.to_string()));
@@ -338,6 +393,23 @@ impl FigureOrder {
         }
         Ok(format!("Saved {}", names.join(" and ")))
     }
+}
+
+/// A displacement in m in mm, rounded to a tenth of a micrometre.
+fn tenths_of_um(x: f64) -> f64 {
+    (x * 1e7).round() / 1e4
+}
+
+/// Links to scenes beside the open one.
+fn links<'a>(session: &Session, scenes: impl Iterator<Item = &'a Scene>) -> Result<Vec<String>, String> {
+    let link = |scene: &Scene| {
+        let mut document = session.editor.document().clone();
+        document.scene = scene.clone();
+        document.link().map_err(|error| error.to_string())
+    };
+    let links = scenes.map(link).collect::<Result<Vec<_>, _>>()?;
+    let none = "There is no other scene yet: pin a motion, or change something.";
+    if links.is_empty() { Err(none.to_owned()) } else { Ok(links) }
 }
 
 /// A suggested range of times, rounded to a thousandth of its length or finer; `None` if it is empty.

@@ -4,9 +4,9 @@ use eframe::egui::{self, Align2, Sense, Ui, vec2};
 
 use crate::app::session::pins::{Pin, PinKind};
 use crate::app::ui::widgets::tell;
-use crate::app::words::numbers::{UNKNOWN, three};
+use crate::app::words::numbers::{UNKNOWN, three, three_from};
 use crate::numeric::elementary;
-use crate::output::{Chart, Marks, Panel, PlotAxis, Role, TIME};
+use crate::output::{Chart, Marks, Role, distance_ends, distance_panel};
 use interwell_studies::study::{Table, distances};
 
 use super::cursors::{cursors_ui, readout_height, readout_ui};
@@ -17,9 +17,6 @@ use super::view::Axis;
 use super::{View, ViewContext, offer_ui};
 
 const MAX_POINTS: usize = 2000;
-
-/// Decimal logarithm of the smallest distance shown, in mm; below it lies rounding error.
-const MIN_LOG: f64 = -14.0;
 
 /// Smallest number of forcing periods, or characteristic times, shown.
 const PERIODS: f64 = 6.0;
@@ -39,13 +36,8 @@ pub fn distance_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let pins = session.pins.all();
     let from = pins.iter().map(|pin| pin.since).fold(now, f64::min);
     let of_pin = |pin: &Pin| distances(session.player.watch(), &pin.watch, (pin.since, now), MAX_POINTS);
-    let lines: Vec<(char, Vec<(f64, f64)>)> = pins.iter().map(|pin| (pin.letter, of_pin(pin))).collect();
-    let seen = || lines.iter().flat_map(|line| &line.1).map(|point| elementary::log10(point.1 * 1e3));
-    let finite = || seen().filter(|log| log.is_finite());
-    // if all motions are equal to the last digit, the axis starts at its lowest end
-    let bottom = if finite().next().is_some() { 0.0 } else { MIN_LOG };
-    let low = finite().fold(bottom, f64::min).floor().max(MIN_LOG);
-    let high = finite().fold(low + 1.0, f64::max).ceil().max(1.0);
+    let lines: Vec<Vec<(f64, f64)>> = pins.iter().map(of_pin).collect();
+    let (low, high) = distance_ends(lines.iter().flatten().map(|point| point.1));
     let height = |metres: f64| elementary::log10(metres * 1e3).max(low);
     let model = session.shown();
     let shortest = PERIODS * model.forcing_period().unwrap_or(model.characteristic_time());
@@ -64,38 +56,31 @@ pub fn distance_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         format!("exponential rate {}", of_all(&|pin| text(rate(pin))))
     };
     let readout = readout_height(ui, context);
-    let (x, y) = (PlotAxis::between(from, to, TIME), PlotAxis::powers(low, high, "distance (mm)"));
-    let mut panel = Panel::new(x, y);
+    let mut panel = distance_panel(&lines, (from, to), (low, high));
     panel.draw(Role::Reference, Marks::Verticals(vec![now]));
-    for (_, path) in &lines {
-        // solid, since so steep a line has thousands of dashes; the letter at its end names it
-        let points = path.iter().map(|(t, metres)| (*t, height(*metres)));
-        panel.draw(Role::Motion, Marks::Trace(points.collect()));
-    }
     let place = Place::in_line(ui, area, Sense::click_and_drag(), (0.0, readout));
     let pane = fresh_pane_ui(ui, &style, place, Chart::stack(vec![panel], "", Table::new()));
     let Some(frame) = pane.frame(0) else { return };
     readout_ui(ui, context, (frame, to - from), at_each, between);
     let painter = ui.painter().with_clip_rect(area);
-    for (letter, path) in &lines {
+    for (pin, path) in pins.iter().zip(&lines) {
         let end = path.last().and_then(|(t, metres)| pane.place(0, (*t, height(*metres))));
         if let Some(at) = end.filter(|at| frame.expand(1.0).contains(*at)) {
             let at = (at + vec2(3.0, 0.0), Align2::LEFT_CENTER);
-            haloed(&painter, &style, at, &letter.to_string(), (style.body(), style.ink()));
+            haloed(&painter, &style, at, &pin.letter.to_string(), (style.body(), style.ink()));
         }
     }
     tell(&pane.response, egui::Role::Canvas, "distance of the pinned motions");
-    let text = |(letter, path): &(char, Vec<(f64, f64)>)| match path.last()?.1 {
-        0.0 => Some(format!("{letter}: equal to the last digit")),
-        metres => Some(format!("{letter}: {}", millimetres(metres))),
+    let text = |(pin, path): (&Pin, &Vec<(f64, f64)>)| match path.last()?.1 {
+        0.0 => Some(format!("{}: equal to the last digit", pin.letter)),
+        metres => Some(format!("{}: {}", pin.letter, millimetres(metres))),
     };
-    pane.reading(ui, &style, 0.0, &lines.iter().filter_map(text).collect::<Vec<_>>().join("   "));
+    pane.reading(ui, &style, 0.0, &pins.iter().zip(&lines).filter_map(text).collect::<Vec<_>>().join("   "));
     axes_input(ui, context.memory, View::Distance, &pane.response, (area, frame));
     cursors_ui(ui, context, &pane.response, (frame, (from, to)), "distance");
 }
 
 /// A distance in m as text in mm; a small one in scientific notation.
 fn millimetres(metres: f64) -> String {
-    let mm = 1e3 * metres;
-    if mm >= 0.01 { format!("{} mm", three(mm)) } else { format!("{mm:.1e} mm") }
+    format!("{} mm", three_from(1e3 * metres, 0.01))
 }

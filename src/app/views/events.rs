@@ -4,7 +4,7 @@ use eframe::egui::{self, Align2, Rect, RichText, Role, ScrollArea, Sense, Ui, Wi
 
 use crate::app::export::events_seen_csv;
 use crate::app::ui::style::Style;
-use crate::app::words::numbers::{UNKNOWN, three, with_minus};
+use crate::app::words::numbers::{UNKNOWN, three_from, with_minus};
 use interwell_studies::study::{Table, Values, watched_events};
 
 use super::energy::unit_of;
@@ -155,16 +155,11 @@ fn cell(table: &Table, column: &str, row: usize, unit: (f64, &str)) -> String {
         Some(Values::Numbers(numbers)) => match column {
             "t_s" => format!("{:.5}", numbers[row]),
             "phase_deg" => format!("{:.1}", numbers[row]),
-            "lost_j" => with_minus(&brief(numbers[row] / unit.0)),
-            _ => with_minus(&brief(numbers[row] * 1e3)),
+            "lost_j" => with_minus(&three_from(numbers[row] / unit.0, 1e-4)),
+            _ => with_minus(&three_from(numbers[row] * 1e3, 1e-4)),
         },
         _ => String::new(),
     }
-}
-
-/// A number with three digits; a very small one in scientific notation.
-fn brief(value: f64) -> String {
-    if value != 0.0 && value.abs() < 1e-4 { format!("{value:.1e}") } else { three(value) }
 }
 
 /// A row as a sentence for screen readers.

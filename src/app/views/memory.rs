@@ -73,6 +73,11 @@ impl Memory {
         Span { low, high }
     }
 
+    /// The index of the pinned motion that is drawn beside the present one.
+    pub fn beside_place(&self, session: &Session) -> usize {
+        self.beside_place.min(session.pins.all().len().saturating_sub(1))
+    }
+
     /// The state that remains from one step of a lesson to the next: axes that hold while they suit.
     pub fn for_another_step(&self) -> Self {
         Self { frozen: self.frozen, ..Self::default() }

@@ -187,33 +187,40 @@ impl Painting {
         let mut tessellator = Tessellator::new(pixels, options, [1, 1], Vec::new());
         let (mut mesh, mut texts) = (Mesh::default(), Vec::new());
         for shape in shapes {
-            let places = |points: &[(f64, f64)]| points.iter().map(|point| self.place(*point)).collect();
-            let mut add = |shape: Shape| tessellator.tessellate_shape(shape, &mut mesh);
             match shape {
                 // without a soft edge, so that neighbouring cells leave no seam
                 Drawn::Rect(area, ink) => mesh.add_colored_rect(self.rect(area), colour(ink)),
-                Drawn::Line(points, width, ink) => {
-                    // frame and grid stay thin for a projector
-                    let width = if is_fine(width) { width as f32 * UNIT } else { style.line(width) };
-                    add(Shape::line(places(&points), Stroke::new(width, colour(ink))));
-                }
-                Drawn::Polygon(points, ink) => {
-                    let corners: Vec<Pos2> = places(&points);
-                    if has_sharp_corner(&corners) {
-                        add_hard_edged(&mut mesh, &corners, colour(ink));
-                    } else {
-                        add(Shape::convex_polygon(corners, colour(ink), Stroke::NONE));
-                    }
-                }
-                Drawn::Disc(centre, radius, ink) => {
-                    let larger = if style.projector { 1.4 } else { 1.0 };
-                    let radius = larger * (radius as f32 * UNIT).max(LEAST_DOT);
-                    add(Shape::circle_filled(self.place(centre), radius, colour(ink)));
-                }
                 Drawn::Text(text) => texts.push(text),
+                shape => tessellator.tessellate_shape(self.shape(style, shape), &mut mesh),
             }
         }
         (mesh, texts)
+    }
+
+    /// A shape other than a text on the screen.
+    fn shape(&self, style: &Style, shape: Drawn) -> Shape {
+        let places = |points: &[(f64, f64)]| points.iter().map(|point| self.place(*point)).collect();
+        match shape {
+            Drawn::Rect(area, ink) => Shape::rect_filled(self.rect(area), 0.0, colour(ink)),
+            Drawn::Line(points, width, ink) => {
+                // frame and grid stay thin for a projector
+                let width = if is_fine(width) { width as f32 * UNIT } else { style.line(width) };
+                Shape::line(places(&points), Stroke::new(width, colour(ink)))
+            }
+            Drawn::Polygon(points, ink) => {
+                let corners: Vec<Pos2> = places(&points);
+                match has_sharp_corner(&corners) {
+                    true => Shape::mesh(hard_edged(&corners, colour(ink))),
+                    false => Shape::convex_polygon(corners, colour(ink), Stroke::NONE),
+                }
+            }
+            Drawn::Disc(centre, radius, ink) => {
+                let larger = if style.projector { 1.4 } else { 1.0 };
+                let radius = larger * (radius as f32 * UNIT).max(LEAST_DOT);
+                Shape::circle_filled(self.place(centre), radius, colour(ink))
+            }
+            Drawn::Text(_) => Shape::Noop,
+        }
     }
 
     fn paint(&self, painter: &Painter) {
@@ -229,6 +236,22 @@ impl Painting {
     fn rect(&self, Area { left, top, right, bottom }: Area) -> Rect {
         Rect::from_min_max(self.place((left, top)), self.place((right, bottom)))
     }
+}
+
+/// Paints shapes of a canvas whose corner is at `origin`.
+pub fn paint(painter: &Painter, style: &Style, origin: Pos2, shapes: Vec<Drawn>) {
+    let canvas = Painting::bare(origin);
+    for shape in shapes {
+        match shape {
+            Drawn::Text(text) => write(painter, canvas.place(text.at), &text),
+            shape => _ = painter.add(canvas.shape(style, shape)),
+        }
+    }
+}
+
+/// An area of such a canvas on the screen.
+pub fn on_screen(origin: Pos2, area: Area) -> Rect {
+    Painting::bare(origin).rect(area)
 }
 
 /// Paints the layers of a panel over all of `rect`, without its axes.
@@ -251,13 +274,12 @@ fn has_sharp_corner(corners: &[Pos2]) -> bool {
     })
 }
 
-/// Adds a convex polygon without a soft edge.
-fn add_hard_edged(mesh: &mut Mesh, corners: &[Pos2], ink: Color32) {
-    let first = mesh.vertices.len() as u32;
+/// A convex polygon without a soft edge.
+fn hard_edged(corners: &[Pos2], ink: Color32) -> Mesh {
+    let mut mesh = Mesh::default();
     corners.iter().for_each(|corner| mesh.colored_vertex(*corner, ink));
-    for last in 2..corners.len() as u32 {
-        mesh.add_triangle(first, first + last - 1, first + last);
-    }
+    (2..corners.len() as u32).for_each(|last| mesh.add_triangle(0, last - 1, last));
+    mesh
 }
 
 fn write(painter: &Painter, at: Pos2, text: &Text) {

@@ -19,8 +19,7 @@ const GAP: f32 = 6.0;
 
 pub fn side_by_side_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let area = ui.max_rect();
-    let count = context.session.pins.all().len();
-    if count == 0 {
+    if context.session.pins.all().is_empty() {
         let text = "Nothing is pinned. A pinned motion continues here beside the present one, \
                     in step with the drive.";
         let name = match context.session.scene().stops {
@@ -32,7 +31,7 @@ pub fn side_by_side_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         }
         return;
     }
-    let place = context.memory.beside_place.min(count - 1);
+    let place = context.memory.beside_place(context.session);
     let width = 0.5 * (area.width() - GAP);
     let (before, filled) = (context.drawn, context.filled);
     // both drawings use the axis that they share

@@ -8,6 +8,7 @@ use crate::app::ui::style::{BALL, GRAB};
 use crate::app::ui::widgets::arrows;
 use crate::app::words::fields::info;
 use crate::app::words::numbers::{decimal, decimals, shown, with_minus};
+use crate::output::Role;
 use crate::scene::Stops;
 
 use super::ViewContext;
@@ -21,6 +22,9 @@ const FINE: f64 = 0.2;
 pub(super) fn key_step(session: &Session) -> f64 {
     info("stops.travel_limit_mm").map_or(0.05, |field| reach(field, session).step)
 }
+
+/// What the best stops are called in a legend.
+pub(super) const BEST_STOPS: &str = "best stops";
 
 /// Thickness of a wall in points.
 pub(super) const WALL: f32 = 10.0;
@@ -71,6 +75,13 @@ pub(super) fn travel_limits(painter: &Painter, context: &ViewContext<'_>, rect: 
     }
 }
 
+/// The best travel limit in mm while it is shown, unless the stops of the motion drawn are there already.
+pub fn best_stops(context: &ViewContext<'_>) -> Option<f64> {
+    let session = &context.session;
+    let is_apart = context.drawn.pin(session).is_none() && !session.is_at_best_stops();
+    session.best.limit_mm().filter(|_| is_apart)
+}
+
 /// Draws the stops over `rect` between the heights `top` and `bottom`, and lets them be dragged. The face of
 /// a stop is drawn `radius` points, the half width of the mass, outside its travel limit.
 pub fn stops_ui(
@@ -80,12 +91,14 @@ pub fn stops_ui(
     (top, bottom): (f32, f32),
     radius: f32,
 ) {
-    for (mm, side) in context.memory.asked_stops.into_iter().zip([-1.0_f32, 1.0]) {
+    let asked = context.memory.asked_stops.map(|mm| (mm, context.style.stop_stroke()));
+    let best = best_stops(context);
+    let best = [best.map(|mm| -mm), best].map(|mm| (mm, context.style.stroke(Role::BestStop)));
+    for ((mm, stroke), side) in asked.into_iter().chain(best).zip([-1.0_f32, 1.0, -1.0, 1.0]) {
         let Some(mm) = mm else { continue };
         let x = context.span.screen_from_world(mm / 1e3, rect) + side * radius;
         let ends = [pos2(x, top), pos2(x + side * WALL, top), pos2(x + side * WALL, bottom), pos2(x, bottom)];
-        let outline =
-            Shape::dashed_line(&[&ends[..], &ends[..1]].concat(), context.style.stop_stroke(), 5.0, 4.0);
+        let outline = Shape::dashed_line(&[&ends[..], &ends[..1]].concat(), stroke, 5.0, 4.0);
         ui.painter().with_clip_rect(rect).extend(outline);
     }
     let (stops, movable) = shown_stops(context.session, context.drawn);

@@ -10,7 +10,7 @@ use crate::app::ui::widgets::kind_shapes;
 use crate::app::words::fields::{mechanism_name, name_and_unit};
 use crate::app::words::meanings::{explained, meaning};
 use crate::app::words::numbers::{
-    UNKNOWN, decimals_for, exact, length_unit, shown, three, unbroken, with_minus,
+    UNKNOWN, decimals_for, exact, length_unit, rounded, shown, three, unbroken, with_minus,
 };
 use crate::app::words::status::{Kind, mm_beside, seconds, speed, threshold};
 use crate::dynamics::{Outcome, Summary};
@@ -337,9 +337,8 @@ fn difference(value: f64, present: f64, decimals: &dyn Fn(f64) -> usize) -> Stri
 /// The shaking in words, and the fields whose numbers these contain.
 pub(super) fn shaking(scene: &Scene) -> (String, &'static [&'static str]) {
     // a difference that this rounding hides has another row, see `scene_rows`
-    let rounded = |value: &f64| format!("{value:.3e}").parse().unwrap_or(*value);
-    let g = |value: &f64| shown(rounded(value), 2);
-    let hz = |value: &f64| shown(rounded(value), 1);
+    let g = |value: &f64| shown(rounded(*value, 4), 2);
+    let hz = |value: &f64| shown(rounded(*value, 4), 1);
     match &scene.excitation {
         Excitation::None => ("none".to_owned(), &[]),
         Excitation::Constant { accel_g } => (format!("{} g, constant", g(accel_g)), &["accel_g"]),

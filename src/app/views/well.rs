@@ -25,7 +25,7 @@ use super::labels::{Taken, ago, free_place};
 use super::mass::mass_ui;
 use super::pane::{LEGEND, Pane, Place, kept_pane_ui};
 use super::ranges::{bottom, room_for_push};
-use super::stops::{WALL, stops_ui, travel_limits};
+use super::stops::{BEST_STOPS, WALL, best_stops, stops_ui, travel_limits};
 use super::view::Axis;
 use super::{Span, View, ViewContext};
 
@@ -105,7 +105,8 @@ pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
             layers.push(Layer::new(Role::Pin(ghost.place), "", Marks::Path(pinned)));
         }
     }
-    let other: Vec<Role> = layers.iter().map(|layer| layer.role).collect();
+    let mut other: Vec<Role> = layers.iter().map(|layer| layer.role).collect();
+    other.extend(best_stops(context).map(|_| Role::BestStop));
     let key = (Identity(Arc::clone(&model)), [span.low, span.high, low, high], other.clone(), style);
     let pane = kept_pane_ui(ui, &style, Place::in_line(ui, area, Sense::DRAG, (0.0, 0.0)), key, || {
         let across = PlotAxis::between(span.low * 1e3, span.high * 1e3, DISPLACEMENT);
@@ -154,7 +155,7 @@ pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
 }
 
 /// The parts that stay the same from frame to frame: axes, the potential without the push, and the legend,
-/// also for the `other` motions.
+/// also for the `other` motions and stops.
 fn still(level: &Potential<'_>, span: Span, (across, up): (PlotAxis, PlotAxis), other: &[Role]) -> Chart {
     let mut panel = Panel::new(across, up);
     if level.model.is_shaken() {
@@ -167,7 +168,7 @@ fn still(level: &Potential<'_>, span: Span, (across, up): (PlotAxis, PlotAxis), 
         panel.layer(Role::Beyond, "beyond the stops", Marks::Path(Vec::new()));
     }
     for role in other {
-        let name = if let Role::Pin(place) = role { PINNED[place % PINNED.len()] } else { "" };
+        let name = if let Role::Pin(place) = role { PINNED[place % PINNED.len()] } else { BEST_STOPS };
         panel.layer(*role, name, Marks::Path(Vec::new()));
     }
     Chart::stack(vec![panel], "", Table::new())

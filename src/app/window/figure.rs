@@ -40,8 +40,8 @@ pub struct Figures {
     before: [String; 2],
     /// Why the last figure was not saved.
     pub(super) problem: Option<String>,
-    /// Where the mass was when the dialog was opened, in m.
-    x: f64,
+    /// Where the mass was when the dialog was opened, in m, and that of the pinned motion beside it.
+    x: [f64; 2],
     had_focus: bool,
     job: Background<FigureOrder, WriteResult>,
 }
@@ -80,7 +80,9 @@ impl Figures {
         if !self.is_open() {
             self.before = [self.width.clone(), self.font.clone()];
         }
-        self.x = session.player.state().x;
+        let pin = session.pins.all().get(memory.beside_place(session));
+        let there = pin.map(|pin| pin.watch.state_at(session.player.time()).x);
+        self.x = [session.player.state().x, there.unwrap_or_default()];
         (self.view, self.problem, self.had_focus) = (Some(view), None, false);
     }
 
@@ -112,7 +114,8 @@ impl Figures {
                 Ok(Subject::Run(self.typed_times()?, shown))
             }
             View::Section => Ok(Subject::Section),
-            View::Mechanism => Ok(Subject::mechanism(self.x)),
+            View::Mechanism => Ok(Subject::mechanism(self.x[0])),
+            View::SideBySide => Subject::side_by_side(session, memory.beside_place(session), self.x),
             View::Measured => Subject::measured(session),
             View::Well | View::ForceCurve => Ok(Subject::Curve),
             View::Map => Subject::map(session, memory.map_look.surface, memory.map_look.cuts),
@@ -120,16 +123,12 @@ impl Figures {
             View::Basins => Subject::basins(session),
             View::Spectrum => Ok(Subject::spectrum(session)),
             View::Accuracy => Ok(Subject::accuracy(session)),
-            View::Compare | View::Distance | View::BeforeNow => {
-                Err("There is no figure of this view: it shows several scenes, a figure only one.".to_owned())
-            }
-            View::Events => {
+            View::Distance => Subject::distance(session),
+            View::Compare | View::BeforeNow => Subject::compare(session, view == View::BeforeNow),
+            _ => {
                 Err("There is no figure of a table: the button Copy as CSV in the view has its rows."
                     .to_owned())
             }
-            _ => Err("There is no figure of this view: save one of Mechanism for each motion, or \
-                                     a picture of the window (File)."
-                .to_owned()),
         }
     }
 
@@ -162,9 +161,14 @@ impl Figures {
             _ if !panels(view).is_empty() => "The run of the scene from its start.",
             View::Section => "The states of the run of the scene from its start.",
             View::Well | View::ForceCurve => "Force and potential over displacement.",
+            View::SideBySide => "Both mechanisms with the mass where it was when this dialog opened.",
             View::Mechanism => "The mechanism with the mass where it was when this dialog opened.",
             View::Accuracy => "All runs are computed again; times of the processor differ from run to run.",
             View::Measured => "The record over the run of the scene from its start, or over its force.",
+            View::Distance => "The runs of the scenes, each from its start.",
+            View::Compare | View::BeforeNow => {
+                "The scenes from rest, all under the shaking of the present one. This takes a while."
+            }
             View::Map | View::UpAndDown | View::Basins => "All runs are computed again. This takes a while.",
             _ => "",
         }

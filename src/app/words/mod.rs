@@ -7,6 +7,7 @@ pub mod kind;
 pub mod lesson;
 pub mod meanings;
 pub mod numbers;
+pub mod parts;
 pub mod status;
 pub mod wells;
 

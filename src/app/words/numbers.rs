@@ -1,7 +1,10 @@
 //! Formats of numbers in fields, on axes and in sentences, and round numbers for ranges and steps.
 
-use crate::numeric::{self, elementary, round};
+use crate::numeric::{self, Ending, elementary, round};
+
 use crate::output::suited_unit;
+
+pub use crate::numeric::rounded;
 
 /// The least round number, of one or two significant digits, that is not below `value`.
 pub fn round_up(value: f64) -> f64 {
@@ -12,11 +15,6 @@ pub fn round_up(value: f64) -> f64 {
 /// The greatest 1, 2 or 5 times a power of ten that is not above `value`.
 pub fn below(value: f64) -> f64 {
     round::round_down(value, &round::ONE_TWO_FIVE)
-}
-
-/// The value rounded to this many significant digits.
-pub fn rounded(value: f64, digits: usize) -> f64 {
-    format!("{value:.*e}", digits - 1).parse().unwrap_or(value)
 }
 
 /// The value rounded to seven significant digits, which removes the rounding errors of products.
@@ -82,11 +80,12 @@ pub const UNKNOWN: &str = "\u{2013}";
 
 /// A number with at least three significant digits, and no more decimals than these take.
 pub fn three(value: f64) -> String {
-    let size = value.abs();
-    if size == 0.0 || !size.is_finite() {
-        return format!("{}", value + 0.0);
-    }
-    format!("{value:.0$}", numeric::decimals(size, 3))
+    numeric::significant(value, 3, Ending::Whole, 0.0..f64::INFINITY)
+}
+
+/// The same, with an exponent below this size.
+pub fn three_from(value: f64, least: f64) -> String {
+    numeric::significant(value, 3, Ending::Whole, least..f64::INFINITY)
 }
 
 /// A power in W as text with a unit.
@@ -101,18 +100,8 @@ pub fn decimals_for(largest: f64) -> usize {
 }
 
 /// A number with `digits` significant digits, without an exponent unless it is very small or large.
-fn significant(value: f64, digits: i32) -> String {
-    let size = value.abs();
-    if !(size > 0.0) || !size.is_finite() {
-        return format!("{}", value + 0.0);
-    }
-    // rounding may reach the next power of ten
-    let rounded = rounded(value, digits as usize);
-    if (1e-6..1e7).contains(&size) {
-        format!("{rounded:.*}", numeric::decimals(rounded, digits))
-    } else {
-        format!("{rounded:e}")
-    }
+fn significant(value: f64, digits: usize) -> String {
+    numeric::significant(value, digits, Ending::Padded, 1e-6..1e7)
 }
 
 /// An amplitude as its slider shows it.

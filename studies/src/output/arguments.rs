@@ -48,7 +48,7 @@ fn recorded(option: &str) -> Recorded {
         "set" | "tolerance" | "shard" | "check" | "measured" | "shift-s" | "offset-mm" | "time-scale"
         | "inset" | "plot" | "shapes-plot" | "mechanism-plot" | "contact-plot" | "plot-size"
         | "plot-width-mm" | "plot-height-mm" | "font-pt" | "dpi" | "plot-x" | "plot-y" | "dark"
-        | "no-title" | "panels" | "quantity" | "surface" | "cut" => Recorded::WithPicture,
+        | "no-title" | "beside" | "panels" | "quantity" | "surface" | "cut" => Recorded::WithPicture,
         _ => Recorded::WithRows,
     }
 }

@@ -38,6 +38,7 @@
 //! | [`Basins`] | which attractor each start goes to, and the share of each | [`BasinsAnswer`] |
 //! | [`Accuracy`] | how far a run is off, and what its digits cost | [`AccuracyAnswer`] |
 //! | [`Compare`] | how designs rate under one sine | [`CompareAnswer`] |
+//! | [`Distance`] | how far the motions of other scenes are from this one, over time | [`DistanceAnswer`] |
 //! | [`Best`] | which design is the best for an environment, and with which margins | [`BestAnswer`] |
 //! | [`Identify`] | damping, restitution or force of a measured record | [`IdentifyAnswer`] |
 //!
@@ -81,6 +82,7 @@
 mod accuracy;
 mod compare;
 mod design;
+mod distance;
 mod error;
 mod escape;
 mod grid;
@@ -98,6 +100,7 @@ pub use accuracy::check_accuracy;
 pub use accuracy::{Accuracy, AccuracyAnswer};
 pub use compare::{Compare, CompareAnswer};
 pub use design::{Best, BestAnswer};
+pub use distance::{Distance, DistanceAnswer};
 #[doc(hidden)]
 pub use error::longest_wait;
 pub use error::{Error, FaultAt};

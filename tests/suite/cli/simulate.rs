@@ -28,6 +28,36 @@ fn simulate_samples() {
 }
 
 #[test]
+fn the_distance_of_two_runs_is_drawn_and_the_rows_stay_those_of_the_first() {
+    let folder = tempfile::tempdir().unwrap();
+    let [plot, data] = ["d.svg", "d.csv"].map(|name| folder.path().join(name));
+    let line = "simulate elastic-box --set run.duration_s=1";
+    let drawn = |beside: &str| {
+        let mut command =
+            headless(&format!("{line} --plot {} --plot-data {}", plot.display(), data.display()));
+        let rows = command.args(["--beside", beside]).assert().success().get_output().stdout.clone();
+        assert_eq!(String::from_utf8(rows).unwrap(), stdout(line));
+        std::fs::read_to_string(&data).unwrap()
+    };
+    // a link: from the middle twice as fast, 0.05 m apart after 0.1 s for each m/s; --set leaves it as it is
+    let link = "check elastic-box --set start.v_m_per_s=0.06 --link --out -";
+    let link = stdout(link).lines().find(|line| line.starts_with("?scene=")).unwrap().to_owned();
+    let text = drawn(&link);
+    assert_eq!(text.lines().next().unwrap(), "series,t_s,distance_m,motion");
+    let (times, apart) = (column(&text, "t_s"), column(&text, "distance_m"));
+    let at = times.iter().position(|t| t == "0.1").unwrap();
+    assert!((apart[at].parse::<f64>().unwrap() - 0.001).abs() < 1e-12, "{}", apart[at]);
+    assert!(text.lines().skip(1).all(|line| line.starts_with("distance,") && line.ends_with(",A")));
+    assert!(
+        std::fs::read_to_string(&plot).unwrap().contains("A: built-in elastic-box, start.v_m_per_s=0.06")
+    );
+    let four = "--beside paper".to_owned() + &" --beside paper".repeat(3);
+    refused(headless(&format!("simulate paper {four} --plot {}", plot.display())), &["--beside", "three"]);
+    refused(headless("simulate paper --beside paper"), &["--plot"]);
+    refused(headless(&format!("simulate paper --beside nowhere --plot {}", plot.display())), &["nowhere"]);
+}
+
+#[test]
 fn simulate_events_and_summary() {
     let folder = tempfile::tempdir().unwrap();
     let (events, summary) = (folder.path().join("e.csv"), folder.path().join("s.json"));

@@ -3,6 +3,7 @@
 use eframe::egui::{self, ComboBox, TextStyle, Ui, UiBuilder};
 
 use crate::app::session::accuracy::Accuracy;
+use crate::numeric;
 use crate::output::{Chart, steps_panel};
 use crate::scene::read_number;
 use interwell_studies::study::Table;
@@ -74,7 +75,7 @@ pub fn steps_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         let plot = rest.with_max_y((rest.bottom() - below).max(rest.top()));
         let mut top = rest.top();
         if plot.height() >= PLOT {
-            let chart = Chart::stack(vec![steps_panel(&known, 0, stops.into())], "", Table::new());
+            let chart = Chart::stack(vec![steps_panel(&known, 1, stops.into())], "", Table::new());
             pane_ui(ui, context.memory, View::Accuracy, &style, plot, chart);
             top = plot.bottom() + 4.0;
         }
@@ -165,7 +166,7 @@ fn rounded(step: f64) -> f64 {
     if let Some(named) = NAMED.iter().find(|named| (step / named.0 - 1.0).abs() < 0.02) {
         return named.0;
     }
-    format!("{step:.1e}").parse().unwrap_or(step).clamp(RANGE.0, RANGE.1)
+    numeric::rounded(step, 2).clamp(RANGE.0, RANGE.1)
 }
 
 /// A typed step: a number or arithmetic, such as 1/1000, in s, ms or µs.

@@ -13,8 +13,9 @@ use super::role::Role;
 use crate::numeric::elementary;
 use crate::scene::PROGRAM;
 use crate::study::Table;
-use crate::study::accuracy::PROBLEMS;
+use crate::study::accuracy::methods::Scheme;
 use crate::study::accuracy::scene::{StepSize, Tolerances, duration, step_name};
+use crate::study::accuracy::{OWN, PROBLEMS};
 
 /// An error of 0 is drawn here; smaller errors cannot be told apart in double precision.
 const LEAST: f64 = 1e-17;
@@ -40,14 +41,15 @@ pub fn accuracy_chart(table: &Table, version: &str) -> (Chart, Caption) {
         let known = PROBLEMS.iter().find(|known| known.name == *problem);
         panel.heading = known.map_or(*problem, |known| known.heading).to_owned();
         // the method of this program is drawn last, so that it lies on top
-        for (place, method) in named.iter().enumerate().rev() {
+        for method in named.iter().rev() {
             let points: Vec<Point> = (0..problems.len())
                 .filter(|row| problems[*row] == *problem && methods[*row] == *method)
                 .filter(|row| errors[*row].is_finite() && times[*row] > 0.0)
                 .map(|row| (elementary::log10(times[row]), elementary::log10(floored(errors[row]))))
                 .collect();
-            panel.draw(Role::Method(place), Marks::Path(points.clone()));
-            panel.layer(Role::Method(place), *method, Marks::Points(points));
+            let role = role_of(method);
+            panel.draw(role, Marks::Path(points.clone()));
+            panel.layer(role, *method, Marks::Points(points));
         }
         Column { width: 1.0, panels: vec![panel] }
     };
@@ -87,7 +89,7 @@ pub fn scene_accuracy_chart(
     stops: (f64, f64),
 ) -> Chart {
     let mut columns = vec![Column { width: 1.0, panels: vec![cost_panel(known, tolerance, stepped)] }];
-    let panels: Vec<Panel> = stepped.iter().enumerate().map(|(i, run)| steps_panel(run, i, stops)).collect();
+    let panels: Vec<Panel> = stepped.iter().map(|run| steps_panel(run, stepped.len(), stops)).collect();
     if !panels.is_empty() {
         columns.push(Column { width: 1.3, panels });
     }
@@ -124,27 +126,44 @@ pub fn cost_panel(known: &Tolerances, tolerance: f64, stepped: &[StepSize]) -> P
     let mut panel = Panel::new(across, PlotAxis::decades(all().map(|point| point.1), "error (mm)"));
     let places: Vec<Point> = runs.into_iter().map(logs).collect();
     let names = known.runs.iter().map(|run| format!("{:e}", run.tolerance));
-    let words = places.iter().copied().zip(names).collect();
+    let mut words: Vec<(Point, String)> = places.iter().copied().zip(names).collect();
     panel.draw(Role::Motion, Marks::Path(places.clone()));
     panel.draw(Role::Interval, Marks::Points(places.clone()));
     let of_scene = known.runs.iter().zip(places).filter(|run| run.0.tolerance == tolerance);
     let of_scene = of_scene.map(|run| run.1).collect();
     panel.layer_if_any(Role::Unstable, "the tolerance of the scene", Marks::Points(of_scene));
     for (i, at) in ghosts {
-        panel.layer(Role::Method(i + 1), in_steps(&stepped[i]), Marks::Points(vec![logs(at)]));
+        let run = &stepped[i];
+        panel.layer(role_of(run.scheme.name()), in_steps(run, stepped.len()), Marks::Points(vec![logs(at)]));
+        // one of several steps is named at its marker
+        words.extend((stepped.len() > 1).then(|| (logs(at), step_name(run.step))));
     }
     panel.draw(Role::Motion, Marks::Words(words));
     panel
 }
 
-/// A run in fixed steps in words.
-fn in_steps(run: &StepSize) -> String {
-    format!("{} in steps of {}", run.scheme.name(), step_name(run.step))
+/// A run in fixed steps in words, one of so many.
+fn in_steps(run: &StepSize, count: usize) -> String {
+    match count {
+        1 => format!("{} in steps of {}", run.scheme.name(), step_name(run.step)),
+        _ => format!("{} in fixed steps", run.scheme.name()),
+    }
 }
 
-/// A run in fixed steps over the true one, with stops in m; `place` is that among several.
+/// The role of a method by its name.
+fn role_of(method: &str) -> Role {
+    match Scheme::ALL.into_iter().find(|scheme| scheme.name() == method) {
+        Some(Scheme::SemiImplicitEuler) => Role::Euler,
+        Some(Scheme::VelocityVerlet) => Role::Verlet,
+        Some(Scheme::RungeKutta4) => Role::RungeKutta,
+        None if method == OWN => Role::Taylor,
+        None => Role::DormandPrince,
+    }
+}
+
+/// A run in fixed steps, one of so many, over the true one, with stops in m.
 #[doc(hidden)]
-pub fn steps_panel(run: &StepSize, place: usize, stops: (f64, f64)) -> Panel {
+pub fn steps_panel(run: &StepSize, count: usize, stops: (f64, f64)) -> Panel {
     let path = |points: &[Point]| points.iter().map(|(t, x)| (*t, x * 1e3)).collect::<Vec<_>>();
     let (truth, stepped) = (path(&run.truth), path(&run.ghost));
     // a run that diverges leaves the picture
@@ -152,9 +171,13 @@ pub fn steps_panel(run: &StepSize, place: usize, stops: (f64, f64)) -> Panel {
     let mut panel = Panel::new(PlotAxis::between(0.0, run.drawn, TIME), up);
     panel.level_stops((stops.0 * 1e3, stops.1 * 1e3));
     panel.layer(Role::Motion, "true", Marks::Trace(truth));
-    panel.layer(Role::Method(place + 1), in_steps(run), Marks::Trace(stepped.clone()));
+    if count > 1 {
+        panel.heading = format!("steps of {}", step_name(run.step));
+    }
+    let role = role_of(run.scheme.name());
+    panel.layer(role, in_steps(run, count), Marks::Trace(stepped.clone()));
     if stepped.len() <= MAX_DOTS {
-        panel.draw(Role::Method(place + 1), Marks::Points(stepped));
+        panel.draw(role, Marks::Points(stepped));
     }
     panel
 }

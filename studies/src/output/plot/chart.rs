@@ -6,6 +6,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::assembly::Assembly;
 use super::axis::PlotAxis;
 use super::cells::{Cells, Colours};
 use super::figure::Point;
@@ -129,6 +130,9 @@ pub enum Marks {
     /// written as data, so that it is the last: a message counts the others.
     #[serde(skip)]
     Regimes(Vec<(Point, &'static str)>, bool),
+    /// A mechanism as a drawing. As the one before, it is never written as data.
+    #[serde(skip)]
+    Mechanism(Box<Assembly>),
 }
 
 impl Chart {
@@ -217,6 +221,7 @@ impl Panel {
             | Marks::Words(_)
             | Marks::Cells(_)
             | Marks::Surface(..)
+            | Marks::Mechanism(_)
             | Marks::Patch => true,
         }
     }

@@ -7,8 +7,9 @@ use super::chart::{Chart, Column, Marks, Panel};
 use super::mark::REGIMES;
 use super::quantity::suited_unit;
 use super::role::Role;
-use crate::numeric::round::decade;
-use crate::numeric::{elementary, short};
+use crate::numeric::{Ending, elementary, short, significant};
+use crate::questions::CompareAnswer;
+use crate::scene::{Document, is_link};
 use crate::study::{Rated, SEARCHED_SPAN, Table};
 
 /// Largest number of panels side by side.
@@ -91,11 +92,7 @@ impl Shown {
 /// A number rounded to three digits, as text without zeros at its end.
 #[doc(hidden)]
 pub fn three_digits(value: f64) -> String {
-    if value == 0.0 || !value.is_finite() {
-        return short(value);
-    }
-    let digit = elementary::powi(10.0, decade(value) - 2);
-    short((value / digit).round() * digit)
+    significant(value, 3, Ending::Trimmed, 1e-3..1e6)
 }
 
 /// The picture of a comparison of scenes, one row each, under a drive of this frequency in Hz, of the fields
@@ -113,6 +110,26 @@ pub fn comparison_chart(rated: &[Rated], frequency_hz: f64) -> Chart {
     });
     let about = "from rest; speeds, reach and impacts over the settled window, numbers to three digits";
     Chart { columns: columns.collect(), subtitle: about.to_owned(), data: drawn(rated) }
+}
+
+/// The title of the picture of a comparison.
+pub fn comparison_title(answer: &CompareAnswer) -> String {
+    let [amplitude, frequency] = [answer.amplitude_g, answer.frequency_hz].map(short);
+    format!("{} scenes under a sine of {amplitude} g at {frequency} Hz", answer.rated.len())
+}
+
+/// The name in a comparison of the scene in an argument. That of a link says what it changes.
+pub fn compared_name(spec: &str, document: &Document) -> String {
+    let words = match document.name.strip_prefix("built-in ") {
+        _ if !is_link(spec) => spec.to_owned(),
+        Some(preset) => {
+            let changes = document.changes().map(|change| format!(" {}", change.replace(['/', '\\'], "_")));
+            format!("{preset}{}", changes.collect::<String>())
+        }
+        None => document.scene.title.replace(['/', '\\'], "_"),
+    };
+    // CSV would have to quote these
+    words.replace([',', '"', '\n', '\r'], "_")
 }
 
 /// The position of a scene on the vertical axis.

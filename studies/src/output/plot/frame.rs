@@ -238,6 +238,7 @@ impl Frame {
                 }
             }
             Marks::Cells(cells) => self.cells(figure, cells, theme),
+            Marks::Mechanism(assembly) => assembly.draw(figure, self, theme),
             Marks::Surface(..) | Marks::Patch => {}
         }
     }

@@ -10,6 +10,8 @@ const BESIDE: [f64; 2] = [8.0, 16.0];
 /// Distance of a label from the edges of its frame, and from what it keeps clear of.
 const EDGE: f64 = 4.0;
 const CLEAR: f64 = 1.0;
+/// Distance of a label of a drawing from what is drawn.
+const APART: f64 = 5.0;
 
 /// The box of a text that is not upright.
 fn box_of(text: &Text) -> Area {
@@ -69,6 +71,26 @@ pub fn beside(figure: &Figure, within: Area, (x, y): Point, words: &str, size: f
     let mut texts = figure.shapes.iter().filter(|shape| matches!(shape, Shape::Text(_)));
     let free = std::iter::once(usual).chain(around).find(is_free);
     free.or_else(|| (!texts.any(|text| covers(text, area(usual)))).then_some(usual))
+}
+
+/// The first of these texts that lies within an area, clear of lines, letters and what is `kept` free; with its
+/// place.
+pub fn first_free(
+    figure: &Figure,
+    within: Area,
+    kept: &[Area],
+    texts: impl IntoIterator<Item = Text>,
+) -> Option<(Text, Area)> {
+    texts.into_iter().map(|text| (box_of(&text), text)).find_map(
+        |(Area { left, top, right, bottom }, text)| {
+            let area = Area::new(left - APART, top - APART, right + APART, bottom + APART);
+            let is_free = within.contains((left, top))
+                && within.contains((right, bottom))
+                && !kept.iter().any(|kept| kept.common(area).is_some())
+                && !figure.shapes.iter().any(|shape| covers(shape, area));
+            is_free.then_some((text, area))
+        },
+    )
 }
 
 #[cfg(test)]

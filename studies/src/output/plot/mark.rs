@@ -150,6 +150,16 @@ impl Caption {
         Self { title: scene.title.clone(), footer, origin: origin(document, version) }
     }
 
+    /// The caption with other scenes, called by letters, at its foot.
+    #[must_use]
+    pub fn with_others<'a>(mut self, others: impl IntoIterator<Item = &'a Document>) -> Self {
+        for (letter, other) in ('A'..).zip(others) {
+            self.footer += &format!("{PART}{letter}: {}", other.name);
+            other.changes().for_each(|change| self.footer += &format!(", {change}"));
+        }
+        self
+    }
+
     /// The caption of a picture of what was identified from the record in a file called `name`, made by this
     /// `version`.
     pub fn of_record(name: &str, of: &str, version: &str) -> Self {

@@ -5,14 +5,17 @@
 //! theme, and equal data give equal bytes.
 
 mod accuracy;
+mod assembly;
 mod axis;
 mod basins;
+mod beside;
 mod best;
 mod branch;
 mod cells;
 mod chart;
 mod comparison;
 mod curve;
+mod distance;
 mod drawn;
 mod figure;
 mod font;
@@ -38,6 +41,7 @@ mod run;
 mod section;
 mod shapes;
 mod sheet;
+mod sketch;
 mod spectrum;
 mod style;
 mod subset;
@@ -53,20 +57,22 @@ use std::path::Path;
 use crate::study::words;
 
 pub use accuracy::{accuracy_chart, cost_panel, scene_accuracy_chart, steps_panel};
+pub use assembly::{Assembly, MagnetPair};
 pub use axis::{PlotAxis, Ranges};
 pub use basins::{basins_chart, can_show_starts};
 pub use best::best_chart;
 pub use branch::{branch_chart, loci_chart};
 pub use cells::{Cell, Cells, Colours};
 pub use chart::{Chart, Column, Layer, Marks, Note, Panel, Side};
-pub use comparison::{comparison_chart, three_digits};
+pub use comparison::{compared_name, comparison_chart, comparison_title, three_digits};
 pub use curve::{contact_chart, curve_chart, force_panel, zero_of_energy};
+pub use distance::{distance_chart, distance_ends, distance_panel};
 pub use figure::{Area, Figure, Shape, Text};
 pub use font::{HACK, INTER, width as text_width};
 pub use frame::Frame;
 pub use ledger::{LedgerTerm, ledger_bars, ledger_decimals, ledger_number, share_of_work};
 pub use mark::Caption;
-pub use mechanism::{depends_on_place, mechanism_chart};
+pub use mechanism::mechanism_chart;
 pub use names::{
     BASE_ACCELERATION, DISPLACEMENT, FREQUENCY, HOLDING_FORCE, PROCESSOR_TIME, TIME, VELOCITY, axis_name,
 };
@@ -83,6 +89,7 @@ pub use run::{RunPanel, run_chart};
 pub use section::section_chart;
 pub use shapes::shapes_chart;
 pub use sheet::{Sheet, SheetError, SheetText};
+pub use sketch::{DrawnPart, Sketch};
 pub use spectrum::{SpectrumQuantity, spectrum_chart};
 pub use style::{BLACK, Ink, TICK, Theme, is_fine, viridis};
 pub use surface::SurfaceFrame;

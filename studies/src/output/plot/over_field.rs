@@ -82,10 +82,8 @@ pub fn exponents_chart(rows: &Table, grid: &Grid, scene: &Scene, ranges: Ranges)
     let up = PlotAxis::from_zero(both, 0.06, "Lyapunov exponent (1/s)").or_given(ranges.y);
     let mut panel = Panel::new(swept_axis(rows, x, ranges.x), up);
     let order = ascending(places, |_| true);
-    let lines = [
-        ("first exponent", "exponent_1", Role::Method(0)),
-        ("second exponent", "exponent_2", Role::Envelope),
-    ];
+    let lines =
+        [("first exponent", "exponent_1", Role::Curve), ("second exponent", "exponent_2", Role::Envelope)];
     let there = first.iter().any(|value| value.is_finite());
     for (_, name, _) in &lines {
         let (values, errors) = (numbers(&format!("{name}_per_s")), numbers(&format!("{name}_se")));

@@ -320,6 +320,7 @@ fn sample(layer: &Layer, theme: &Theme) -> Sample {
         | Marks::Intervals(_)
         | Marks::Verticals(_)
         | Marks::Horizontals(_)
+        | Marks::Mechanism(_)
         | Marks::Words(_) => Sample::Line(look),
     }
 }

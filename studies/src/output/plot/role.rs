@@ -86,8 +86,16 @@ pub enum Role {
     Impacts,
     /// A threshold above which there are gaps.
     Gaps,
-    /// One of several methods.
-    Method(usize),
+    /// The method of this program, Taylor series.
+    Taylor,
+    /// The method of Dormand and Prince.
+    DormandPrince,
+    /// Semi-implicit Euler in fixed steps.
+    Euler,
+    /// Velocity Verlet in fixed steps.
+    Verlet,
+    /// The method of Runge and Kutta in fixed steps.
+    RungeKutta,
     /// Several kinds together.
     Several,
     /// The part that another panel shows closer.
@@ -118,8 +126,8 @@ pub enum Role {
     Mass,
     /// A travel limit.
     Limit,
-    /// A magnet.
-    Magnet,
+    /// A stop where it would be best.
+    BestStop,
     /// A coil or a piezoelectric layer.
     Transducer,
     /// Energy that a person put in.
@@ -174,9 +182,13 @@ impl Theme {
         let dashed = |ink: Ink| Look { ink, dash: Some(style::DASH), ..plain };
         let dotted = |ink: Ink| Look { ink, dash: Some(style::DOT), ..plain };
         let marked = |ink: Ink, marker: Marker| Look { ink, marker, ..plain };
+        let method = |ink: Ink, marker: Marker| Look {
+            size: 0.75 * style::MARKER,
+            width: style::FINE_LINE,
+            ..marked(ink, marker)
+        };
         let design = |marker: Marker| Look { halo: Some(self.paper), ..marked(self.stable, marker) };
-        const MARKERS: [Marker; 5] =
-            [Marker::Disc, Marker::Square, Marker::Triangle, Marker::Diamond, Marker::DoubleArrow];
+        const MARKERS: [Marker; 4] = [Marker::Disc, Marker::Square, Marker::Triangle, Marker::Diamond];
         match role {
             Role::Motion => fine(self.ink),
             Role::Second => fine(self.second),
@@ -227,14 +239,11 @@ impl Theme {
             Role::Found => Look { size: style::MARKER + 2.0, ..design(Marker::Diamond) },
             Role::SteppedBack => design(Marker::Square),
             Role::Broken => marked(self.unstable, Marker::Cross),
-            Role::Method(place) => {
-                let inks = [self.regimes[3], self.regimes[1], self.unstable, self.regimes[2], self.second];
-                Look {
-                    size: 0.75 * style::MARKER,
-                    width: if place == 0 { style::LINE } else { style::FINE_LINE },
-                    ..marked(inks[place % 5], MARKERS[place % 5])
-                }
-            }
+            Role::Taylor => Look { width: style::LINE, ..method(self.regimes[3], Marker::Disc) },
+            Role::DormandPrince => method(self.regimes[1], Marker::Square),
+            Role::Euler => method(self.unstable, Marker::Triangle),
+            Role::Verlet => method(self.regimes[2], Marker::Diamond),
+            Role::RungeKutta => method(self.second, Marker::DoubleArrow),
             Role::Gaps => marked(self.unstable, Marker::Triangle),
             Role::Impacts => marked(self.regimes[3], Marker::Triangle),
             Role::Several => of(self.paper),
@@ -243,8 +252,8 @@ impl Theme {
             Role::ByHand | Role::Mass => of(self.unstable),
             Role::Frame => Look { hatch: Some(self.rest_hatch), ..of(self.rest) },
             Role::Limit => of(self.wall),
-            Role::Magnet => of(self.impact),
-            Role::Transducer => Look { width: 3.0 * style::LINE, ..of(self.second) },
+            Role::BestStop => Look { dash: Some(style::SHORT_DASH), ..fine(self.wall.over(self.paper, 0.7)) },
+            Role::Transducer => of(self.second),
             Role::Taken => of(self.soft),
             Role::Total => of(self.energy),
             Role::Barrier => dotted(self.soft),

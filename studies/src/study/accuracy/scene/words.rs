@@ -2,19 +2,12 @@
 
 use super::{Course, Lateness, StepSize, TRUSTED_SHARE, Trust};
 use crate::dynamics::Outcome;
-use crate::numeric::{decimals, elementary};
+use crate::numeric::{Ending, elementary, significant};
 
 /// A number with two digits, written out.
 fn two(value: f64) -> String {
-    let size = value.abs();
-    if size < 1e-12 {
-        return "0".to_owned();
-    }
-    let places = decimals(size, 2);
-    // a value that rounds up to another digit has one decimal less: 9.96 is 10
-    let ten = format!("{size:.places$}").parse().is_ok_and(|shown: f64| shown >= 10.0);
-    let places = if ten { 0 } else { places };
-    format!("{value:.places$}")
+    let value = if value.abs() < 1e-12 { 0.0 } else { value };
+    significant(value, 2, Ending::Whole, 0.0..f64::INFINITY)
 }
 
 /// A short time in the unit that suits it.
