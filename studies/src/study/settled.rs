@@ -45,7 +45,7 @@ pub(super) fn followed<'a>(model: Model, until: Option<f64>) -> (Model, Request<
     (model, Request { until_settled, ..Request::default() })
 }
 
-/// Runs `model` until its motion repeats, at most up to [`followed_until`]; under an amplitude ramp, to the
+/// Runs `model` until its motion repeats, at most up to `followed_until`; under an amplitude ramp, to the
 /// end of the ramp. `None` if cancelled.
 pub fn settled(model: &Model, cancel: &AtomicBool) -> Option<Summary> {
     settled_within(model, None, cancel)

@@ -71,7 +71,7 @@ pub struct Environment {
 }
 
 /// A field that varies about its value: within a tolerance to both sides of it ([`best`]), or with a standard
-/// deviation ([`Draws`](super::Draws)).
+/// deviation (`Draws`).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Variation {
     /// Dotted path of the field.
