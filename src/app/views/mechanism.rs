@@ -52,7 +52,8 @@ fn drawing_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect) {
     let bent = state_at(context, state.x);
     let model = Arc::clone(context.drawn.model(context.session));
     let ends = (context.span.low, context.span.high);
-    let assembly = Assembly::of(&model, state.x, bent.as_ref(), ends).pushed(&model, state.base_accel);
+    let mut assembly = Assembly::of(&model, state.x, bent.as_ref(), ends).pushed(&model, state.base_accel);
+    assembly.outlined = best_stops(context).map(|mm| mm * 1e-3);
     let unit = |points: f32| f64::from(points / UNIT);
     let area = Area::new(0.0, unit(AROUND.0), unit(rect.width()), unit(rect.height() - AROUND.1));
     let along = assembly.along(area).map(|along| along * f64::from(UNIT));

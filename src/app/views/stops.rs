@@ -62,6 +62,11 @@ pub(super) fn travel_limits(painter: &Painter, context: &ViewContext<'_>, rect: 
         Some((place, side, limit_number(context.session, mm?)))
     });
     let limits: Vec<(f32, f32, String)> = limits.collect();
+    let best = best_stops(context).into_iter().flat_map(|mm| [(-mm, -1.0), (mm, 1.0)]);
+    taken.places.extend(best.map(|(mm, side)| {
+        let x = context.span.screen_from_world(mm / 1e3, rect);
+        Rect::from_two_pos(pos2(x, rect.top()), pos2(x + side * WALL, rect.bottom()))
+    }));
     for (x, ..) in &limits {
         taken.lines.push(vec![pos2(*x, rect.top()), pos2(*x, rect.bottom())]);
     }

@@ -64,6 +64,8 @@ pub struct Assembly {
     pub spring: Option<f64>,
     /// The push on the mass as a share of the largest, positive to the right; 0 for no arrow.
     pub push: f64,
+    /// Travel limit in m of other stops, whose outlines are drawn over the picture.
+    pub outlined: Option<f64>,
     /// Displacements of the stops in m.
     pub(super) stops: [Option<f64>; 2],
     pub(super) flexures: Option<Flexures>,
@@ -96,6 +98,7 @@ impl Assembly {
             transducer: model.transducer(),
             spring: (flexures.is_none() && depends_on_place(mechanism, ends)).then_some(barrier),
             push: 0.0,
+            outlined: None,
             stops: model.stop_positions().into(),
             flexures: flexures.map(|(flexures, state)| Flexures::of(flexures.geometry(), state)),
         };

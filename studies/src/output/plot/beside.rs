@@ -24,8 +24,6 @@ const SPRING_AT: f64 = 0.5;
 const HALF_MAGNET: f64 = 16.0;
 /// Height of a magnet's pole where there is room, and the smallest.
 const POLE: (f64, f64) = (26.0, 10.0);
-/// Width on the left that the text on the flexures has.
-const WORDS_ROOM: f64 = 260.0;
 
 /// Half the length of a coil, and as a share of the width, which leaves room for the load.
 const WINDING: (f64, f64) = (156.0, 0.1);
@@ -56,8 +54,8 @@ pub(super) struct Magnet {
     pub stem: Option<Area>,
 }
 
-/// The places where a label may stand, and the area within which it has to.
-type Label = (Vec<Text>, Area);
+/// A label at each of the places where it may stand.
+type Label = Vec<Text>;
 
 impl Pen<'_> {
     /// Draws what lies behind the flexures. Returns the labels.
@@ -88,7 +86,7 @@ impl Pen<'_> {
         // below the stops, or above them
         let places = [(mass.bottom + 15.0, Edge::Top), (mass.top - 15.0, Edge::Bottom)];
         let texts = places.map(|(y, edge)| self.text(&words, (from.0 + 13.0, y), Align::Left, edge));
-        Some((texts.into(), area))
+        Some(texts.into())
     }
 
     /// Height of the poles of a pair of magnets, and the places of the middles of the two; `None` if there is
@@ -115,14 +113,14 @@ impl Pen<'_> {
         self.parts.push((DrawnPart::Magnets, place));
         let words = if pair.stiffness() > 0.0 { "magnets attract" } else { "magnets repel" };
         let beside = |side: f64| {
-            let at = (stood.0 + side * (HALF_MAGNET + 13.0), stood.1);
-            self.text(words, at, towards(side), Edge::Middle)
+            let x = stood.0 + side * (HALF_MAGNET + 13.0);
+            [(stood.1, Edge::Middle), (stood.1 - pole, Edge::Bottom)]
+                .map(|(y, edge)| self.text(words, (x, y), towards(side), edge))
         };
         // the side away from the flexures first, unless the load is there
         let is_right = self.mass.right < self.zero && self.of.transducer == Transducer::None;
         let sides = if is_right { [1.0, -1.0] } else { [-1.0, 1.0] };
-        let area = self.area();
-        Some((sides.map(beside).into(), Area { left: area.left + WORDS_ROOM, ..area }))
+        Some(sides.into_iter().flat_map(beside).collect())
     }
 
     /// The magnets: a pair, or the one that hangs in a coil.
@@ -166,7 +164,18 @@ impl Pen<'_> {
             f64::INFINITY => "open circuit".to_owned(),
             load => format!("load {} {unit}", short(load)),
         };
-        self.load(part, load, (name, &words))
+        let places = self.load(part, load);
+        // without room for the load, the label is beside the transducer
+        let y = 0.5 * (part.top + part.bottom);
+        let mirrored = 2.0 * self.zero - part.right;
+        let beside = [(part.right + 13.0, 1.0), (mirrored - 13.0, -1.0)];
+        let beside = beside.map(|(x, side)| ((x, y), towards(side), Edge::Middle));
+        let whole = format!("{name}, {words}");
+        let texts = [whole, words].into_iter().flat_map(|words| {
+            let places = places.iter().copied().chain(beside);
+            places.map(|(at, align, edge)| self.text(&words, at, align, edge)).collect::<Vec<_>>()
+        });
+        Some(texts.collect())
     }
 
     /// The two rows of a coil around x = 0 in section, and in it the middle and the height of the poles of the
@@ -234,15 +243,15 @@ impl Pen<'_> {
     }
 
     /// Draws the load and its two wires: a resistor, a wire for a short circuit, a gap for an open circuit.
-    /// Returns its label with the name of the transducer, or without it where that has no room.
-    fn load(&mut self, part: Area, value: f64, (name, words): (&str, &str)) -> Option<Label> {
+    /// Returns the places of its label; none where it has no room.
+    fn load(&mut self, part: Area, value: f64) -> Vec<(Point, Align, Edge)> {
         let area = self.area();
         let right = area.right - if self.along.is_some() { SCALE_ROOM } else { 17.0 };
         let y = WIRES.map(|height| self.bottom - height);
         let begin = (part.right + 22.0).max(self.zero + self.reach_at(LOAD_TOP));
         let (load_end, end) = (begin + LOAD.0, begin + LOAD.0 + 20.0);
         if end > right {
-            return None;
+            return Vec::new();
         }
         let ink = self.theme.ink;
         let lead = part.right - 6.0;
@@ -262,16 +271,11 @@ impl Pen<'_> {
         self.kept.push(resistor);
         self.parts.push((DrawnPart::Load, resistor));
         let middle = 0.5 * (resistor.left + resistor.right);
-        let places = [
+        vec![
             ((end + 13.0, y[1] - 4.0), Align::Left, Edge::Bottom),
             ((middle, resistor.top - 9.0), Align::Centre, Edge::Bottom),
             ((begin, resistor.top - 9.0), Align::Left, Edge::Bottom),
-        ];
-        let whole = format!("{name}, {words}");
-        let texts = [whole.as_str(), words]
-            .into_iter()
-            .flat_map(|words| places.map(|(at, align, edge)| self.text(words, at, align, edge)));
-        Some((texts.collect(), Area { right, ..area }))
+        ]
     }
 }
 

@@ -40,7 +40,7 @@ const ARROW_GAP: (f64, f64) = (13.0, 6.0);
 const LETTER: (f64, f64) = (4.0, 18.0);
 
 /// Smallest width and height of a drawing whose parts are labelled.
-const LABELLED: (f64, f64) = (600.0, 250.0);
+const LABELLED: (f64, f64) = (420.0, 180.0);
 
 /// A part that a reader may ask about.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -102,6 +102,7 @@ pub(super) struct Pen<'a> {
     pub along: Option<f64>,
     pub mass: Area,
     stops: [Option<Area>; 2],
+    outlined: [Option<Area>; 2],
 }
 
 /// Which side of a label is at its place: its upper one, its middle or its lower one.
@@ -129,11 +130,12 @@ impl<'a> Pen<'a> {
             let back = face + side * STOP.0;
             Some(Area::new(face.min(back), mass.top - STOP.1, face.max(back), mass.bottom + STOP.1))
         };
-        let stops = [stop(of.stops[0], -1.0), stop(of.stops[1], 1.0)];
+        let both = |[left, right]: [Option<f64>; 2]| [stop(left, -1.0), stop(right, 1.0)];
+        let (stops, outlined) = (both(of.stops), both([of.outlined.map(|limit| -limit), of.outlined]));
         let mut figure = Figure::new(theme, (frame.area.right, frame.area.bottom), (0.0, frame.area.bottom));
         figure.shapes.clear();
         let (kept, parts, feet) = Default::default();
-        Self { of, frame, theme, figure, kept, parts, feet, top, bottom, zero, along, mass, stops }
+        Self { of, frame, theme, figure, kept, parts, feet, top, bottom, zero, along, mass, stops, outlined }
     }
 
     /// Draws all of it, with these words at the mass.
@@ -148,7 +150,7 @@ impl<'a> Pen<'a> {
             self.clamp(self.bottom, false);
         }
         self.kept.push(self.mass);
-        self.kept.extend(self.stops.into_iter().flatten());
+        self.kept.extend(self.stops.into_iter().chain(self.outlined).flatten());
         let arrow = self.arrow_place();
         self.kept.extend(arrow);
         let labels = self.beside();
@@ -168,12 +170,12 @@ impl<'a> Pen<'a> {
         if let Some(words) = self.of.bulge() {
             let place = (area.left + 26.0, self.bottom - 11.0);
             let text = self.text(&words, place, Align::Left, Edge::Bottom);
-            let place = self.write(area, [Text { ink: self.theme.ink, ..text }]);
+            let place = self.write([Text { ink: self.theme.ink, ..text }]);
             self.parts.extend(place.map(|place| (DrawnPart::Bulge, place)));
         }
         if area.right - area.left >= LABELLED.0 && area.bottom - area.top >= LABELLED.1 {
-            for (texts, within) in labels.into_iter().chain(self.names(mass)) {
-                self.write(within, texts);
+            for texts in labels.into_iter().chain(self.names(mass)) {
+                self.write(texts);
             }
         }
         let before = self.figure.shapes.split_off(behind);
@@ -254,12 +256,15 @@ impl<'a> Pen<'a> {
             [Some(left), Some(right)] => {
                 let room = 0.5 * (right.left - left.right) - HALF_MASS - 2.0 * ARROW_GAP.0;
                 let side = if middle > 0.5 * (left.right + right.left) { -1.0 } else { 1.0 };
-                match room >= ARROW.1 * length {
+                let all = || self.outlined.into_iter().flatten().chain([left, right]);
+                let outer_left = all().map(|stop| stop.left).fold(f64::INFINITY, f64::min);
+                let outer_right = all().map(|stop| stop.right).fold(f64::NEG_INFINITY, f64::max);
+                match room >= ARROW.1 * length && self.of.outlined.is_none() {
                     true => from(face(side), side, length.min(room)),
-                    false if left.left - length - 2.0 * ARROW_GAP.0 > area.left => {
-                        from(left.left, -1.0, length)
+                    false if outer_left - length - 2.0 * ARROW_GAP.0 > area.left => {
+                        from(outer_left, -1.0, length)
                     }
-                    false => from(right.right, 1.0, length),
+                    false => from(outer_right, 1.0, length),
                 }
             }
             [Some(_), None] => from(mass.right, 1.0, length),
@@ -312,7 +317,7 @@ impl<'a> Pen<'a> {
 
     /// The names of the kinds of parts, each with the places where it may stand: the flexure or the spring at
     /// its clamp, the mass at a corner, a stop at its foot.
-    fn names(&self, mass: &str) -> Vec<(Vec<Text>, Area)> {
+    fn names(&self, mass: &str) -> Vec<Vec<Text>> {
         let mut all = Vec::new();
         let foot = match (&self.of.flexures, self.of.spring) {
             (Some(_), _) => Some(("flexure", self.zero)),
@@ -331,7 +336,9 @@ impl<'a> Pen<'a> {
         let corners = [(above, Edge::Bottom), (below, Edge::Top)]
             .into_iter()
             .flat_map(|(y, edge)| sides.map(|(x, side)| self.text(mass, (x, y), towards(side), edge)));
-        all.push(corners.collect());
+        let y = 0.5 * (self.mass.top + self.mass.bottom);
+        let beside = sides.map(|(x, side)| self.text(mass, (x + 9.0 * side, y), towards(side), Edge::Middle));
+        all.push(corners.chain(beside).collect());
         let of_stop = self.stops.into_iter().flatten().flat_map(|stop| {
             let right = (stop.right + 11.0, 1.0);
             let left = (stop.left - 11.0, -1.0);
@@ -340,7 +347,7 @@ impl<'a> Pen<'a> {
             sides.map(|(x, side)| self.text("stop", (x, stop.bottom - 13.0), towards(side), Edge::Bottom))
         });
         all.push(of_stop.collect());
-        all.into_iter().map(|texts| (texts, self.area())).collect()
+        all
     }
 
     /// A label of the drawing, with a side of it at a place.
@@ -354,9 +361,9 @@ impl<'a> Pen<'a> {
         Text::new(words, (x, y + down), style::TICK, self.theme.soft).aligned(align)
     }
 
-    /// Writes the first of these texts that is free and lies within an area. Returns where.
-    fn write(&mut self, within: Area, texts: impl IntoIterator<Item = Text>) -> Option<Area> {
-        let (text, place) = first_free(&self.figure, within, &self.kept, texts)?;
+    /// Writes the first of these texts that is free. Returns where.
+    fn write(&mut self, texts: impl IntoIterator<Item = Text>) -> Option<Area> {
+        let (text, place) = first_free(&self.figure, self.area(), &self.kept, texts)?;
         self.figure.text(text);
         Some(place)
     }
