@@ -395,7 +395,8 @@ fn a_coil_lies_around_its_magnet() {
     harness.state_mut().session.player.set_playing(false);
     harness.run_steps(3);
     let all = shapes(&harness);
-    let rows: Vec<Rect> = all.iter().filter_map(|shape| is_coil(&shape.0, LIGHT.frame_colour())).collect();
+    let frame = LIGHT.colour(interwell::output::Role::Frame);
+    let rows: Vec<Rect> = all.iter().filter_map(|shape| is_coil(&shape.0, frame)).collect();
     assert_eq!(rows.len(), 2, "{rows:?}");
     let (north, south) = (text(&harness, "N"), text(&harness, "S"));
     let [upper, lower] = [rows[0], rows[1]];

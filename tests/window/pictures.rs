@@ -351,7 +351,7 @@ fn a_coil_lies_clear_of_the_stops() {
             };
             harness.output().shapes.iter().flat_map(parts).collect()
         };
-        let (walls, coil) = (rects(style.stop()), rects(style.frame_colour()));
+        let (walls, coil) = (rects(style.stop()), rects(style.colour(interwell::output::Role::Frame)));
         let coil: Vec<Rect> = coil.into_iter().filter(|rect| (6.0..8.0).contains(&rect.height())).collect();
         assert!(walls.len() >= 2 && coil.len() >= 2, "{size:?} {walls:?} {coil:?}");
         for wall in walls {

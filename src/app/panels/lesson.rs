@@ -152,6 +152,10 @@ fn spoken(lesson: &OpenLesson, session: &Session) -> String {
 
 fn verdict(lesson: &OpenLesson) -> String {
     let outcome = match lesson.outcome() {
+        Outcome::Holds(option) if lesson.answer().choice.is_none() => {
+            let text = plain(lesson.options()[option].text.trim_end_matches('.'));
+            return format!("What holds: {}, “{text}”.", letter(option));
+        }
         Outcome::Holds(option) => Some(lesson.options()[option].text.as_str()),
         Outcome::Unknown => lesson.answer().outcome.as_deref(),
         Outcome::Unclear => return "Not exactly one of the options holds: see for yourself.".to_owned(),
@@ -234,9 +238,9 @@ fn below_ui(ui: &mut Ui, lesson: &mut OpenLesson, session: &Session, style: &Sty
             let (state, color) = match task {
                 TaskState::Met => ("Done.".to_owned(), style.accent()),
                 TaskState::Unjudged(why) => (format!("It cannot be judged: {why}"), style.ink()),
-                TaskState::Moving => (format!("Will be judged once you let go. {how}"), style.faint()),
+                TaskState::Moving => ("Will be judged once you let go.".to_owned(), style.faint()),
                 TaskState::NotYet(lack) => (not_yet(&lack, is_on_stops(session)), style.ink()),
-                TaskState::Judging => (format!("Being judged. {how}"), style.faint()),
+                TaskState::Judging => ("Being judged.".to_owned(), style.faint()),
             };
             ui.horizontal_wrapped(|ui| {
                 let state = ui.label(RichText::new(state).color(color));

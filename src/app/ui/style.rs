@@ -197,7 +197,6 @@ methods! {
     /// Text about the proof mass.
     mass_ink(style) -> Color32 = style.pick(rgb(140, 92, 0), ORANGE);
     mass_edge(style) -> Color32 = style.pick(rgb(122, 84, 0), rgb(255, 214, 128));
-    frame_colour(style) -> Color32 = style.pick(gray(190), gray(85));
     /// Veil over a map that is not that of the scene.
     veil(style) -> Color32 = style.pick(Color32::from_white_alpha(140), Color32::from_black_alpha(130));
     stop(style) -> Color32 = style.colour(Role::Stop);
@@ -232,10 +231,6 @@ methods! {
     cell_stroke(style) -> Stroke = Stroke::new(style.width(2.0), style.ink());
     small(_style) -> FontId = FontId::proportional(SMALL);
     body(_style) -> FontId = FontId::proportional(BODY);
-}
-
-const fn gray(level: u8) -> Color32 {
-    Color32::from_gray(level)
 }
 
 const fn hex(code: u32) -> Color32 {

@@ -65,7 +65,8 @@ fn drawing_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect) {
     }
     let axis = |low: f64, high: f64| PlotAxis::given(low, high, Vec::new(), "");
     let x = axis(context.span.low * 1e3, context.span.high * 1e3);
-    let is_new = !was_dragged(ui) && context.cover == Cover::None && context.drawn == Drawn::WithGhosts;
+    let is_alone = context.drawn == Drawn::WithGhosts && context.session.pins.all().is_empty();
+    let is_new = !was_dragged(ui) && context.cover == Cover::None && is_alone;
     let name = if is_new { "mass: drag me" } else { "mass" };
     let sketch = assembly.sketch(&Frame { area, x, y: axis(0.0, 1.0) }, &style.theme(), name);
     let body = on_screen(rect.min, sketch.mass);

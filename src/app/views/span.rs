@@ -76,11 +76,16 @@ impl Span {
             return self;
         }
         let (left, right) = model.stop_positions();
-        let end = |stop: Option<f64>, seen: f64, end: f64| {
-            let near = stop.map(|stop| ROOM * stop.abs()).filter(|near| seen.abs() <= *near);
-            near.map_or(end, |near| near.min(end.abs()) * end.signum())
+        let near = |stop: Option<f64>, seen: f64| {
+            stop.map(|stop| ROOM * stop.abs()).filter(|near| seen.abs() <= *near)
         };
-        Self { low: end(left, seen.0.min(0.0), self.low), high: end(right, seen.1.max(0.0), self.high) }
+        let mut ends = [near(left, seen.0.min(0.0)), near(right, seen.1.max(0.0))];
+        // between equal stops the axis is symmetric
+        if left.zip(right).is_some_and(|(left, right)| left == -right) && ends.contains(&None) {
+            ends = [None; 2];
+        }
+        let end = |near: Option<f64>, end: f64| near.map_or(end, |near| near.min(end.abs()) * end.signum());
+        Self { low: end(ends[0], self.low), high: end(ends[1], self.high) }
     }
 
     /// The range over the whole of `rect` in which this one lies between these margins in points.

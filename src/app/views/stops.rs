@@ -96,6 +96,8 @@ pub fn stops_ui(
     (top, bottom): (f32, f32),
     radius: f32,
 ) {
+    walls_ui(ui, context, rect, (top, bottom), radius);
+    // over the walls, so that an edge behind a wall is seen
     let asked = context.memory.asked_stops.map(|mm| (mm, context.style.stop_stroke()));
     let best = best_stops(context);
     let best = [best.map(|mm| -mm), best].map(|mm| (mm, context.style.stroke(Role::BestStop)));
@@ -106,6 +108,9 @@ pub fn stops_ui(
         let outline = Shape::dashed_line(&[&ends[..], &ends[..1]].concat(), stroke, 5.0, 4.0);
         ui.painter().with_clip_rect(rect).extend(outline);
     }
+}
+
+fn walls_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect, (top, bottom): (f32, f32), radius: f32) {
     let (stops, movable) = shown_stops(context.session, context.drawn);
     let step = key_step(context.session);
     let fine = FINE * step;

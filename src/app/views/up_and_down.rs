@@ -14,7 +14,7 @@ use crate::scene::{FieldPath, SweepAxis, column_names};
 use interwell_studies::study::{Direction, Table, Visit};
 
 use super::axes::{field_name, field_ui, range_row_ui};
-use super::labels::haloed;
+use super::labels::{haloed, plated};
 use super::pane::pane_ui;
 use super::{Span, View, ViewContext};
 
@@ -25,7 +25,7 @@ const TOOLS: f32 = 30.0;
 const SPINNER: f32 = 14.0;
 
 /// Relative difference up to which two RMS velocities are the same.
-const SAME: f64 = 0.01;
+const SAME: f64 = 0.02;
 
 /// The runs of each direction by rising value, coarse ones where the fine ones are still to come.
 type Branches<'a> = [Vec<&'a Visit>; 2];
@@ -222,10 +222,11 @@ fn picture_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axis: &SweepAxis, area
     };
     if let Some((value, _)) = pane.response.hover_pos().and_then(|at| pane.values_at(0, at)) {
         let text = reading(&branches, value.clamp(axis.from, axis.to), quantity);
-        write(frame.right_top() + vec2(-4.0, 4.0), Align2::RIGHT_TOP, &text, style.ink());
         if let Some(at) = pane.place(0, (value.clamp(axis.from, axis.to), low)) {
             child.painter().vline(at.x, frame.y_range(), egui::Stroke::new(1.0, style.faint()));
         }
+        let place = (frame.right_top() + vec2(-4.0, 4.0), Align2::RIGHT_TOP);
+        plated(ui.painter(), &style, place, &text, (style.small(), style.ink()));
     }
     if !is_whole && area.height() > 220.0 {
         let is_coarse = [0, 1].iter().any(|i| fine[*i].len() < branches[*i].len());

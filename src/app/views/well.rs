@@ -214,6 +214,7 @@ fn landmarks(
     let heights = feet.map_or([joule; 2], |feet| feet.map(|foot| potential(barrier.x) - potential(foot)));
     let below_top = |height: f64| place(barrier.x, (joule - height) * level.per_joule);
     let (top, foot) = (below_top(0.0), below_top(joule));
+    let mut bracket = Vec::new();
     if foot.y - top.y > 4.0 * BRACKET && foot.y < rect.bottom() {
         let stroke = Stroke::new(style.width(1.3), style.faint());
         let [left, right] = [-BRACKET, BRACKET].map(|aside| vec2(aside, 0.0));
@@ -224,7 +225,7 @@ fn landmarks(
             lines.extend([[on_left, on_left + left], [on_right, on_right + right]]);
         }
         taken.lines.extend(lines.iter().map(|line| line.to_vec()));
-        painter.extend(lines.into_iter().map(|line| Shape::line_segment(line, stroke)));
+        bracket.extend(lines.into_iter().map(|line| Shape::line_segment(line, stroke)));
     }
     let zero = place(barrier.x, 0.0).y;
     taken.lines.push(vec![pos2(rect.left(), zero), pos2(rect.right(), zero)]);
@@ -261,13 +262,19 @@ fn landmarks(
         (line.as_str(), pos2(x, row), Align2::CENTER_BOTTOM),
         (lines.as_str(), pos2(x, row), Align2::CENTER_BOTTOM),
     ];
-    taken.write(painter, rect, look.clone(), places);
+    // a bracket without its number says nothing
+    if taken.write(painter, rect, look.clone(), places).is_some() {
+        painter.extend(bracket);
+    }
     let wells = model.mechanism().landscape.wells();
-    for (number, well) in wells.iter().enumerate() {
+    let ranges: Vec<Rangef> = taken.places.iter().map(|place| place.x_range()).collect();
+    let names = wells.iter().enumerate().map(|(number, well)| {
         let name = well_name(number, wells.len());
         let width = painter.layout_no_wrap(name.clone(), style.small(), style.faint()).size().x;
-        let ranges: Vec<Rangef> = taken.places.iter().map(|place| place.x_range()).collect();
-        let Some(place) = free_place(screen(well.x), width, rect.x_range(), &ranges) else { continue };
+        Some((name, free_place(screen(well.x), width, rect.x_range(), &ranges)?))
+    });
+    // all of them, or none
+    for (name, place) in names.collect::<Option<Vec<_>>>().unwrap_or_default() {
         taken.write(painter, rect, look.clone(), [(name.as_str(), pos2(place, row), Align2::LEFT_BOTTOM)]);
     }
 }

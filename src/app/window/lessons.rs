@@ -255,8 +255,10 @@ impl Window {
             LessonAction::Back => lesson.go_back(),
             LessonAction::Next if lesson.is_covering() || lesson.is_last() => {
                 self.lessons.urged = true;
+                let votes: u32 = lesson.answer().votes.iter().sum();
+                let counted = if votes == 0 { "Nobody has chosen yet" } else { "The votes are counted" };
                 return self.messages.notify(match (lesson.is_covering(), lesson.following()) {
-                    (true, _) => "Nobody has chosen yet: Reveal, or Enter, shows what it does".to_owned(),
+                    (true, _) => format!("{counted}: Reveal, or Enter, shows what it does"),
                     (false, Some(name)) => format!("The last step: Enter goes on to {}", numbered(name)),
                     (false, None) => "The last step: Enter finishes the lesson".to_owned(),
                 });
@@ -375,8 +377,8 @@ impl Window {
             keys.extend(lesson.offered_hint().map(|_| plain(Key::H, LessonAction::Hint)));
         }
         let covers = lesson.is_covering();
+        let has_votes = lesson.answer().votes.iter().any(|votes| *votes > 0);
         if covers && ctx.memory(|memory| memory.focused().is_none()) {
-            let has_votes = lesson.answer().votes.iter().any(|votes| *votes > 0);
             keys.push(plain(Key::Enter, if has_votes { LessonAction::Reveal } else { LessonAction::Next }));
         }
         // also at a step without options, where no other command is meant by a letter with Shift
@@ -384,8 +386,10 @@ impl Window {
             let names = [letter(option).to_string(), (option + 1).to_string()];
             let pair = names.iter().filter_map(|name| Key::from_name(name));
             let chosen = pair.clone().filter(|_| covers && option < lesson.options().len());
-            keys.extend(chosen.map(|key| plain(key, LessonAction::Choose(option))));
             let vote = LessonAction::Vote(option, 1);
+            // a letter without Shift reveals nothing while votes are counted
+            let choice = if has_votes { vote } else { LessonAction::Choose(option) };
+            keys.extend(chosen.map(|key| plain(key, choice)));
             keys.extend(pair.take(1).map(|key| (Modifiers::SHIFT, key, vote)));
         }
         // keys with Shift first: the same key without it would consume them

@@ -277,7 +277,7 @@ impl Window {
         }
         let Some(next) = next_lesson(&self.lessons.records).filter(|_| hinted && !self.covered) else {
             let has_barrier = self.session.model().mechanism().landscape.barrier.is_some();
-            let ways = if has_barrier { "H says what it would take to cross, " } else { "" };
+            let ways = if has_barrier && !self.covered { "H says what it would take to cross, " } else { "" };
             let keys = Guide { is_faint: true, ..Guide::new("", format!("{ways}F1 lists all keys.")) };
             guide_ui(ui, style, &keys, |_| ());
             return None;

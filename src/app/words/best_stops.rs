@@ -47,13 +47,11 @@ pub fn answer_guide(
     if design.flat {
         return guide("No stops are best:", format!("the {name} is {value} wherever they stand {between}."));
     }
-    let [inwards, outwards] = design.margins[0];
-    let side = |margin: Option<f64>, way: &str, end: f64| match margin {
-        Some(margin) => format!("{} further {way}", mm(margin)),
-        None => format!("nowhere further {way}, up to ±{}", mm(end)),
-    };
+    let [inward, outward] = design.margins[0];
+    let from = inward.map_or(low, |margin| at - margin);
+    let to = outward.map_or(high, |margin| at + margin);
     let border = if design.at_border[0] { " It is an end of the range that was searched." } else { "" };
-    let (inward, outward) = (side(inwards, "in", low), side(outwards, "out", high));
-    let text = format!("{name} {value}; a tenth of it is lost {inward} and {outward}.{border}");
+    let text =
+        format!("{name} {value}; nine tenths of it from ±{} to ±{} mm.{border}", three(from), three(to));
     guide(&format!("Best stops: ±{}.", mm(at)), capital(&text))
 }

@@ -35,7 +35,10 @@ const UPWARD: usize = 2;
 /// Half the diagonal in points of the mark of the best stops.
 const BEST: f32 = 7.0;
 
-/// Number of lines of the text on a cell by a projector: its place, the motion and its RMS velocity.
+/// Time in s after which the text on a cell under a resting pointer goes: it would cover the views beside it.
+const LINGER: f32 = 12.0;
+
+/// Number of lines of the text on a cell by a projector: its place, the motion, and the quantity of the map.
 const BRIEF: usize = 4;
 
 /// The values of a scene on both axes of a map; `None` for a field that it lacks.
@@ -126,7 +129,8 @@ pub fn map_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     }
     let cell_at = |at: Pos2| cell_at(&pane, map, scene, at);
     let pointed = pane.response.hover_pos().filter(|_| !pane.response.dragged()).and_then(cell_at);
-    if let Some(cell) = pointed {
+    let is_still = ui.input(|input| input.pointer.time_since_last_movement()) > LINGER;
+    if let Some(cell) = pointed.filter(|_| !is_still) {
         point_out(&painter, &style, &pane, map, cell);
         let over = pane.response.clone().on_hover_cursor(egui::CursorIcon::PointingHand);
         let lines = reading(map, quantity, cell);
@@ -283,6 +287,8 @@ fn reading(map: &Map, quantity: &SummaryField, (column, row): (usize, usize)) ->
         lines.push(format!("the run ended early: {}", cell.outcome().replace('_', " ")));
     }
     lines.extend(cell.settled().map(|settled| Kind::from(settled.regime).name().to_owned()));
+    let value = cell.summary().and_then(|summary| value_text(quantity, summary));
+    lines.extend(value.filter(|_| !IN_EVERY_READING.contains(&quantity.name)));
     if let Some(settled) = cell.settled().filter(|settled| settled.regime != Regime::Rest) {
         let rms = settled.rms_velocity.map_or(UNKNOWN.to_owned(), speed);
         lines.push(format!("RMS velocity {rms} mm/s"));
@@ -298,8 +304,6 @@ fn reading(map: &Map, quantity: &SummaryField, (column, row): (usize, usize)) ->
             lines.push(if is_steady { "averages steady" } else { "not settled in this time" }.to_owned());
         }
     }
-    let value = cell.summary().and_then(|summary| value_text(quantity, summary));
-    lines.extend(value.filter(|_| !IN_EVERY_READING.contains(&quantity.name)));
     lines.push("click: take the scene there; drag: enlarge".to_owned());
     lines
 }

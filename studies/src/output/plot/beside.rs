@@ -57,6 +57,9 @@ pub(super) struct Magnet {
 /// A label at each of the places where it may stand.
 type Label = Vec<Text>;
 
+/// The middle of the magnet that hangs below the mass, and the height of its poles.
+type Hung = (Point, f64);
+
 impl Pen<'_> {
     /// Draws what lies behind the flexures. Returns the labels.
     pub fn beside(&mut self) -> Vec<Label> {
@@ -180,7 +183,7 @@ impl Pen<'_> {
 
     /// The two rows of a coil around x = 0 in section, and in it the middle and the height of the poles of the
     /// magnet of the mass, if there is room and no other magnet hangs there: then the coil lies on the clamp.
-    fn coil(&self) -> Option<([Area; 2], Option<(Point, f64)>)> {
+    fn coil(&self) -> Option<([Area; 2], Option<Hung>)> {
         let Transducer::Electromagnetic { .. } = self.of.transducer else { return None };
         let (area, mass) = (self.area(), self.mass);
         let half = WINDING.0.min(WINDING.1 * (area.right - area.left));
