@@ -369,7 +369,9 @@ fn the_window_offers_the_search_and_marks_its_answer_on_the_map() {
     let limit = harness.state().session.best.limit_mm();
     assert!(is_painted(&harness, "Best stops: ±2.") && is_painted(&harness, "best stops"));
     for view in [View::Mechanism, View::Well] {
-        View::ALL.map(|other| command(&mut harness, Command::Show(other, other == view)));
+        for other in View::ALL {
+            command(&mut harness, Command::Show(other, other == view));
+        }
         harness.run_steps(3);
         assert!(is_painted(&harness, "best stops"), "{}", view.name());
     }
