@@ -164,12 +164,10 @@ impl Subject {
         Ok(Self::Measured(session.measured.over.clone().ok_or(none)?))
     }
 
-    /// The distance of the pinned motions, over the times that the view shows.
-    pub fn distance(session: &Session) -> Result<Self, String> {
-        let pins = session.pins.all();
-        let since = pins.iter().map(|pin| pin.since).fold(f64::INFINITY, f64::min);
-        let times = round_times((since, session.player.time())).filter(|times| times.0 < times.1);
-        Ok(Self::Distance(times, links(session, pins.iter().map(|pin| &pin.scene))?))
+    /// The distance of the pinned motions, over times in s.
+    pub fn distance(session: &Session, times: Option<(f64, f64)>) -> Result<Self, String> {
+        let pinned = session.pins.all().iter().map(|pin| &pin.scene);
+        Ok(Self::Distance(times, links(session, pinned)?))
     }
 
     /// The scene beside those that are pinned, or beside the one before the last change.

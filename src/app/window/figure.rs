@@ -42,6 +42,8 @@ pub struct Figures {
     pub(super) problem: Option<String>,
     /// Where the mass was when the dialog was opened, in m, and that of the pinned motion beside it.
     x: [f64; 2],
+    /// The times in s that the view of distances showed then.
+    seen: Option<(f64, f64)>,
     had_focus: bool,
     job: Background<FigureOrder, WriteResult>,
 }
@@ -80,6 +82,8 @@ impl Figures {
         if !self.is_open() {
             self.before = [self.width.clone(), self.font.clone()];
         }
+        let since = session.pins.all().iter().map(|pin| pin.since).fold(f64::INFINITY, f64::min);
+        self.seen = round_times((since, session.player.time())).filter(|times| times.0 < times.1);
         let pin = session.pins.all().get(memory.beside_place(session));
         let there = pin.map(|pin| pin.watch.state_at(session.player.time()).x);
         self.x = [session.player.state().x, there.unwrap_or_default()];
@@ -123,7 +127,7 @@ impl Figures {
             View::Basins => Subject::basins(session),
             View::Spectrum => Ok(Subject::spectrum(session)),
             View::Accuracy => Ok(Subject::accuracy(session)),
-            View::Distance => Subject::distance(session),
+            View::Distance => Subject::distance(session, self.seen),
             View::Compare | View::BeforeNow => Subject::compare(session, view == View::BeforeNow),
             _ => {
                 Err("There is no figure of a table: the button Copy as CSV in the view has its rows."

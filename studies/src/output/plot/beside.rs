@@ -169,10 +169,10 @@ impl Pen<'_> {
         };
         let places = self.load(part, load);
         // without room for the load, the label is beside the transducer
-        let y = 0.5 * (part.top + part.bottom);
+        let y = part.bottom - 4.0;
         let mirrored = 2.0 * self.zero - part.right;
         let beside = [(part.right + 13.0, 1.0), (mirrored - 13.0, -1.0)];
-        let beside = beside.map(|(x, side)| ((x, y), towards(side), Edge::Middle));
+        let beside = beside.map(|(x, side)| ((x, y), towards(side), Edge::Bottom));
         let whole = format!("{name}, {words}");
         let texts = [whole, words].into_iter().flat_map(|words| {
             let places = places.iter().copied().chain(beside);

@@ -31,9 +31,10 @@ pub fn distance_ends(distances: impl Iterator<Item = f64> + Clone) -> (f64, f64)
 pub fn distance_panel(lines: &[Vec<Point>], (from, to): (f64, f64), (low, high): (f64, f64)) -> Panel {
     let mut panel =
         Panel::new(PlotAxis::between(from, to, TIME), PlotAxis::powers(low, high, "distance (mm)"));
-    for line in lines {
+    for (place, line) in lines.iter().enumerate() {
         let points = line.iter().map(|(t, metres)| (*t, log_mm(*metres).max(low)));
-        panel.draw(Role::Motion, Marks::Trace(points.filter(|point| point.1.is_finite()).collect()));
+        let role = if lines.len() == 1 { Role::Motion } else { Role::Step(0.5 * place as f64) };
+        panel.draw(role, Marks::Trace(points.filter(|point| point.1.is_finite()).collect()));
     }
     panel
 }
@@ -43,14 +44,10 @@ pub fn distance_chart(answer: &DistanceAnswer) -> Chart {
     let ends = distance_ends(answer.lines.iter().flatten().map(|point| point.1));
     let mut panel = distance_panel(&answer.lines, answer.times, ends);
     let mut drawn = Drawn::new(["t_s", "distance_m"], &["motion"]);
-    let mut words = Vec::new();
-    for (letter, line) in answer.lines() {
-        let known = || line.iter().filter(|point| point.1.is_finite());
-        known().for_each(|(t, distance)| drawn.put("distance", &[*t, *distance], &[letter]));
-        words.extend(known().next_back().map(|(t, d)| ((*t, log_mm(*d).max(ends.0)), letter.to_owned())));
+    for (layer, (letter, line)) in panel.layers.iter_mut().zip(answer.lines()) {
+        layer.name = format!("distance of {letter}");
+        let known = line.iter().filter(|point| point.1.is_finite());
+        known.for_each(|(t, distance)| drawn.put("distance", &[*t, *distance], &[letter]));
     }
-    let letters: Vec<&str> = answer.lines().map(|line| line.0).collect();
-    panel.draw(Role::Motion, Marks::Words(words));
-    let about = format!("distance of {} from this motion, each from its start", letters.join(", "));
-    Chart::stack(vec![panel], about, drawn.table())
+    Chart::stack(vec![panel], "distance from this motion, each from its start", drawn.table())
 }
