@@ -53,9 +53,10 @@ pub struct Arguments {
           value_parser = RunPanel::ALL.map(RunPanel::name))]
     pub panels: Vec<String>,
 
-    /// With --plot: draw how far the motion of this scene is from that of SCENE over time, each from its start,
-    /// in place of the panels; up to three times. --set and --tolerance change the first scene alone
-    #[arg(long, value_name = "SCENE", requires = "plot", conflicts_with_all = ["measured", "panels", "plot_y"])]
+    /// With --plot: draw how far the motion of this scene is from that of SCENE over time, each from its
+    /// start, in place of the panels; up to three times. --set and --tolerance change the first scene alone
+    #[arg(long, value_name = "SCENE", requires = "plot",
+          conflicts_with_all = ["measured", "panels", "plot_y"])]
     pub beside: Vec<String>,
 
     /// A measured motion to compare with.

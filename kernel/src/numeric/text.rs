@@ -58,7 +58,8 @@ pub enum Ending {
     Whole,
 }
 
-/// `value` with so many significant digits, and with an exponent where its size is not among the `plain` ones.
+/// `value` with so many significant digits, and with an exponent where its size is not among the `plain`
+/// ones.
 pub fn significant(value: f64, digits: usize, ending: Ending, plain: Range<f64>) -> String {
     let rounded = rounded(value, digits);
     if rounded == 0.0 || !rounded.is_finite() {

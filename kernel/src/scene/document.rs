@@ -142,11 +142,7 @@ impl Document {
         Self::from_file(Path::new(spec))
     }
 
-    /// Reads a scene file.
-    ///
-    /// # Errors
-    ///
-    /// Those of [`load`](Self::load).
+    /// Reads a scene file. Errors: those of [`load`](Self::load).
     pub fn from_file(path: &Path) -> Result<Self, SceneError> {
         let spec = path.display().to_string();
         let text = read_scene(&spec, MAX_SCENE_BYTES)?;
@@ -154,11 +150,8 @@ impl Document {
         Ok(Self { source: Source::File(path.to_owned()), ..read })
     }
 
-    /// Reads the built-in scene of that name.
-    ///
-    /// # Errors
-    ///
-    /// [`SceneError::NoSuchScene`], with the names that there are.
+    /// Reads the built-in scene of that name. Error: [`SceneError::NoSuchScene`], with the names that there
+    /// are.
     pub fn preset(name: &str) -> Result<Self, SceneError> {
         Self::built_in(name).unwrap_or_else(|| Err(no_such_scene(name)))
     }

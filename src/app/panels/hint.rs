@@ -81,8 +81,8 @@ impl Hint {
         session.amplitude_g().is_some_and(|g| g.abs() <= self.opened_g.abs() * (1.0 + 1e-9))
     }
 
-    /// What the line says: what happened, and what to try. Statements about the motion concern what the present
-    /// scene settles to; while that is not known, there are none.
+    /// What the line says: what happened, and what to try. Statements about the motion concern what the
+    /// present scene settles to; while that is not known, there are none.
     pub fn guide(&self, session: &Session) -> Guide {
         let opened = in_unit(session.scene(), as_set, self.opened_g);
         let crosses = session.crosses();
@@ -150,8 +150,8 @@ impl Hint {
     }
 }
 
-/// Draws the guide line at the left, in rows that fit, and at the right `buttons`, the last one first. Returns
-/// the answer of the buttons.
+/// Draws the guide line at the left, in rows that fit, and at the right `buttons`, the last one first.
+/// Returns the answer of the buttons.
 pub fn guide_ui<R>(ui: &mut Ui, style: &Style, guide: &Guide, buttons: impl FnOnce(&mut Ui) -> R) -> R {
     let right_to_left = Layout::right_to_left(Align::Center);
     let row = ui.allocate_ui_with_layout(ui.available_size(), right_to_left, |ui| {

@@ -1,9 +1,9 @@
 //! View of the mechanism as a drawing in the frame of the base, on the x axis of the well.
 //!
 //! The geometry is that of the pictures on paper ([`Assembly`]), with what is alive over it: the mass and the
-//! stops, which a hand moves, the pinned motions, and a ring at an impact, whose size shows the energy that it
-//! takes. The base stands still, and its push on the mass is an arrow; the motion of the base is far larger than
-//! the travel and is drawn in an inset at another scale.
+//! stops, which a hand moves, the pinned motions, and a ring at an impact, whose size shows the energy that
+//! it takes. The base stands still, and its push on the mass is an arrow; the motion of the base is far
+//! larger than the travel and is drawn in an inset at another scale.
 
 use std::sync::Arc;
 
@@ -126,8 +126,8 @@ fn state_at(context: &mut ViewContext<'_>, x: f64) -> Option<State> {
     context.memory.drawing.bent.clone()
 }
 
-/// The x axis over `rect` with `along` points to a m, as along the flexures. `None` if the travel would be too
-/// small or does not fit.
+/// The x axis over `rect` with `along` points to a m, as along the flexures. `None` if the travel would be
+/// too small or does not fit.
 fn true_span(along: f64, reach: f64, rect: Rect) -> Option<Span> {
     let half = 0.5 * f64::from(rect.width()) / along;
     (reach * along >= MIN_TRAVEL && half > 1.1 * reach).then_some(Span { low: -half, high: half })

@@ -15,9 +15,8 @@ use crate::app::session::lesson::{OpenLesson, Records, Turn, answers_text};
 use crate::app::ui::style::Style;
 use crate::app::ui::widgets::{bare, close_ui, dialog_ui, panel_frame, primary};
 use crate::app::views::{Cover, Memory, View};
-use crate::app::words::capital;
 use crate::app::words::fields::name_and_unit;
-use crate::app::words::lesson::{bold_words, letter, numbered, plain};
+use crate::app::words::lesson::{bold_words, letter, numbered, question};
 use crate::questions::Error;
 use crate::scene::lesson::{BuiltInLesson, LessonDocument, LessonError, Step};
 use crate::scene::{Document, PRESETS, is_link, linked_lesson};
@@ -472,13 +471,6 @@ impl Window {
             None => self.messages.notify("There are no answers yet"),
         }
     }
-}
-
-fn question(text: &str) -> Option<String> {
-    let text = plain(text);
-    let end = text.find('?')? + 1;
-    let begin = text[..end - 1].rfind(['.', ':', '!']).map_or(0, |at| at + 1);
-    Some(capital(text[begin..end].trim()))
 }
 
 /// Whether a word in lower case names the control of a field: by its label, or by the field's usual name.

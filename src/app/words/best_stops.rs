@@ -34,8 +34,8 @@ pub fn answer_guide(
     let runs = match duration_s {
         Some(duration) => format!("Searched {between}, from rest, in runs of {} s.", three(duration)),
         None => format!(
-            "Searched {between}, from rest, each run followed until its motion repeats, for at most {} forcing \
-             periods more.",
+            "Searched {between}, from rest, each run followed until its motion repeats, for at most {} \
+             forcing periods more.",
             Basins::PATIENCE
         ),
     };

@@ -2,6 +2,7 @@
 
 use super::fields::name_and_unit;
 use super::numbers::three;
+use crate::app::words::capital;
 use crate::scene::Start;
 use crate::scene::lesson::{Condition, Lesson};
 use interwell_studies::study::{Lack, Value, label_and_unit};
@@ -24,6 +25,14 @@ pub fn expected(choice: Option<&str>, outcome: Option<&str>) -> String {
         (None, Some(outcome)) => format!("What holds: “{outcome}”."),
         (None, None) => "Watch what it does.".to_owned(),
     }
+}
+
+/// The first question in a text.
+pub fn question(text: &str) -> Option<String> {
+    let text = plain(text);
+    let end = text.find('?')? + 1;
+    let begin = text[..end - 1].rfind(['.', ':', '!']).map_or(0, |at| at + 1);
+    Some(capital(text[begin..end].trim()))
 }
 
 pub fn letter(option: usize) -> char {

@@ -12,22 +12,24 @@ const STEPS: usize = 2000;
 
 /// How far the motions of other scenes are from that of one, over time, each from the start of its scene.
 ///
-/// [`DistanceAnswer::table`] has a row for each of 2001 times: `t_s`, and `distance_a_m` to `distance_c_m`, the
-/// difference of the displacements without its sign, missing after a run has ended early. Of a scene that begins a
-/// micrometre beside the other it is the growth of a small error.
+/// [`DistanceAnswer::table`] has a row for each of 2001 times: `t_s`, and `distance_a_m` to `distance_c_m`,
+/// the difference of the displacements without its sign, missing after a run has ended early. Of a scene
+/// that begins a micrometre beside the other it is the growth of a small error.
 ///
 /// Errors: [`Error::Argument`] for `of` without a scene or with more than three, and for `times`;
 /// [`Error::Scene`] if another scene cannot run as long as `times` ask; [`Error::Cancelled`].
 ///
 /// ```
-/// use interwell_studies::questions::{Distance, Progress, Simulation};
+/// # use interwell_studies as interwell;
+/// use interwell::questions::{Distance, Progress, Simulation};
 ///
 /// // In a chaotic motion a difference of a micrometre grows to that of two unrelated motions.
-/// let duffing = Simulation::preset("duffing-chaos")?.with("run.duration_s", 200)?.with("run.settle_s", 100)?;
+/// let duffing = Simulation::preset("duffing-chaos")?.with("run.duration_s", 200)?;
+/// let duffing = duffing.with("run.settle_s", 100)?;
 /// let twin = duffing.with("start", "At(x_mm: 1000.001, v_m_per_s: 0)")?;
 /// let answer = Distance { of: vec![twin], times: None }.run(&duffing, &Progress::none())?;
 /// assert!(answer.lines[0].iter().any(|point| point.1 > 0.1));
-/// # Ok::<(), interwell_studies::questions::Error>(())
+/// # Ok::<(), interwell::questions::Error>(())
 /// ```
 #[derive(Debug, Clone, Default)]
 pub struct Distance {

@@ -132,8 +132,8 @@ impl Edges {
 }
 
 /// The line of [`first_crossing`](super::first_crossing) over a map of `x` and `y`: along the edges of its
-/// cells, towards smaller amplitudes, in one part for each stretch without a gap. A place where the cell of the
-/// smallest amplitude crosses has no edge: the first crossing is at or below that amplitude.
+/// cells, towards smaller amplitudes, in one part for each stretch without a gap. A place where the cell of
+/// the smallest amplitude crosses has no edge: the first crossing is at or below that amplitude.
 pub fn first_crossing_edge(
     table: &Table,
     (x, y): (&str, &str),

@@ -19,8 +19,8 @@ const FAINTEST: f32 = 0.15;
 /// Width in points of a trail from which on it is named.
 const NAMED: f32 = 40.0;
 
-/// Draws the places, the oldest first, and the name of the trail at its oldest end; a place at which the scene
-/// lacked the field of an axis is a gap.
+/// Draws the places, the oldest first, and the name of the trail at its oldest end; a place at which the
+/// scene lacked the field of an axis is a gap.
 pub fn draw(painter: &Painter, pane: &Pane, style: &Style, places: &[[Option<f64>; 2]]) {
     let painter = painter.with_clip_rect(pane.frame(MAP).unwrap_or(Rect::NOTHING));
     let parts = parts(places, |at| pane.place(MAP, at).unwrap_or(Pos2::ZERO));

@@ -59,8 +59,8 @@ pub struct Assembly {
     pub pairs: usize,
     /// What turns motion into power.
     pub transducer: Transducer,
-    /// Displacement in m of the fixed end of the spring that stands for a force without flexures; `None` where
-    /// that force is the same everywhere.
+    /// Displacement in m of the fixed end of the spring that stands for a force without flexures; `None`
+    /// where that force is the same everywhere.
     pub spring: Option<f64>,
     /// The push on the mass as a share of the largest, positive to the right; 0 for no arrow.
     pub push: f64,
@@ -85,7 +85,8 @@ fn depends_on_place(mechanism: &Mechanism, (low, high): (f64, f64)) -> bool {
 }
 
 impl Assembly {
-    /// The mechanism of a model with the mass at `x`, its flexures in this state, drawn between these ends in m.
+    /// The mechanism of a model with the mass at `x`, its flexures in this state, drawn between these ends
+    /// in m.
     pub fn of(model: &Model, x: f64, bent: Option<&State>, ends: (f64, f64)) -> Self {
         let mechanism = model.mechanism();
         let flexures = mechanism.flexures.as_ref().zip(bent);

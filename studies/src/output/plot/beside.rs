@@ -3,9 +3,9 @@
 //!
 //! The spring lies between the frame on the left and the mass. The magnets face each other across their gap
 //! when the mass is at x = 0, one below the mass and one on a post; the gap is drawn to the scale of the
-//! flexures if there is room for that. A coil at the frame lies around the magnet that hangs below the mass, in
-//! section. Piezoelectric patches lie on the feet of the flexures. The load is on the right, where the
-//! flexures do not reach.
+//! flexures if there is room for that. A coil at the frame lies around the magnet that hangs below the
+//! mass, in section. Piezoelectric patches lie on the feet of the flexures. The load is on the right, where
+//! the flexures do not reach.
 
 use super::assembly::MagnetPair;
 use super::figure::{Align, Area, Point, Text, distance};
@@ -181,8 +181,9 @@ impl Pen<'_> {
         Some(texts.collect())
     }
 
-    /// The two rows of a coil around x = 0 in section, and in it the middle and the height of the poles of the
-    /// magnet of the mass, if there is room and no other magnet hangs there: then the coil lies on the clamp.
+    /// The two rows of a coil around x = 0 in section, and in it the middle and the height of the poles of
+    /// the magnet of the mass, if there is room and no other magnet hangs there: then the coil lies on the
+    /// clamp.
     fn coil(&self) -> Option<([Area; 2], Option<Hung>)> {
         let Transducer::Electromagnetic { .. } = self.of.transducer else { return None };
         let (area, mass) = (self.area(), self.mass);

@@ -73,8 +73,8 @@ pub fn beside(figure: &Figure, within: Area, (x, y): Point, words: &str, size: f
     free.or_else(|| (!texts.any(|text| covers(text, area(usual)))).then_some(usual))
 }
 
-/// The first of these texts that lies within an area, clear of lines, letters and what is `kept` free; with its
-/// place.
+/// The first of these texts that lies within an area, clear of lines, letters and what is `kept` free; with
+/// its place.
 pub fn first_free(
     figure: &Figure,
     within: Area,

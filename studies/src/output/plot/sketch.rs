@@ -1,9 +1,9 @@
 //! Geometry of a drawn mechanism: frame, flexures or a spring, mass, stops, the arrow of the push, and the
 //! places of the labels.
 //!
-//! Displacements have the scale of the horizontal axis; across it, the flexures have a scale of their own, and
-//! mass, stops and the other parts are not to scale. The face of a stop stands half the width of the mass
-//! beyond the travel limit, so that the mass touches it there.
+//! Displacements have the scale of the horizontal axis; across it, the flexures have a scale of their own,
+//! and mass, stops and the other parts are not to scale. The face of a stop stands half the width of the
+//! mass beyond the travel limit, so that the mass touches it there.
 
 use super::assembly::Assembly;
 use super::beside::spring;
@@ -236,9 +236,9 @@ impl<'a> Pen<'a> {
         }
     }
 
-    /// The place of the longest arrow: between the stops where half of it has room on either side of the mass,
-    /// else beyond a stop; without two stops on the inner side of the mass. Its height is that of the mass,
-    /// where no flexure comes, and clear of a spring.
+    /// The place of the longest arrow: between the stops where half of it has room on either side of the
+    /// mass, else beyond a stop; without two stops on the inner side of the mass. Its height is that of the
+    /// mass, where no flexure comes, and clear of a spring.
     fn arrow_place(&self) -> Option<Area> {
         let (area, mass) = (self.area(), self.mass);
         let length = ARROW.0 * (area.right - area.left);

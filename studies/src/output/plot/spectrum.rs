@@ -30,8 +30,8 @@ const DECADES: f64 = 7.0;
 const MAX_MARKED: usize = 4;
 
 /// The picture of the answer of a [`Spectrum`](crate::questions::Spectrum). `ranges` are those of the
-/// frequency in Hz and of the quantity, in the unit of its axis: an amplitude below 2 m or 2 m/s is shown in mm
-/// or mm/s.
+/// frequency in Hz and of the quantity, in the unit of its axis: an amplitude below 2 m or 2 m/s is shown
+/// in mm or mm/s.
 pub fn spectrum_chart(spectrum: &Spectrum, quantity: SpectrumQuantity, ranges: Ranges) -> Chart {
     let column = |name: &str| spectrum.table.numbers(name).unwrap_or_default();
     let (frequencies, values) = (column("frequency_hz"), column(quantity.name()));
