@@ -36,6 +36,22 @@ fn fine(window: &Window, direction: Direction) -> Vec<f64> {
 }
 
 #[test]
+fn a_lesson_shows_no_coarse_steps() {
+    for is_lesson in [false, true] {
+        let mut harness = window("first-look", WIDE);
+        let session = &mut harness.state_mut().session;
+        // as in a lesson
+        session.best.is_off = is_lesson;
+        session.explore.walks.chosen = Some(axis(AMPLITUDE, (0.8, 1.3, 0.1)));
+        press_with_ctrl(&mut harness, Key::Num5);
+        fill(&mut harness);
+        let (parts, _) = harness.state().session.explore.walks.found.parts();
+        assert_eq!(parts.iter().any(|part| part.0 > 1), !is_lesson);
+        assert_eq!(fine(harness.state(), Direction::Down).len(), 6);
+    }
+}
+
+#[test]
 fn both_directions_come_and_a_drag_takes_the_scene_there() {
     let mut harness = open(WIDE);
     fill(&mut harness);

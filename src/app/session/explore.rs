@@ -168,7 +168,9 @@ impl Session {
         let is_set = FieldPath::new(&axis.field).set(&mut scene, axis.from);
         debug_assert!(is_set, "the axis is over a field of the scene");
         let (ground, values) = (Uncompared(self.prepared(ground)), Uncompared(values));
-        let walks = [COARSE, 1].into_iter().flat_map(|stride| Direction::ALL.map(|way| (stride, way)));
+        // coarse steps can lead to another motion, which would contradict the answer of a lesson
+        let strides = if self.best.is_off { &[1][..] } else { &[COARSE, 1] };
+        let walks = strides.iter().flat_map(|stride| Direction::ALL.map(|way| (*stride, way)));
         Ok(WalkQuestion { scene, axis, ground, values, walks: Uncompared(walks.collect()) })
     }
 
