@@ -203,7 +203,7 @@ fn distances_are_read_off_with_their_rate() {
     let said = text.split("rate A ").nth(1).unwrap().trim_end_matches(" /s").replace('\u{2212}', "-");
     let said: f64 = said.parse().unwrap();
     assert!((said - rate).abs() < 6e-3 * rate.abs(), "{said} {rate}");
-    let apart = format!("A {:.1e} mm", 1e3 * first).replace('-', "\u{2212}");
+    let apart = format!("A {:.2e} mm", 1e3 * first).replace('-', "\u{2212}");
     harness.get_by_label_contains(&apart);
 }
 

@@ -109,17 +109,14 @@ fn other_force(mechanism: &Mechanism) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use std::sync::Arc;
-
     use super::*;
-    use crate::app::session::Session;
-    use crate::app::session::editor::Editor;
+    use crate::Simulation;
 
     #[test]
     fn only_a_force_that_depends_on_the_place_has_a_spring() {
         let words = |preset: &str| {
-            let session = Session::new(Editor::open(preset).unwrap(), Arc::new(|| ())).unwrap();
-            let model = session.model();
+            let simulation = Simulation::preset(preset).unwrap();
+            let model = simulation.model();
             schematic_words(model.mechanism(), &Assembly::of(model, 0.0, None, (-0.01, 0.01)))
         };
         assert_eq!(words("bouncing-ball"), "a steady force of 9.81 N to the left");
