@@ -40,8 +40,7 @@ fn a_lesson_shows_no_coarse_steps() {
     for is_lesson in [false, true] {
         let mut harness = window("first-look", WIDE);
         let session = &mut harness.state_mut().session;
-        // as in a lesson
-        session.best.is_off = is_lesson;
+        session.is_lesson = is_lesson;
         session.explore.walks.chosen = Some(axis(AMPLITUDE, (0.8, 1.3, 0.1)));
         press_with_ctrl(&mut harness, Key::Num5);
         fill(&mut harness);

@@ -246,7 +246,7 @@ fn restitution_ui(ui: &mut Ui, session: &mut Session, width: f32) {
 
 /// A button labelled `name` that starts the search; it is absent in a lesson and without shaking.
 pub fn best_stops_ui(ui: &mut Ui, session: &mut Session, name: &str) {
-    if session.best.is_off || !session.model().is_shaken() {
+    if session.is_lesson || !session.model().is_shaken() {
         return;
     }
     let why = session.best.is_running().then_some("The search is running.");

@@ -15,7 +15,7 @@ const TRIED_MM: f64 = 0.3;
 
 /// How stops between two wells act.
 const MIDDLE: &str =
-    "near the middle they hold the mass high on the barrier: a weaker push carries it over, but less far.";
+    "near the middle they hold the mass high on the barrier, so a weaker push carries it over, but less far.";
 
 /// What the line asks the user to try.
 #[derive(Debug, Clone, Copy, PartialEq)]

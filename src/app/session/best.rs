@@ -69,8 +69,6 @@ pub struct BestStops {
     pub(super) search: Background<Search, Part>,
     /// Why there can be no search.
     refusal: Option<&'static str>,
-    /// Whether the search is not offered, as its result may be the answer of a lesson.
-    pub is_off: bool,
 }
 
 impl BestStops {
@@ -84,7 +82,7 @@ impl BestStops {
 
     /// Ends the search and forgets its result.
     pub fn close(&mut self) {
-        *self = Self { is_off: self.is_off, ..Self::default() };
+        *self = Self::default();
     }
 
     /// Number of runs that the search has made, and the newest of its other parts.
@@ -125,7 +123,7 @@ impl BestStops {
 impl Session {
     /// Searches for the best travel limit of the present scene, started from rest.
     pub fn find_best_stops(&mut self) {
-        if self.best.is_off {
+        if self.is_lesson {
             return;
         }
         self.end_gesture();

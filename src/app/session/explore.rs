@@ -169,7 +169,7 @@ impl Session {
         debug_assert!(is_set, "the axis is over a field of the scene");
         let (ground, values) = (Uncompared(self.prepared(ground)), Uncompared(values));
         // coarse steps can lead to another motion, which would contradict the answer of a lesson
-        let strides = if self.best.is_off { &[1][..] } else { &[COARSE, 1] };
+        let strides = if self.is_lesson { &[1][..] } else { &[COARSE, 1] };
         let walks = strides.iter().flat_map(|stride| Direction::ALL.map(|way| (*stride, way)));
         Ok(WalkQuestion { scene, axis, ground, values, walks: Uncompared(walks.collect()) })
     }

@@ -108,6 +108,9 @@ pub struct Session {
     presses: Option<(String, f64)>,
     /// Whether to withhold what it would take to cross the barrier, as the answer of a lesson.
     pub keeps_remedy: bool,
+    /// Whether it is that of a lesson, where no answer is given away or contradicted: no best stops are
+    /// searched for, and Up and down has no coarse steps.
+    pub is_lesson: bool,
     pub best: BestStops,
     wake: Wake,
 }
@@ -148,6 +151,7 @@ impl Session {
             model,
             presses: None,
             keeps_remedy: false,
+            is_lesson: false,
             best: BestStops::default(),
             built: scene,
             wake,

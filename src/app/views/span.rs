@@ -154,4 +154,17 @@ mod tests {
         assert_eq!(span.screen_from_world(0.0, rect), 300.0);
         assert!((span.world_from_screen(400.0, rect) - 4e-3).abs() < 1e-12);
     }
+
+    #[test]
+    fn an_axis_between_equal_stops_is_symmetric() {
+        let session = |preset| Session::new(Editor::open(preset).unwrap(), Arc::new(|| ())).unwrap();
+        let whole = Span { low: -9e-3, high: 9e-3 };
+        let even = session("paper");
+        // as a motion that was free before it got its stops
+        assert_eq!(whole.within_stops(&even, (-1.5e-3, 7.2e-3)), whole);
+        let kept = whole.within_stops(&even, (-1.5e-3, 1.5e-3));
+        assert!(kept.low == -kept.high && kept.high < 3e-3, "{kept:?}");
+        let uneven = whole.within_stops(&session("uneven-stops"), (-1e-4, 7.2e-3));
+        assert!(uneven.low > -6e-3 && uneven.high == 9e-3, "{uneven:?}");
+    }
 }

@@ -160,8 +160,7 @@ impl Window {
             session.explore.walks.quantity = WalkQuantity::RmsVelocity;
         }
         session.keeps_remedy = !lesson.tells_remedy();
-        // the best stops may be the answer to a lesson's question
-        session.best.is_off = true;
+        session.is_lesson = true;
         Ok(session)
     }
 

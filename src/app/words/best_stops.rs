@@ -3,7 +3,7 @@
 use super::{Guide, capital};
 use crate::app::words::numbers::{power, three};
 use crate::app::words::status::speed;
-use crate::numeric::short;
+use crate::numeric::{decimals, short};
 use crate::questions::{BestDesign, Optimum};
 use interwell_studies::study::{Basins, SummaryField};
 
@@ -48,10 +48,18 @@ pub fn answer_guide(
         return guide("No stops are best:", format!("the {name} is {value} wherever they stand {between}."));
     }
     let [inward, outward] = design.margins[0];
-    let from = inward.map_or(low, |margin| at - margin);
-    let to = outward.map_or(high, |margin| at + margin);
+    // rounded towards the best, so that the sentence holds at both ends
+    let rounded = |x: f64, round: fn(f64) -> f64| {
+        let per_unit = 10.0_f64.powi(decimals(x, 3) as i32);
+        round(x * per_unit) / per_unit
+    };
+    let from = inward.map_or(low, |margin| rounded(at - margin, f64::ceil));
+    let to = outward.map_or(high, |margin| rounded(at + margin, f64::floor));
     let border = if design.at_border[0] { " It is an end of the range that was searched." } else { "" };
-    let text =
-        format!("{name} {value}; nine tenths of it from ±{} to ±{} mm.{border}", three(from), three(to));
+    let text = format!(
+        "{name} {value}; at least nine tenths of it from ±{} to ±{} mm.{border}",
+        three(from),
+        three(to)
+    );
     guide(&format!("Best stops: ±{}.", mm(at)), capital(&text))
 }

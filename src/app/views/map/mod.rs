@@ -38,9 +38,6 @@ const BEST: f32 = 7.0;
 /// Time in s after which the text on a cell under a resting pointer goes: it would cover the views beside it.
 const LINGER: f32 = 12.0;
 
-/// Number of lines of the text on a cell by a projector: its place, the motion, and the quantity of the map.
-const BRIEF: usize = 4;
-
 /// The values of a scene on both axes of a map; `None` for a field that it lacks.
 type Place = [Option<f64>; 2];
 
@@ -133,10 +130,7 @@ pub fn map_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     if let Some(cell) = pointed.filter(|_| !is_still) {
         point_out(&painter, &style, &pane, map, cell);
         let over = pane.response.clone().on_hover_cursor(egui::CursorIcon::PointingHand);
-        let lines = reading(map, quantity, cell);
-        // by a projector a long text would hide the axes
-        let shown = if style.projector { BRIEF.min(lines.len()) } else { lines.len() };
-        over.on_hover_text_at_pointer(lines[..shown].join("\n"));
+        over.on_hover_text_at_pointer(reading(map, quantity, cell, style.projector));
     }
     let is_enlarged = !context.session.map.enlarged.is_empty();
     let targets =
@@ -266,8 +260,9 @@ fn value_text(quantity: &SummaryField, summary: &Summary) -> Option<String> {
     Some(format!("{} {} {unit}", quantity.label, three(value * factor)).trim_end().to_owned())
 }
 
-/// Lines of text on a cell, the most important ones first.
-fn reading(map: &Map, quantity: &SummaryField, (column, row): (usize, usize)) -> Vec<String> {
+/// Text on a cell. If it `is_brief`, only its place, the motion and the quantity of the map, for a projector,
+/// by which a long text would hide the axes.
+fn reading(map: &Map, quantity: &SummaryField, (column, row): (usize, usize), is_brief: bool) -> String {
     let names = map.grid().columns();
     let place = [map.edges[0].values[column], map.edges[1].values[row]];
     // such as `travel limit 1.5 mm`
@@ -278,7 +273,7 @@ fn reading(map: &Map, quantity: &SummaryField, (column, row): (usize, usize)) ->
     let mut lines: Vec<String> = names.iter().zip(place).map(named).collect();
     let Some((cell, has_run)) = map.cell(column, row) else {
         lines.push("not run yet".to_owned());
-        return lines;
+        return lines.join("\n");
     };
     if !has_run {
         lines.push("not run yet; its neighbour:".to_owned());
@@ -288,7 +283,11 @@ fn reading(map: &Map, quantity: &SummaryField, (column, row): (usize, usize)) ->
     }
     lines.extend(cell.settled().map(|settled| Kind::from(settled.regime).name().to_owned()));
     let value = cell.summary().and_then(|summary| value_text(quantity, summary));
-    lines.extend(value.filter(|_| !IN_EVERY_READING.contains(&quantity.name)));
+    let is_said_below = !is_brief && IN_EVERY_READING.contains(&quantity.name);
+    lines.extend(value.filter(|_| !is_said_below && quantity.name != "regime"));
+    if is_brief {
+        return lines.join("\n");
+    }
     if let Some(settled) = cell.settled().filter(|settled| settled.regime != Regime::Rest) {
         let rms = settled.rms_velocity.map_or(UNKNOWN.to_owned(), speed);
         lines.push(format!("RMS velocity {rms} mm/s"));
@@ -305,7 +304,7 @@ fn reading(map: &Map, quantity: &SummaryField, (column, row): (usize, usize)) ->
         }
     }
     lines.push("click: take the scene there; drag: enlarge".to_owned());
-    lines
+    lines.join("\n")
 }
 
 /// Marks the scene by a ring, or by an arrow at the edge that it lies beyond. Returns the place.
