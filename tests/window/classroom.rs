@@ -325,7 +325,8 @@ fn votes_are_counted_beside_a_prediction() {
     assert_eq!(harness.state().lesson().unwrap().answer().votes, [1, 1, 2]);
     press_with_ctrl(&mut harness, Key::L);
     click_on(&mut harness, "Reveal");
-    assert!(is_painted(&harness, "Votes: A 1, B 1, C 2"));
+    // the options stay, with their votes
+    assert!(is_painted(&harness, "A (1)   crosses") && is_painted(&harness, "C (2)   does not move"));
     assert_eq!(harness.state().lesson().unwrap().answer().choice, None);
     // too late: no vote, and nothing is covered
     shift(&mut harness, Key::C);

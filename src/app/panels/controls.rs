@@ -24,6 +24,9 @@ const LEAST_BESIDE: f32 = 70.0;
 const SWITCH: &str = "stops";
 /// Width in points of that switch.
 const SWITCH_WIDTH: f32 = 90.0;
+/// What an amplitude is the amplitude of, as a heading before its control.
+const SHAKING: &str = "Shaking";
+const SHAKING_WIDTH: f32 = 74.0;
 /// Width in points of a slider's control apart from the slider and its name.
 const BESIDE_SLIDER: f32 = 136.0;
 const LEAST_SLIDER: f32 = 60.0;
@@ -55,7 +58,7 @@ const CIRCUIT: [&str; 3] = ["transducer.coil_ohm", "transducer.inductance_mh", "
 
 pub fn column_ui(ui: &mut Ui, session: &mut Session, more: &mut bool) {
     let width = (ui.available_width() - 84.0).max(80.0);
-    ui.heading("Shaking");
+    ui.heading(SHAKING);
     shaking_ui(ui, session, width);
     fields_ui(ui, session, &FREQUENCY, width);
     ui.add_space(14.0);
@@ -120,7 +123,7 @@ pub fn row_ui(ui: &mut Ui, session: &mut Session, more: &mut bool) {
             let has_search = !is_narrow && slider_width(SEARCH) >= LEAST_BESIDE;
             let width = slider_width(if has_search { SEARCH } else { 0.0 }).clamp(30.0, 260.0);
             if !is_narrow {
-                ui.heading("Shaking");
+                ui.heading(SHAKING);
             }
             shaking_ui(ui, session, width);
             ui.separator();
@@ -140,11 +143,14 @@ pub fn named_ui(ui: &mut Ui, session: &mut Session, controls: &[String]) -> Vec<
         let name = name_and_unit(path).0;
         ui.painter().layout_no_wrap(name, font.clone(), Color32::PLACEHOLDER).size().x
     };
-    let shown: Vec<(&String, f32)> = controls
-        .iter()
-        .filter(|path| *path == SWITCH || session.number(path).is_some())
-        .map(|path| (path, if path == SWITCH { SWITCH_WIDTH } else { name_width(ui, path) + BESIDE_SLIDER }))
-        .collect();
+    let is_amplitude = |path: &str| AMPLITUDE.contains(&path);
+    let width_of = |path: &str| match path {
+        SWITCH => SWITCH_WIDTH,
+        path if is_amplitude(path) => SHAKING_WIDTH + name_width(ui, path) + BESIDE_SLIDER,
+        path => name_width(ui, path) + BESIDE_SLIDER,
+    };
+    let shown = controls.iter().filter(|path| *path == SWITCH || session.number(path).is_some());
+    let shown: Vec<(&String, f32)> = shown.map(|path| (path, width_of(path))).collect();
     let mut rows: Vec<Vec<(&String, f32)>> = Vec::new();
     let least = |row: &[(&String, f32)]| row.iter().map(|control| control.1 + LEAST_SLIDER).sum::<f32>();
     for control in shown {
@@ -163,7 +169,12 @@ pub fn named_ui(ui: &mut Ui, session: &mut Session, controls: &[String]) -> Vec<
             for (path, _) in row {
                 let control = ui.scope(|ui| match path.as_str() {
                     SWITCH => stops_switch_ui(ui, session),
-                    path => knob_ui(ui, session, path, width, has_switch && is_off(session, path)),
+                    path => {
+                        if is_amplitude(path) {
+                            ui.heading(SHAKING);
+                        }
+                        knob_ui(ui, session, path, width, has_switch && is_off(session, path));
+                    }
                 });
                 places.push((path.clone(), control.response.rect));
                 ui.add_space(10.0);

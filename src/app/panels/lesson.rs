@@ -10,7 +10,7 @@ use crate::app::session::Session;
 use crate::app::session::lesson::{MOST_VOTES, OpenLesson, Outcome, TaskState};
 use crate::app::ui::style::{BODY, CONTROL, Style, strong_family};
 use crate::app::ui::widgets::{primary, tell};
-use crate::app::words::lesson::{expected, judged_by, letter, not_yet, numbered, pieces, plain, tally};
+use crate::app::words::lesson::{expected, judged_by, letter, not_yet, numbered, pieces, plain};
 use crate::app::words::meanings::{meaning, terms};
 use crate::scene::lesson::{Choice, Step};
 
@@ -81,10 +81,7 @@ pub fn lesson_ui(
             });
         }
     });
-    if lesson.is_covering() {
-        action = action.or(options_ui(ui, lesson));
-    }
-    action
+    action.or(options_ui(ui, lesson, style))
 }
 
 /// A button for each option of a prediction, with the votes for it.
@@ -112,11 +109,9 @@ fn height_of(ui: &Ui, style: &Style, step: &Step, (width, least): (f32, f32)) ->
     match step {
         Step::Say(_) | Step::Explain(_) => text,
         Step::Predict { options, .. } => {
-            let longest = options.iter().map(|option| option.text.as_str()).max_by_key(|text| text.len());
-            let verdict = expected(longest, longest.map(|text| format!("{text} ")).as_deref());
             let rows = rows_of(options.len()) as f32;
             let below = option_size(ui, options).y * rows + SPACE * (rows - 1.0);
-            (text.max(least) + SPACE + below).max(text + of(&verdict, "") + row + 2.0 * SPACE)
+            (text + SPACE + row).max(least) + SPACE + below
         }
         Step::Do { hint, .. } => {
             let hint = hint.as_deref().map_or(0.0, |hint| of(HINT, hint) + SPACE);
@@ -150,6 +145,19 @@ fn spoken(lesson: &OpenLesson, session: &Session) -> String {
     format!("Step {number} of {count}. {}{}{options}{hint}", heading(step), plain(step.text()))
 }
 
+/// The result of a prediction beside its options, which stay and have their letters.
+fn short_verdict(lesson: &OpenLesson) -> String {
+    match lesson.outcome() {
+        Outcome::Holds(option) if lesson.answer().choice.as_ref() == Some(&lesson.options()[option].text) => {
+            "That holds.".to_owned()
+        }
+        Outcome::Holds(option) => format!("What holds: {}.", letter(option)),
+        Outcome::Unknown => "Watch what it does.".to_owned(),
+        Outcome::Unclear | Outcome::Unjudged(_) => verdict(lesson),
+    }
+}
+
+/// The result of a prediction with the texts of its options.
 fn verdict(lesson: &OpenLesson) -> String {
     let outcome = match lesson.outcome() {
         Outcome::Holds(option) if lesson.answer().choice.is_none() => {
@@ -223,10 +231,8 @@ fn below_ui(ui: &mut Ui, lesson: &mut OpenLesson, session: &Session, style: &Sty
         Step::Predict { .. } if lesson.is_covering() => {}
         Step::Predict { .. } => {
             ui.horizontal_wrapped(|ui| {
-                ui.label(RichText::new(verdict(lesson)).heading());
-                if lesson.answer().votes.iter().any(|votes| *votes > 0) {
-                    ui.label(RichText::new(tally(&lesson.answer().votes)).color(style.faint()));
-                } else if lesson.answer().choice.is_some() {
+                ui.label(RichText::new(short_verdict(lesson)).heading());
+                if lesson.answer().choice.is_some() {
                     reason_ui(ui, lesson, style);
                 }
             });
@@ -385,18 +391,34 @@ fn option_size(ui: &Ui, options: &[Choice]) -> Vec2 {
     vec2(width, tallest + 2.0 * padding.y + 4.0)
 }
 
-/// The options side by side, all of one height.
-fn options_ui(ui: &mut Ui, lesson: &OpenLesson) -> Option<LessonAction> {
-    let mut action = None;
+/// The options of a prediction side by side, all of one height. Once the answer is shown, the one that holds is
+/// filled, and a ring marks another one that was chosen.
+fn options_ui(ui: &mut Ui, lesson: &OpenLesson, style: &Style) -> Option<LessonAction> {
     let options = lesson.options();
-    let columns = options.len().div_ceil(rows_of(options.len())).max(1);
+    if options.is_empty() {
+        return None;
+    }
+    let mut action = None;
+    let columns = options.len().div_ceil(rows_of(options.len()));
     let each = option_size(ui, options);
     for (row, choices) in options.chunks(columns).enumerate() {
         ui.horizontal(|ui| {
             for (i, choice) in choices.iter().enumerate() {
                 let option = row * columns + i;
                 let votes = *lesson.answer().votes.get(option).unwrap_or(&0);
-                let button = ui.add_sized(each, Button::new(option_text(option, choice, votes)).wrap());
+                let text = option_text(option, choice, votes);
+                if !lesson.is_covering() {
+                    let button = match lesson.outcome() == Outcome::Holds(option) {
+                        true => primary(ui, &text),
+                        false if lesson.answer().choice.as_ref() == Some(&choice.text) => {
+                            Button::new(text).stroke(Stroke::new(2.0, style.accent()))
+                        }
+                        false => Button::new(text),
+                    };
+                    ui.add_sized(each, button.wrap().sense(Sense::hover()));
+                    continue;
+                }
+                let button = ui.add_sized(each, Button::new(text).wrap());
                 let letter = letter(option);
                 let hover = format!(
                     "Choose this: nothing is scored (key {letter}). Right button or Shift+{letter}: count a \

@@ -41,6 +41,8 @@ pub(super) struct Lessons {
     suspended: Option<Suspended>,
     pub records: Records,
     pub notes: Notes,
+    /// Whether the tiles leave out the surveys that the lesson covers.
+    pub hides_surveys: bool,
     /// The lesson that was finished, until its closing dialog is closed.
     finished: Option<Finished>,
     /// Whether the button that goes on is to have the keyboard focus.
@@ -350,6 +352,9 @@ impl Window {
     }
 
     fn take_turn(&mut self, turn: Turn) {
+        if self.lessons.open.as_ref().is_some_and(|open| open.hides_surveys() != self.lessons.hides_surveys) {
+            self.arrange(self.tiling.room());
+        }
         self.show_named_views();
         let (Some(lesson), Turn::Show(scene, plays)) = (&self.lessons.open, turn) else { return };
         match self.session_on(lesson, *scene, plays) {

@@ -210,8 +210,12 @@ impl Window {
     /// Builds the tiles of the arrangement for a window of the size class `room`.
     pub(super) fn arrange(&mut self, room: Room) {
         if let Some(lesson) = &self.lessons.open {
+            // the room of a survey that is covered goes to the other views
+            let hides = lesson.hides_surveys();
             let views: Vec<View> = lesson.lesson().views.iter().map(|view| View::from(*view)).collect();
-            self.tiling = Tiling::of_lesson(&views, room);
+            let open: Vec<View> = views.iter().copied().filter(|view| !(hides && view.is_survey())).collect();
+            self.tiling = Tiling::of_lesson(if open.is_empty() { &views } else { &open }, room);
+            self.lessons.hides_surveys = hides;
             return self.show_named_views();
         }
         self.tiling = match (self.arrangement, &self.custom) {
