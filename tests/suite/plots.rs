@@ -133,7 +133,11 @@ fn pictures_say_what_they_show() {
     says(SMALL_MAP, &["travel limit (mm)", "amplitude (g)", "RMS velocity (mm/s)", "at rest"]);
     says(
         SMALL_MAP,
-        &["release in closed form", "first crossing cell", "7 \u{d7} 9 runs of 2 s, each from rest"],
+        &[
+            "release: leaves the stop (closed form)",
+            "first crossing",
+            "7 \u{d7} 9 runs of 2 s, each from rest",
+        ],
     );
     let line = "exponents duffing --periods 50 --over excitation.amplitude_g=";
     says(
@@ -187,7 +191,7 @@ fn lines_over_a_map_stand_only_where_they_mean_something() {
     let turned = "sweep paper --set run.settle_s=None --set run.duration_s=2 \
         --over excitation.amplitude_g=0:2:0.25 \
                   --over stops.travel_limit_mm=1:7:1";
-    says(turned, &["release in closed form", "first crossing cell"]);
+    says(turned, &["release: leaves the stop (closed form)", "first crossing"]);
 }
 
 #[test]

@@ -104,14 +104,14 @@ fn closed_it_works_nothing_out() {
 fn covered_it_says_nothing() {
     let mut harness = filled("paper", WIDE);
     press(&mut harness, Key::C);
-    assert!(!is_there(&harness, "of processor time") && !is_there(&harness, "Path error about"));
+    assert!(!is_there(&harness, "of processor time") && !is_there(&harness, "Path error"));
 }
 
 #[test]
 fn the_status_line_says_the_error_or_how_long_to_trust() {
     for (preset, words) in [
-        ("paper", "Path error about "),
-        ("random-shaking", "Path error about "),
+        ("paper", "Path error below 1 nm"),
+        ("random-shaking", "Path error "),
         ("duffing-chaos", "Chaotic: path reliable up to "),
         // the mass rattles at the wall of taut flexures without a rhythm
         ("first-look", "Chaotic: path reliable up to "),
@@ -131,7 +131,7 @@ fn nothing_is_said_of_what_is_not_known() {
     let mut session = session("paper", &[]);
     let (short, long) = session.trust().unwrap();
     assert!(
-        short.starts_with("Path error about") && long.contains("1e-11") && long.contains("10 s"),
+        short == "Path error below 1 nm" && long.contains("1e-11") && long.contains("10 s"),
         "{short} {long}"
     );
     // in the midst of a gesture

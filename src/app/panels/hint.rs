@@ -13,6 +13,9 @@ use crate::dynamics::EventKind;
 /// Distance in mm by which the stops have to be moved before the trade-off counts as tried.
 const TRIED_MM: f64 = 0.3;
 
+/// Factor up to which a shaking counts as that which the scene was opened with.
+const NEARLY: f64 = 1.02;
+
 /// How stops between two wells act.
 const MIDDLE: &str =
     "near the middle they hold the mass high on the barrier, so a weaker push carries it over, but less far.";
@@ -76,9 +79,14 @@ impl Hint {
         self.stage != Stage::Done
     }
 
-    /// Whether the shaking is no stronger than when the scene was opened.
+    /// Whether the shaking is no stronger than when the scene was opened, but for a point of the slider.
     fn is_as_opened(&self, session: &Session) -> bool {
-        session.amplitude_g().is_some_and(|g| g.abs() <= self.opened_g.abs() * (1.0 + 1e-9))
+        self.is_at_most(session, NEARLY)
+    }
+
+    /// Whether the shaking is at most so many times as strong as when the scene was opened.
+    fn is_at_most(&self, session: &Session, factor: f64) -> bool {
+        session.amplitude_g().is_some_and(|g| g.abs() <= self.opened_g.abs() * factor)
     }
 
     /// What the line says: what happened, and what to try. Statements about the motion concern what the
@@ -121,7 +129,9 @@ impl Hint {
             (Stage::Move { .. }, true, true, Some(false)) => ("Now it does not cross.", undo),
             (Stage::Move { .. }, true, true, crosses) => {
                 let first = match crosses {
-                    Some(_) if fair => "Between these stops it crossed, without more shaking.",
+                    Some(_) if fair && self.is_at_most(session, 1.0 + 1e-9) => {
+                        "Between these stops it crossed, without more shaking."
+                    }
                     Some(_) => "Between these stops it crosses.",
                     None => "Now with stops.",
                 };

@@ -102,10 +102,14 @@ impl Question for StepQuestion {
     }
 }
 
+/// In m; a smaller error of the path says no more to a reader than this does.
+const NANOMETRE: f64 = 1e-9;
+
 /// The error of the path, or the time up to which the path is reliable, in a few words.
 fn short(trust: &Trust, from: f64, is_regular: bool) -> String {
     let reliable = |until: f64| format!("path reliable up to {}", moment(from + until));
     match trust.course {
+        Course::Kept if trust.error < NANOMETRE => "Path error below 1 nm".to_owned(),
         Course::Kept => format!("Path error {}", small_length(trust.error, trust.travel)),
         // a motion that settles to a periodic one was chaotic only for a time
         Course::Chaotic { until, .. } if !is_regular => format!("Chaotic: {}", reliable(until)),

@@ -6,6 +6,7 @@ use crate::app::session::Session;
 use crate::app::session::explore::WalkQuantity;
 use crate::app::session::map::label;
 use crate::app::ui::widgets::{choices_ui, tell};
+use crate::app::words::fields::name_and_unit;
 use crate::app::words::numbers::{power, three};
 use crate::dynamics::Regime;
 use crate::numeric::short;
@@ -122,15 +123,19 @@ fn load_power(visit: &Visit) -> f64 {
     visit.summary.harvest.and_then(|harvest| harvest.mean_load_power).unwrap_or(f64::NAN)
 }
 
+/// Share of the vertical axis above the highest value, where the reading under the pointer stands.
+const HEADROOM: f64 = 0.12;
+
 /// The ends of the vertical axis, in the unit of the quantity.
 fn vertical_ends(branches: &Branches<'_>, shown: Shown, span: &Span) -> (f64, f64) {
     let all = branches.iter().flatten();
     if shown.0 == WalkQuantity::Strobes {
         let wider = |(low, high): (f64, f64), x: &f64| (low.min(1.05e3 * x), high.max(1.05e3 * x));
-        return all.flat_map(|visit| &visit.strobes).fold((span.low * 1e3, span.high * 1e3), wider);
+        let (low, high) = all.flat_map(|visit| &visit.strobes).fold((span.low * 1e3, span.high * 1e3), wider);
+        return (low, high + HEADROOM * (high - low));
     }
     let all = all.map(|visit| number(visit, shown));
-    (0.0, 1.08 * all.filter(|value| value.is_finite()).fold(1e-3, f64::max))
+    (0.0, all.filter(|value| value.is_finite()).fold(1e-3, f64::max) / (1.0 - HEADROOM))
 }
 
 /// The fine ones among the runs. Between coarse ones neither a line nor a difference is known.
@@ -155,7 +160,8 @@ fn chart(
     let differing = differing(fine, panel.y.high - panel.y.low);
     panel.layer(Role::Closer, "the two differ", Marks::Spans(differing));
     panel.draw(Role::Drive, Marks::Verticals(here.into_iter().collect()));
-    for (i, role, name) in [(0, Role::Motion, "turned up"), (1, Role::Down, "turned down")] {
+    // the dots of the way up lie in the rings of the way down
+    for (i, role, name) in [(1, Role::Down, "turned down"), (0, Role::Motion, "turned up")] {
         let branch = &branches[i];
         let of_visit = |visit: &&Visit| (visit.value, number(visit, shown));
         let strobed = |visit: &&Visit| {
@@ -221,7 +227,8 @@ fn picture_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axis: &SweepAxis, area
         haloed(ui.painter(), &style, (at, align), text, (style.small(), colour));
     };
     if let Some((value, _)) = pane.response.hover_pos().and_then(|at| pane.values_at(0, at)) {
-        let text = reading(&branches, value.clamp(axis.from, axis.to), quantity);
+        let text =
+            reading(&branches, value.clamp(axis.from, axis.to), quantity, name_and_unit(&axis.field).1);
         if let Some(at) = pane.place(0, (value.clamp(axis.from, axis.to), low)) {
             child.painter().vline(at.x, frame.y_range(), egui::Stroke::new(1.0, style.faint()));
         }
@@ -291,8 +298,8 @@ fn strobes(visit: &Visit) -> &[f64] {
     &visit.strobes[visit.strobes.len().saturating_sub(count)..]
 }
 
-/// Text on the runs nearest to `value`.
-fn reading([up, down]: &Branches<'_>, value: f64, quantity: WalkQuantity) -> String {
+/// Text on the runs nearest to `value`, which has this unit.
+fn reading([up, down]: &Branches<'_>, value: f64, quantity: WalkQuantity, unit: &str) -> String {
     let number = |visit: &Visit| match quantity {
         WalkQuantity::LoadPower => power(load_power(visit)),
         WalkQuantity::Strobes | WalkQuantity::RmsVelocity => format!("{} mm/s", three(rms(visit))),
@@ -304,8 +311,10 @@ fn reading([up, down]: &Branches<'_>, value: f64, quantity: WalkQuantity) -> Str
         Some((visit.value, format!("{word}: {}, {}", visit.summary.regime.name(), number(visit))))
     };
     match (nearest(up, "up"), nearest(down, "down")) {
-        (Some(up), Some(down)) if up.0 == down.0 => format!("{}   {}   {}", short(up.0), up.1, down.1),
-        _ => three(value),
+        (Some(up), Some(down)) if up.0 == down.0 => {
+            format!("{} {unit}   {}   {}", short(up.0), up.1, down.1)
+        }
+        _ => format!("{} {unit}", three(value)),
     }
 }
 

@@ -236,7 +236,7 @@ pub(super) static MENUS: [(&str, &[Part]); 6] = [
         Row("Views", "wheel, drag", "zoom (Shift up, Ctrl both); Shift and drag moves, right drag is a box"),
         Line,
         Item("Cover the results", plain(Key::C), C::Cover,
-            As("Views", "cover the motion and all results, until C again: predict first")),
+            As("Views", "cover the motion and all results, until C again; in a prediction it is option C")),
         Item("What it would take", plain(Key::H), C::Ways, As("Views", "what it would take to cross")),
         Line,
         Part::Menu("Zoom of the window", &[
@@ -288,7 +288,7 @@ pub(super) static MENUS: [(&str, &[Part]); 6] = [
         Item("Begin this lesson anew", None, C::LessonAnew, No),
         Item("Leave lesson", None, C::LeaveLesson, No),
         Row("Lesson", "PageUp, PageDown", "in a lesson: the step before, after"),
-        Row("Lesson", "A, B, C or 1, 2, 3", "choose what you expect"),
+        Row("Lesson", "A, B, C or 1, 2, 3", "choose what you expect (C then covers nothing)"),
         Row("Lesson", "H", "the hint of a task"),
         Row("Lesson", "Shift+A, B, C", "count a vote for it"),
         Line,

@@ -3,7 +3,9 @@
 use std::collections::HashMap;
 
 use eframe::egui::{self, Stroke, Ui, Vec2, WidgetText};
-use egui_tiles::{Container, ResizeState, SimplificationOptions, Tabs, Tile, TileId, Tree, UiResponse};
+use egui_tiles::{
+    Container, LinearDir, ResizeState, SimplificationOptions, Tabs, Tile, TileId, Tree, UiResponse,
+};
 
 use crate::app::ui::style::{COMPACT_BELOW, GAP, LARGE_FROM, NARROW_BELOW};
 use crate::app::views::{View, ViewContext};
@@ -113,13 +115,18 @@ impl Tiling {
         self.tree.tiles.find_pane(&view).is_some_and(|id| self.tree.is_visible(id))
     }
 
-    /// Shows or hides a view. A view without a tile joins those of its kind, in a compact window as a tab.
+    /// Shows or hides a view. A view without a tile joins those of its kind, in a compact window as a tab, and
+    /// where a column is full as a tab of its last view.
     pub fn show(&mut self, view: View, shown: bool) {
         match self.tree.tiles.find_pane(&view) {
             Some(id) => self.tree.set_visible(id, shown),
             None if shown => {
-                let id = self.tree.tiles.insert_pane(view);
                 let place = self.place_for(view).or(self.tree.root());
+                let last = place.and_then(|place| self.last_of_full(place));
+                if last.is_some_and(|last| self.join_tabs(view, last)) {
+                    return self.show_in_front(view);
+                }
+                let id = self.tree.tiles.insert_pane(view);
                 if let Some(Tile::Container(container)) = place.and_then(|id| self.tree.tiles.get_mut(id)) {
                     container.add_child(id);
                 }
@@ -131,22 +138,41 @@ impl Tiling {
         }
     }
 
+    /// The last view of a container whose views, one below another, leave no room for one more.
+    fn last_of_full(&self, place: TileId) -> Option<View> {
+        let tiles = &self.tree.tiles;
+        let Container::Linear(column) = tiles.get_container(place)? else { return None };
+        let shown: Vec<TileId> = column.children.iter().copied().filter(|id| tiles.is_visible(*id)).collect();
+        let most = if self.room == Room::Large { 4 } else { 3 };
+        let last = shown.last().filter(|_| column.dir == LinearDir::Vertical && shown.len() >= most)?;
+        let is_in = |view: &&View| {
+            let pane = tiles.find_pane(view);
+            pane.is_some_and(|pane| pane == *last || tiles.parent_of(pane) == Some(*last))
+        };
+        View::ALL.iter().filter(|view| self.shows(**view)).find(is_in).copied()
+    }
+
     /// Shows a view. A view without a tile becomes a tab beside `other`, if that is shown among tabs.
     pub fn show_beside(&mut self, view: View, other: View) {
+        self.join_tabs(view, other);
+        self.show(view, true);
+        self.show_in_front(view);
+    }
+
+    /// Makes a view without a tile a tab beside `other`, if that is shown among tabs. Returns whether it is.
+    fn join_tabs(&mut self, view: View, other: View) -> bool {
         // gives new tiles their tabs
         self.tree.simplify(&simplification());
         let tiles = &mut self.tree.tiles;
         let shown = tiles.find_pane(&other).filter(|id| tiles.is_visible(*id));
         let is_tabs = |id: &TileId| matches!(tiles.get_container(*id), Some(Container::Tabs(_)));
         let place = shown.and_then(|id| tiles.parent_of(id)).filter(is_tabs);
-        if let Some(place) = place.filter(|_| tiles.find_pane(&view).is_none()) {
-            let id = tiles.insert_pane(view);
-            if let Some(Tile::Container(container)) = tiles.get_mut(place) {
-                container.add_child(id);
-            }
+        let Some(place) = place.filter(|_| tiles.find_pane(&view).is_none()) else { return false };
+        let id = tiles.insert_pane(view);
+        if let Some(Tile::Container(container)) = tiles.get_mut(place) {
+            container.add_child(id);
         }
-        self.show(view, true);
-        self.tree.make_active(|_, tile| matches!(tile, Tile::Pane(pane) if *pane == view));
+        true
     }
 
     /// Brings a view that is shown to the front of its tabs.

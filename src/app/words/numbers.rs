@@ -155,8 +155,8 @@ pub fn limit_mm(mm: f64) -> String {
     text.strip_suffix('0').unwrap_or(&text).to_owned()
 }
 
-/// Energy in mJ with two decimals, fewer where three digits stand before them, or with three significant
-/// digits: from 1 J on in J, and below 1 µJ in a unit that suits it.
+/// Energy in mJ with two decimals, fewer where three digits stand before them, and below 0.1 mJ with two
+/// significant digits; with three from 1 J on in J, and below 1 µJ in a unit that suits it.
 pub fn energy(j: f64) -> String {
     let mj = j.max(0.0) * 1e3;
     if mj >= 999.5 {
@@ -166,7 +166,7 @@ pub fn energy(j: f64) -> String {
         return format!("{mj:.0$} mJ", decimals_for(mj).min(2));
     }
     if mj >= 1e-3 {
-        return format!("{} mJ", significant(mj, 3));
+        return format!("{} mJ", significant(mj, 2));
     }
     let (factor, unit) = suited_unit("J", std::iter::once(j));
     format!("{} {unit}", significant(j * factor, 3))
@@ -284,7 +284,7 @@ mod tests {
         let texts = [9.2e-4, 1.2, 0.25, 7.87e-5, 5.12e-12, 4.56e-8, 0.0, -1.0].map(energy);
         assert_eq!(
             texts,
-            ["0.92 mJ", "1.20 J", "250 mJ", "0.0787 mJ", "5.12 pJ", "45.6 nJ", "0.00 mJ", "0.00 mJ"]
+            ["0.92 mJ", "1.20 J", "250 mJ", "0.079 mJ", "5.12 pJ", "45.6 nJ", "0.00 mJ", "0.00 mJ"]
         );
     }
 

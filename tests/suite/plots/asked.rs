@@ -19,7 +19,7 @@ fn the_footer_says_what_arguments_changed() {
 fn any_column_of_numbers_can_be_shown_and_the_regime() {
     says(
         &format!("{SMALL_MAP} --quantity max_abs_x_m"),
-        &["reach (mm)", "travel limit (mm)", "first crossing cell"],
+        &["reach (mm)", "travel limit (mm)", "first crossing"],
     );
     // a mass at rest is told from one with few impacts
     let impacts = says(&format!("{SMALL_MAP} --quantity impacts"), &["impacts", "at rest"]);
@@ -33,7 +33,7 @@ fn any_column_of_numbers_can_be_shown_and_the_regime() {
     for (name, word) in [("outcome", "done"), ("side", "both"), ("settled", "not settled")] {
         says(&format!("{line} --quantity {name}"), &[name, word]);
     }
-    says(&format!("{SMALL_MAP} --quantity side"), &["right", "both", "first crossing cell"]);
+    says(&format!("{SMALL_MAP} --quantity side"), &["right", "both", "first crossing"]);
     says(&format!("{line} --quantity travel_m"), &["travel (mm)"]);
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.png");
@@ -83,7 +83,7 @@ fn seeds_are_not_joined() {
 fn the_first_crossing_parts_a_map_of_frequencies() {
     let line = "sweep paper-unconstrained --set run.duration_s=6 --set run.settle_s=3 --tolerance 1e-6 \
                 --over excitation.frequency_hz=1:13:2 --over excitation.amplitude_g=0.5:3:0.125";
-    says(line, &["frequency (Hz)", "first crossing cell"]);
+    says(line, &["frequency (Hz)", "first crossing"]);
     // from one frequency to the next it moves by a few cells, and does not run up and down the whole map
     let csv = crate::cli::stdout(&format!("{line} --quiet"));
     let mut least = std::collections::BTreeMap::new();

@@ -20,13 +20,10 @@ const PICTURES: [(&str, &[&str]); 7] = [
     ),
     ("ramp.pdf", &["displacement (mm)", "velocity (mm/s)", "base acceleration (g)", "time (s)", "impact"]),
     ("ramp-section.pdf", &["displacement (mm)", "106", "109", "phase portrait, 106 to 109 s"]),
-    ("map.pdf", &["travel limit (mm)", "amplitude (g)", "RMS velocity (mm/s)", "first crossing cell"]),
+    ("map.pdf", &["travel limit (mm)", "amplitude (g)", "RMS velocity (mm/s)", "first crossing"]),
     ("surface.pdf", &["travel limit (mm)", "amplitude (g)", "RMS velocity (mm/s)"]),
     ("comparison.pdf", &["travel limit 1.5 mm", "3 mm", "6 mm", "amplitude (g)", "RMS velocity (mm/s)"]),
-    (
-        "cuts.pdf",
-        &["at travel limit 1.5 mm", "at amplitude 1.2 g", "RMS velocity (mm/s)", "first crossing cell"],
-    ),
+    ("cuts.pdf", &["at travel limit 1.5 mm", "at amplitude 1.2 g", "RMS velocity (mm/s)", "first crossing"]),
 ];
 
 /// A command of the documents on a grid of few cells and short runs.

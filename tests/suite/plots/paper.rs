@@ -359,8 +359,7 @@ fn a_map_is_shown_as_a_surface_and_with_cuts() {
     // a column that is not written can be shown
     says(&format!("{surface} --quantity travel_m"), &["travel (mm)"]);
     let cuts = format!("{SMALL_MAP} --cut travel_limit_mm=2 --cut excitation.amplitude_g=1.25");
-    let words =
-        says(&cuts, &["at travel limit 2 mm", "at amplitude 1.25 g", "intrawell", "first crossing cell"]);
+    let words = says(&cuts, &["at travel limit 2 mm", "at amplitude 1.25 g", "intrawell", "first crossing"]);
     assert_eq!(words.join(" ").matches("RMS velocity (mm/s)").count(), 3, "{words:?}");
     // the release along a cut is |F(limit)|/mass
     let data = drawn(&cuts);

@@ -6,7 +6,9 @@ use super::chart::{Chart, Marks, Panel};
 use super::drawn::Drawn;
 use super::quantity::suited_unit;
 use super::role::Role;
+use super::style::{KINDS, WARM};
 use super::sweep::{MAX_PICTURE_CELLS, NoPicture};
+use crate::dynamics::Regime;
 use crate::numeric::short;
 use crate::study::{Answer, Attractor, Basins, Edges, Shares, Starts, Table};
 
@@ -112,11 +114,19 @@ fn source_row(basins: &Basins) -> impl Fn(usize) -> usize {
 }
 
 /// The roles of the attractors, in the order of their words: a finer level of starts finds the same
-/// attractors in another order, and their colours stay.
+/// attractors in another order, and their colours stay. Interwell motion has the warm colours.
 fn roles(answer: &Answer) -> Vec<Role> {
-    let words: Vec<(String, usize)> = answer.words().into_iter().zip(0..).collect();
-    let rank = |word: &(String, usize)| words.iter().filter(|other| *other < word).count();
-    words.iter().map(|word| Role::Kind(rank(word))).collect()
+    let mut order: Vec<(String, usize)> = answer.words().into_iter().zip(0..).collect();
+    order.sort();
+    let is_warm = |place: &usize| WARM.contains(&(place % KINDS.len()));
+    let (mut warm, mut other) = ((0..).filter(is_warm), (0..).filter(|place| !is_warm(place)));
+    let mut roles = vec![Role::Several; order.len()];
+    for (_, place) in order {
+        let is_interwell = answer.attractors[place].regime == Regime::Interwell;
+        let kind = if is_interwell { warm.next() } else { other.next() };
+        roles[place] = kind.map_or(Role::Several, Role::Kind);
+    }
+    roles
 }
 
 /// The names of the attractors with their shares; if there are many, only those with the largest shares have
@@ -126,18 +136,19 @@ fn names(basins: &Basins, answer: &Answer) -> Vec<String> {
     order.sort_by_key(|place| std::cmp::Reverse(answer.attractors[*place].starts));
     let (mut names, kinds) = (vec![String::new(); order.len()], answer.words());
     for place in order.into_iter().take(MAX_NAMED) {
-        names[place] = words(place, &kinds[place], &answer.attractors[place], basins.starts().is_grid());
+        let number = if kinds.len() > 1 { format!("{} ", place + 1) } else { String::new() };
+        names[place] = number + &words(&kinds[place], &answer.attractors[place], basins.starts().is_grid());
     }
     names
 }
 
-/// Description of an attractor with its number and share; for random starts also the interval of the share.
-fn words(place: usize, kind: &str, attractor: &Attractor, is_grid: bool) -> String {
+/// Description of an attractor with its share; for random starts also the interval of the share.
+fn words(kind: &str, attractor: &Attractor, is_grid: bool) -> String {
     let percent = |share: f64| short((1e3 * share).round() / 10.0);
     let Shares { share, low, high } = attractor.share;
     let interval = || format!(" ({} to {})", percent(low), percent(high));
     let interval = if is_grid { String::new() } else { interval() };
-    format!("{} {kind}: {} %{interval}", place + 1, percent(share))
+    format!("{kind}: {} %{interval}", percent(share))
 }
 
 /// The subtitle: which starts were run.

@@ -259,9 +259,10 @@ impl Pen<'_> {
         }
         let ink = self.theme.ink;
         let lead = part.right - 6.0;
-        let mut wires =
-            vec![vec![(lead, part.top), (lead, y[0]), (begin, y[0])], vec![(part.right, y[1]), (end, y[1])]];
-        wires[1].extend([(end, y[0]), (load_end, y[0])]);
+        let upper = vec![(lead, part.top), (lead, y[0]), (begin, y[0])];
+        let foot = (lead, part.bottom.min(y[1]));
+        let lower = vec![foot, (lead, y[1]), (end, y[1]), (end, y[0]), (load_end, y[0])];
+        let mut wires = vec![upper, lower];
         let resistor = Area::new(begin, y[0] - LOAD.1, load_end, y[0] + LOAD.1);
         match value {
             0.0 => wires.push(vec![(begin, y[0]), (load_end, y[0])]),

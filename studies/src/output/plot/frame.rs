@@ -317,6 +317,12 @@ impl Frame {
         let many = (elementary::ln(places.len() as f64 / FEW) / elementary::ln(MANY / FEW)).clamp(0.0, 1.0);
         let size = CLOUD.0 + many * (CLOUD.1 - CLOUD.0);
         for at in places {
+            if look.hollow {
+                // leaves room for a marker of another layer in its middle
+                dot(figure, look.marker, at, 2.0 * size, look.ink);
+                dot(figure, look.marker, at, 1.35 * size, theme.paper);
+                continue;
+            }
             if look.halo.is_some() {
                 dot(figure, look.marker, at, size + 0.6, theme.soft);
             }

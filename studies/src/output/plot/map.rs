@@ -38,9 +38,9 @@ impl Lines {
 
     fn draw(&self, panel: &mut Panel) {
         for part in &self.crossing {
-            panel.layer(Role::FirstCrossing, "first crossing cell", Marks::Path(part.clone()));
+            panel.layer(Role::FirstCrossing, "first crossing", Marks::Path(part.clone()));
         }
-        let name = "release in closed form: comes off the stop";
+        let name = "release: leaves the stop (closed form)";
         panel.layer_if_any(Role::Release, name, Marks::Path(self.release.clone()));
     }
 
@@ -115,7 +115,7 @@ pub(super) fn map(picture: &SweepPicture, (x, y): (&str, &str), cuts: &[Cut]) ->
     let lines = Lines::new(picture, (x, y), &cells);
     let transients = transients(rows, (x, y), &cells);
     let mut panel = cells_panel(picture, (x, y), cells, quantity.bar());
-    panel.layer_if_any(Role::Transient, "may be a transient", Marks::Cloud(transients));
+    panel.layer_if_any(Role::Transient, "not settled yet", Marks::Cloud(transients));
     lines.draw(&mut panel);
     let mut drawn = drawn(picture, &[(x, ranges.x), (y, ranges.y)]);
     lines.record(&mut drawn);

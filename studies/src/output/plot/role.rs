@@ -215,12 +215,12 @@ impl Theme {
             Role::Regime(place) => marked(self.regimes[place % 5], super::mark::REGIMES[place % 5].1),
             Role::Step(share) => of(self.step(share)),
             Role::Joined => fine(self.soft),
-            Role::Down => Look { marker: Marker::Diamond, ..dashed(self.second) },
+            Role::Down => Look { marker: Marker::Diamond, hollow: true, ..dashed(self.second) },
             Role::Hysteresis => of(self.shaking.over(self.paper, 0.3)),
             Role::Kind(place) => Look {
                 hatch: style::kind_hatch(place),
                 halo: Some(style::WHITE),
-                ..marked(style::KINDS[place % style::KINDS.len()], MARKERS[place % 4])
+                ..marked(style::KINDS[place % style::KINDS.len()], MARKERS[(place + 2 * (place / 4)) % 4])
             },
             Role::Event(place) => {
                 let shapes = [Marker::Triangle, Marker::Diamond, Marker::Square, Marker::DoubleArrow];

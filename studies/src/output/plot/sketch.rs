@@ -151,7 +151,7 @@ impl<'a> Pen<'a> {
         }
         self.kept.push(self.mass);
         self.kept.extend(self.stops.into_iter().chain(self.outlined).flatten());
-        let arrow = self.arrow_place();
+        let arrow = self.arrow_place(&lines);
         self.kept.extend(arrow);
         let labels = self.beside();
         let width = self.theme.look(Role::Motion).width;
@@ -237,18 +237,20 @@ impl<'a> Pen<'a> {
     }
 
     /// The place of the longest arrow: between the stops where half of it has room on either side of the
-    /// mass, else beyond a stop; without two stops on the inner side of the mass. Its height is that of the
-    /// mass, where no flexure comes, and clear of a spring.
-    fn arrow_place(&self) -> Option<Area> {
+    /// mass, else above the stops and beside the flexures, or beyond a stop; without two stops on the inner
+    /// side of the mass. Except above the stops its height is that of the mass, where no flexure comes, and
+    /// clear of a spring.
+    fn arrow_place(&self, flexures: &[Vec<Point>]) -> Option<Area> {
         let (area, mass) = (self.area(), self.mass);
         let length = ARROW.0 * (area.right - area.left);
         let half = 0.5 * (mass.bottom - mass.top);
         let lift = if self.of.stiffness == 0.0 { 0.0 } else { 0.4 * half };
         let y = 0.5 * (mass.top + mass.bottom) - lift;
+        let place =
+            |near: f64, far: f64, y: f64| Area::new(near.min(far), y - HEAD.1, near.max(far), y + HEAD.1);
         let from = |edge: f64, side: f64, length: f64| {
             let near = edge + side * ARROW_GAP.0;
-            let far = near + side * length;
-            Area::new(near.min(far), y - HEAD.1, near.max(far), y + HEAD.1)
+            place(near, near + side * length, y)
         };
         let face = |side: f64| if side < 0.0 { mass.left } else { mass.right };
         let middle = 0.5 * (mass.left + mass.right);
@@ -259,12 +261,23 @@ impl<'a> Pen<'a> {
                 let all = || self.outlined.into_iter().flatten().chain([left, right]);
                 let outer_left = all().map(|stop| stop.left).fold(f64::INFINITY, f64::min);
                 let outer_right = all().map(|stop| stop.right).fold(f64::NEG_INFINITY, f64::max);
-                match room >= ARROW.1 * length && self.of.outlined.is_none() {
-                    true => from(face(side), side, length.min(room)),
-                    false if outer_left - length - 2.0 * ARROW_GAP.0 > area.left => {
+                let over = mass.top - STOP.1 - ARROW_GAP.0 - HEAD.1;
+                let above = |side: f64| place(face(side), face(side) + side * length, over);
+                let is_free = |place: &Area| {
+                    let crosses = |pair: &[Point]| place.clip(pair[0], pair[1]).is_some();
+                    let is_inside =
+                        place.left > area.left && place.right < area.right && place.top > self.top;
+                    is_inside && !flexures.iter().any(|line| line.windows(2).any(crosses))
+                };
+                let has_flexures = self.of.flexures.is_some();
+                let free = [above(-1.0), above(1.0)].into_iter().find(|place| has_flexures && is_free(place));
+                match (room >= ARROW.1 * length && self.of.outlined.is_none(), free) {
+                    (true, _) => from(face(side), side, length.min(room)),
+                    (false, Some(above)) => above,
+                    (false, None) if outer_left - length - 2.0 * ARROW_GAP.0 > area.left => {
                         from(outer_left, -1.0, length)
                     }
-                    false => from(outer_right, 1.0, length),
+                    (false, None) => from(outer_right, 1.0, length),
                 }
             }
             [Some(_), None] => from(mass.right, 1.0, length),

@@ -189,6 +189,9 @@ pub const KINDS: [Ink; 8] = [
     Ink(0xa6, 0xa8, 0x9c),
 ];
 
+/// Which of [`KINDS`] are warm.
+pub const WARM: [usize; 2] = [4, 5];
+
 /// The hatching of a kind whose colour is used a second time.
 pub fn kind_hatch(place: usize) -> Option<Ink> {
     let Ink(red, green, blue) = KINDS[place % KINDS.len()];
