@@ -114,17 +114,18 @@ fn source_row(basins: &Basins) -> impl Fn(usize) -> usize {
 }
 
 /// The roles of the attractors, in the order of their words: a finer level of starts finds the same
-/// attractors in another order, and their colours stay. Interwell motion has the warm colours.
+/// attractors in another order, and their colours stay. Interwell motion has the warm colours first.
 fn roles(answer: &Answer) -> Vec<Role> {
     let mut order: Vec<(String, usize)> = answer.words().into_iter().zip(0..).collect();
     order.sort();
-    let is_warm = |place: &usize| WARM.contains(&(place % KINDS.len()));
-    let (mut warm, mut other) = ((0..).filter(is_warm), (0..).filter(|place| !is_warm(place)));
+    let mut free: Vec<usize> = (0..order.len().max(KINDS.len())).collect();
     let mut roles = vec![Role::Several; order.len()];
     for (_, place) in order {
         let is_interwell = answer.attractors[place].regime == Regime::Interwell;
-        let kind = if is_interwell { warm.next() } else { other.next() };
-        roles[place] = kind.map_or(Role::Several, Role::Kind);
+        let suits = |kind: &usize| WARM.contains(kind) == is_interwell && *kind < KINDS.len();
+        let usual = free.iter().position(suits);
+        let plain = free.iter().rposition(|kind| *kind < KINDS.len());
+        roles[place] = Role::Kind(free.remove(usual.or(plain).unwrap_or(0)));
     }
     roles
 }
