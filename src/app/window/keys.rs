@@ -93,7 +93,7 @@ const ROW: f32 = 20.0;
 fn group_ui(ui: &mut Ui, group: &str, projector: bool, width: f32) {
     ui.label(RichText::new(group).heading());
     (ui.spacing_mut().interact_size.y, ui.spacing_mut().item_spacing.y) = (ROW, 2.0);
-    let left = Layout::left_to_right(Align::Center);
+    let left = Layout::left_to_right(Align::Min);
     for (keys, does) in rows(ui.ctx(), group, projector) {
         ui.horizontal_top(|ui| {
             ui.allocate_ui_with_layout(vec2(KEYS, ROW), left, |ui| {

@@ -114,6 +114,12 @@ pub fn grams(g: f64) -> String {
     significant(g, 3)
 }
 
+/// A threshold beside the present amplitude: three significant digits, or as many more as tell the two apart.
+pub fn grams_beside(g: f64, present: f64) -> String {
+    let differs = |digits: &usize| g == present || significant(g, *digits) != significant(present, *digits);
+    significant(g, (3..7).find(differs).unwrap_or(3))
+}
+
 /// A threshold, rounded up to three significant digits, so that the amplitude in the text is enough.
 pub fn grams_up(g: f64) -> String {
     let unit = elementary::powf(10.0, elementary::log10(g).floor() - 2.0);

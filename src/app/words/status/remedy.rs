@@ -5,7 +5,7 @@ use crate::scene::{Scene, Stops};
 use interwell_studies::study::{Found, Thresholds};
 
 use super::super::capital;
-use super::super::numbers::{grams, grams_apart, grams_up};
+use super::super::numbers::{grams, grams_apart, grams_beside, grams_up};
 
 /// Amplitude in g of a drive that is harmonic.
 pub(super) fn amplitude(scene: &Scene) -> Option<f64> {
@@ -44,7 +44,12 @@ fn about(found: &Found) -> &'static str {
 /// A threshold as every view writes it, in the unit of the drive's field, and that unit.
 pub fn threshold(scene: &Scene, found: &Found) -> Option<(String, &'static str)> {
     let (per_g, unit) = unit(scene);
-    Some((format!("{}{}", about(found), grams(found.value? * per_g)), unit))
+    Some((format!("{}{}", about(found), least(scene, found.value? * per_g)), unit))
+}
+
+/// A threshold in the unit of the drive's field, with digits that tell it from the amplitude of the scene.
+fn least(scene: &Scene, value: f64) -> String {
+    scene.harmonic().map_or_else(|| grams(value), |drive| grams_beside(value, drive.amplitude().abs()))
 }
 
 /// The present amplitude and motion compared with the thresholds, which are from rest at this frequency.
@@ -60,7 +65,8 @@ pub(super) fn remedy(scene: &Scene, summary: &Summary, found: &Thresholds) -> St
         return if crosses { String::new() } else { format!("From rest no shaking up to {limit} {never}.") };
     };
     let about = about(&found.crossing);
-    let (least, gaps) = (format!("{about}{}", in_unit(scene, grams, from)), gaps(scene, found, from));
+    let Some((least, unit)) = threshold(scene, &found.crossing) else { return String::new() };
+    let (least, gaps) = (format!("{least} {unit}"), gaps(scene, found, from));
     let apart = |g: f64| in_unit(scene, grams_apart, g);
     let text = match (crosses, g >= from) {
         (true, true) => format!("{about}{} to spare: crosses from {least}{gaps}.", apart(g - from)),
@@ -143,6 +149,9 @@ mod tests {
         let (short, more) = (remedy(&pushed, &settled, &found), ways(&pushed, &settled, &found, None));
         assert_eq!(short, "0.045 N short of crossing at 0.179 N, with gaps above it.");
         assert_eq!(more, "Crosses with 0.045 N more; no stops alone would do it.");
+        // as many digits as tell it from 0.9 g
+        assert_eq!(said(Some(0.902), false)[0], "0.0020 g short of crossing at 0.902 g.");
+        assert_eq!(said(Some(0.9004), false)[0], "0.00040 g short of crossing at 0.9004 g.");
         let short = "0.30 g short of crossing at 1.20 g.";
         let more = "Crosses with 0.30 g more; no stops alone would do it.";
         assert_eq!(said(Some(1.2), false), [short, more]);
