@@ -175,7 +175,7 @@ fn the_projector_can_be_left_again() {
         window_with("first-look", [853.0, 480.0], Settings { projector: true, ..Settings::default() });
     harness.get_by_label("View").click();
     harness.run_steps(3);
-    let row = harness.get_by_label("Projector  (P)").rect();
+    let row = harness.get_by_label("Projector").rect();
     assert!(row.bottom() < 480.0, "{row:?}");
     press(&mut harness, Key::Escape);
     press(&mut harness, Key::P);

@@ -2,7 +2,9 @@
 
 use std::sync::LazyLock;
 
-use eframe::egui::{self, Button, KeyboardShortcut, Modifiers, Response, Separator, Ui};
+use eframe::egui::{
+    self, Align2, Button, KeyboardShortcut, Modifiers, Response, Separator, TextStyle, Ui, pos2,
+};
 
 use crate::app::session::lesson::OpenLesson;
 use crate::app::session::player::SPEEDS;
@@ -137,17 +139,25 @@ impl Menus<'_> {
     }
 
     fn settings_ui(&mut self, ui: &mut Ui) {
-        for (setting, name, hover) in [
-            (Setting::Projector, "Projector  (P)", "Light, larger, thicker lines"),
-            (Setting::Dark, "Dark  (D)", "Light letters on a dark ground"),
-            (Setting::ReduceMotion, "Reduce motion", "No rings at impacts"),
+        for (setting, name, key, hover) in [
+            (Setting::Projector, "Projector", "P", "Light, larger, thicker lines"),
+            (Setting::Dark, "Dark", "D", "Light letters on a dark ground"),
+            (Setting::ReduceMotion, "Reduce motion", "", "No rings at impacts"),
         ] {
             let command = Command::Toggle(setting);
             let why = self.window.impossible(&command);
             let mut settings = self.window.settings;
             let on = settings.of(setting);
-            let response = ui.add_enabled_ui(why.is_none(), |ui| checkbox_ui(ui, on, name)).inner;
-            let response = response.on_hover_text(hover);
+            let response = ui.add_enabled_ui(why.is_none(), |ui| {
+                let response = checkbox_ui(ui, on, name);
+                // where the keys of other items stand
+                let right = ui.max_rect().right() - ui.spacing().button_padding.x;
+                let (at, font) =
+                    (pos2(right, response.rect.center().y), TextStyle::Button.resolve(ui.style()));
+                ui.painter().text(at, Align2::RIGHT_CENTER, key, font, ui.visuals().weak_text_color());
+                response
+            });
+            let response = response.inner.on_hover_text(hover);
             if response.on_disabled_hover_text(why.unwrap_or_default()).clicked() {
                 self.chosen.push(command);
             }

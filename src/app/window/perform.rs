@@ -137,6 +137,9 @@ impl Window {
             Command::BestStops => {
                 self.ways = false;
                 self.session.find_best_stops();
+                if self.filled.is_some() && self.session.best.is_shown() {
+                    self.messages.notify("Searching for the best stops. Z shows the answer");
+                }
             }
             Command::OpenLesson(name) => self.open_lesson(name),
             Command::OpenLessonFile => self.choose(Wanted::Lesson),
