@@ -184,7 +184,7 @@ fn changes_are_discarded_only_where_there_are_some() {
     let mut harness = window("first-look", WIDE);
     assert!(harness.query_by_label("Discard changes").is_none());
     click_on(&mut harness, "Edit");
-    harness.get_by_label_contains("Back to the start");
+    harness.get_by_label_contains("From the start again");
     press(&mut harness, Key::Escape);
     harness.state_mut().session.switch_stops(true);
     harness.run_steps(3);

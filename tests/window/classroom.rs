@@ -134,11 +134,9 @@ fn page_down_stops_at_a_covered_prediction_and_at_the_last_step() {
     let mut harness = opened(LESSONS[0].name, WIDE);
     assert!(go_to(&mut harness, |step| matches!(step, Step::Predict { .. })));
     let at = number(&harness);
-    for _ in 0..3 {
-        press(&mut harness, Key::PageDown);
-        assert!(number(&harness) == at && harness.state().lesson().unwrap().is_covering());
-    }
-    assert!(harness.state().notice().is_some_and(|text| text.contains("Reveal")));
+    press(&mut harness, Key::PageDown);
+    assert!(number(&harness) == at && harness.state().lesson().unwrap().is_covering());
+    assert!(harness.state().notice().is_some_and(|text| text.contains("PageDown once more")));
     // the button has the keyboard
     press(&mut harness, Key::Enter);
     assert!(!harness.state().lesson().unwrap().is_covering());
@@ -170,6 +168,22 @@ fn a_choice_by_its_key_leaves_no_button_with_the_keyboard() {
     assert!(harness.state().lesson().unwrap().answer().choice.is_some());
     press(&mut harness, Key::Enter);
     assert_eq!(number(&harness), at);
+}
+
+/// A clicker has no Enter.
+#[test]
+fn page_down_twice_reveals_and_a_vote_between_does_not() {
+    let mut harness = opened(LESSONS[0].name, WIDE);
+    assert!(go_to(&mut harness, |step| matches!(step, Step::Predict { .. })));
+    let at = number(&harness);
+    press(&mut harness, Key::PageDown);
+    harness.key_press_modifiers(Modifiers::SHIFT, Key::A);
+    harness.run_steps(3);
+    press(&mut harness, Key::PageDown);
+    assert!(harness.state().lesson().unwrap().is_covering());
+    press(&mut harness, Key::PageDown);
+    assert!(!harness.state().lesson().unwrap().is_covering());
+    assert_eq!((number(&harness), &harness.state().lesson().unwrap().answer().choice), (at, &None));
 }
 
 #[test]
@@ -317,7 +331,9 @@ fn votes_are_counted_beside_a_prediction() {
     // from the first vote on the letter alone is one too, and reveals nothing
     press(&mut harness, Key::C);
     assert!(harness.state().lesson().unwrap().is_covering());
-    assert!(is_painted(&harness, "A (1)   crosses") && is_painted(&harness, "C (2)   does not move"));
+    assert!(
+        is_painted(&harness, "A   crosses  (1 vote)") && is_painted(&harness, "C   does not move  (2 votes)")
+    );
     // in the notes by buttons
     press_with_ctrl(&mut harness, Key::L);
     harness.query_all_by_label("B 0").next().unwrap().click();
@@ -326,7 +342,9 @@ fn votes_are_counted_beside_a_prediction() {
     press_with_ctrl(&mut harness, Key::L);
     click_on(&mut harness, "Reveal");
     // the options stay, with their votes
-    assert!(is_painted(&harness, "A (1)   crosses") && is_painted(&harness, "C (2)   does not move"));
+    assert!(
+        is_painted(&harness, "A   crosses  (1 vote)") && is_painted(&harness, "C   does not move  (2 votes)")
+    );
     assert_eq!(harness.state().lesson().unwrap().answer().choice, None);
     // too late: no vote, and nothing is covered
     shift(&mut harness, Key::C);

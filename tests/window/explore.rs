@@ -59,7 +59,7 @@ fn both_directions_come_and_a_drag_takes_the_scene_there() {
     let down = fine(harness.state(), Direction::Down);
     assert!(down.iter().rev().eq(up.iter()));
     let before = harness.state().session.scene().clone();
-    let name = "displacement once a period (mm) over amplitude, turned up and down";
+    let name = "RMS velocity (mm/s) over amplitude, turned up and down";
     let place = harness.get_by_role_and_label(Role::Canvas, name).rect();
     harness.drag_at(place.center());
     harness.run_steps(2);
@@ -74,9 +74,9 @@ fn both_directions_come_and_a_drag_takes_the_scene_there() {
     // the field that is walked has no part in the question: what is known stays
     assert!(session.explore.walks.found.is_whole());
     assert!(session.undo() && *session.scene() == before && !session.undo());
-    session.explore.walks.quantity = WalkQuantity::RmsVelocity;
+    session.explore.walks.quantity = WalkQuantity::Strobes;
     harness.run_steps(3);
-    harness.get_by_label("RMS velocity (mm/s) over amplitude, turned up and down");
+    harness.get_by_label("displacement once a period (mm) over amplitude, turned up and down");
 }
 
 #[test]

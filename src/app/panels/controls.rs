@@ -9,7 +9,7 @@ use crate::app::ui::style::CONTROL;
 use crate::app::ui::widgets::{hover_beside, primary};
 use crate::app::words::fields::{Reach, info, name_and_unit};
 use crate::app::words::numbers::{below, decimals, round_up, shown};
-use crate::scene::{Damping, Excitation, FieldPath, Mechanism, Stops, Transducer, numeric_fields};
+use crate::scene::{Damping, Excitation, FieldPath, Mechanism, Scene, Stops, Transducer, numeric_fields};
 
 use super::advanced;
 
@@ -136,8 +136,18 @@ pub fn row_ui(ui: &mut Ui, session: &mut Session, more: &mut bool) {
     });
 }
 
-/// The controls that a lesson names, in rows that fill the width. Returns the rectangle of each control.
-pub fn named_ui(ui: &mut Ui, session: &mut Session, controls: &[String]) -> Vec<(String, Rect)> {
+/// The controls that a lesson names, in rows that fill the width. A field that has another value in the scene
+/// about which the lesson `asks` is left out, with its place. Returns the rectangle of each control.
+pub fn named_ui(
+    ui: &mut Ui,
+    session: &mut Session,
+    controls: &[String],
+    asks: Option<&Scene>,
+) -> Vec<(String, Rect)> {
+    let is_asked = |session: &Session, path: &str| {
+        let present = session.number(path);
+        asks.is_some_and(|scene| FieldPath::new(path).get(scene).is_some_and(|asked| Some(asked) != present))
+    };
     let font = egui::TextStyle::Body.resolve(ui.style());
     let name_width = |ui: &Ui, path: &str| {
         let name = name_and_unit(path).0;
@@ -170,6 +180,9 @@ pub fn named_ui(ui: &mut Ui, session: &mut Session, controls: &[String]) -> Vec<
                 let control = ui.scope(|ui| match path.as_str() {
                     SWITCH => stops_switch_ui(ui, session),
                     path => {
+                        if is_asked(session, path) {
+                            ui.set_invisible();
+                        }
                         if is_amplitude(path) {
                             ui.heading(SHAKING);
                         }

@@ -12,7 +12,8 @@ use crate::app::ui::style::{BODY, CONTROL, Style, strong_family};
 use crate::app::ui::widgets::{primary, tell};
 use crate::app::words::lesson::{expected, judged_by, letter, not_yet, numbered, pieces, plain};
 use crate::app::words::meanings::{meaning, terms};
-use crate::scene::lesson::{Choice, Step};
+use crate::app::words::numbers::unbroken;
+use crate::scene::lesson::{Choice, Condition, Step};
 
 use super::status_line::spoken_ui;
 
@@ -22,6 +23,8 @@ const SPACE: f32 = 4.0;
 /// Least height in points of the text, beside which the dots and the buttons stand.
 const LEAST: f32 = 20.0 + SPACE + CONTROL;
 const HINT: &str = "Hint: ";
+/// The longest result of a prediction that is judged.
+const LONGEST_RESULT: &str = "Answer: B. You chose C. ";
 const DOT: f32 = 4.5;
 const DOT_SPACING: f32 = 15.0;
 /// Greatest number of characters of the reason that a student gives.
@@ -68,8 +71,14 @@ pub fn lesson_ui(
         ui.allocate_ui_with_layout(vec2(width, 0.0), Layout::top_down(Align::Min), |ui| {
             ui.set_width(width);
             let step = lesson.step();
-            text_ui(ui, style, heading(step), step.text());
-            action = below_ui(ui, lesson, session, style);
+            if matches!(step, Step::Predict { .. }) {
+                // the options stay where they are when the result comes
+                ui.set_min_height(above_options(ui, style, step, (width, beside.1)));
+            }
+            let result = matches!(step, Step::Predict { .. }) && !lesson.is_covering();
+            let heading = if result { short_verdict(lesson) + " " } else { heading(step).to_owned() };
+            text_ui(ui, style, &heading, step.text());
+            action = below_ui(ui, lesson, session, style, urged.is_some());
         });
         if let Some(urged) = urged {
             ui.allocate_ui_with_layout(vec2(NAVIGATION, 0.0), Layout::top_down(Align::Max), |ui| {
@@ -111,13 +120,23 @@ fn height_of(ui: &Ui, style: &Style, step: &Step, (width, least): (f32, f32)) ->
         Step::Predict { options, .. } => {
             let rows = rows_of(options.len()) as f32;
             let below = option_size(ui, options).y * rows + SPACE * (rows - 1.0);
-            (text + SPACE + row).max(least) + SPACE + below
+            above_options(ui, style, step, (width, least)) + SPACE + below
         }
         Step::Do { hint, .. } => {
             let hint = hint.as_deref().map_or(0.0, |hint| of(HINT, hint) + SPACE);
             text + row + hint + SPACE
         }
     }
+}
+
+/// Height in points of what is above the options of a prediction: its text with the result in front, and
+/// where the text has this least height, the row of the reason.
+fn above_options(ui: &Ui, style: &Style, step: &Step, (width, least): (f32, f32)) -> f32 {
+    let mut job = job(style, LONGEST_RESULT, step.text());
+    job.wrap.max_width = width;
+    let text = ui.painter().layout_job(job).size().y;
+    let reason = if least > 0.0 { SPACE + ui.spacing().interact_size.y.max(1.4 * BODY) } else { 0.0 };
+    (text + reason).max(least)
 }
 
 fn heading(step: &Step) -> &'static str {
@@ -151,7 +170,12 @@ fn short_verdict(lesson: &OpenLesson) -> String {
         Outcome::Holds(option) if lesson.answer().choice.as_ref() == Some(&lesson.options()[option].text) => {
             "That holds.".to_owned()
         }
-        Outcome::Holds(option) => format!("What holds: {}.", letter(option)),
+        Outcome::Holds(option) => {
+            let is_chosen = |choice: &&Choice| lesson.answer().choice.as_ref() == Some(&choice.text);
+            let chosen = lesson.options().iter().position(|choice| is_chosen(&choice));
+            let chosen = chosen.map_or_else(String::new, |place| format!(" You chose {}.", letter(place)));
+            format!("Answer: {}.{chosen}", letter(option))
+        }
         Outcome::Unknown => "Watch what it does.".to_owned(),
         Outcome::Unclear | Outcome::Unjudged(_) => verdict(lesson),
     }
@@ -183,11 +207,11 @@ fn job(style: &Style, heading: &str, text: &str) -> LayoutJob {
         let underlined = TextFormat { underline: Stroke::new(1.0, style.faint()), ..plain.clone() };
         let mut from = 0;
         for (range, _) in terms(piece.text) {
-            job.append(&piece.text[from..range.start], 0.0, plain.clone());
+            job.append(&unbroken(&piece.text[from..range.start]), 0.0, plain.clone());
             job.append(&piece.text[range.clone()], 0.0, underlined.clone());
             from = range.end;
         }
-        job.append(&piece.text[from..], 0.0, plain);
+        job.append(&unbroken(&piece.text[from..]), 0.0, plain);
     }
     job
 }
@@ -198,7 +222,7 @@ fn text_ui(ui: &mut Ui, style: &Style, heading: &str, text: &str) {
     let whole = job.text.clone();
     let (at, galley, response) =
         Label::new(job).wrap().selectable(false).sense(Sense::CLICK).layout_in_ui(ui);
-    tell(&response, egui::Role::Label, &whole);
+    tell(&response, egui::Role::Label, &whole.replace('\u{a0}', " "));
     ui.painter().galley(at, galley.clone(), style.ink());
     let word_at = |pointer: Pos2| {
         let letter = galley.cursor_from_pos(pointer - at).index.0;
@@ -223,22 +247,25 @@ fn text_ui(ui: &mut Ui, style: &Style, heading: &str, text: &str) {
     }
 }
 
-/// Below the text: the outcome of a prediction, or the state of a task.
-fn below_ui(ui: &mut Ui, lesson: &mut OpenLesson, session: &Session, style: &Style) -> Option<LessonAction> {
+/// Below the text: the reason of a choice, if there is room for it, or the state of a task.
+fn below_ui(
+    ui: &mut Ui,
+    lesson: &mut OpenLesson,
+    session: &Session,
+    style: &Style,
+    has_reason: bool,
+) -> Option<LessonAction> {
     let mut action = None;
     match lesson.step() {
         Step::Say(_) | Step::Explain(_) => {}
-        Step::Predict { .. } if lesson.is_covering() => {}
         Step::Predict { .. } => {
-            ui.horizontal_wrapped(|ui| {
-                ui.label(RichText::new(short_verdict(lesson)).heading());
-                if lesson.answer().choice.is_some() {
-                    reason_ui(ui, lesson, style);
-                }
-            });
+            if has_reason && lesson.answer().choice.is_some() && !lesson.is_covering() {
+                ui.horizontal(|ui| reason_ui(ui, lesson, style));
+            }
         }
         Step::Do { .. } => {
-            let how = judged_by(lesson.lesson(), session.scene().start);
+            let starts = lesson.step().conditions().into_iter().flat_map(Condition::all_starts).count();
+            let how = judged_by(lesson.lesson(), session.scene().start, starts);
             let task = lesson.task(session);
             let is_met = matches!(task, TaskState::Met);
             let (state, color) = match task {
@@ -249,7 +276,8 @@ fn below_ui(ui: &mut Ui, lesson: &mut OpenLesson, session: &Session, style: &Sty
                 TaskState::Judging => ("Being judged.".to_owned(), style.faint()),
             };
             ui.horizontal_wrapped(|ui| {
-                let state = ui.label(RichText::new(state).color(color));
+                let state = RichText::new(state).color(color);
+                let state = ui.label(if is_met { state.heading() } else { state });
                 if is_met {
                     ui.label(RichText::new(how).color(style.faint()));
                 } else {
@@ -279,11 +307,6 @@ fn is_on_stops(session: &Session) -> bool {
 
 fn reason_ui(ui: &mut Ui, lesson: &mut OpenLesson, style: &Style) {
     let text = "Why, in one word?";
-    let galley = ui.painter().layout_no_wrap(text.to_owned(), style.body(), style.faint());
-    // the field stays in one row with its label
-    if galley.size().x + REASON + 3.0 * ui.spacing().item_spacing.x > ui.available_size_before_wrap().x {
-        ui.end_row();
-    }
     let name = ui.label(RichText::new(text).color(style.faint()));
     let word = lesson.why_mut();
     let field = TextEdit::singleline(word).desired_width(REASON).char_limit(MAX_REASON);
@@ -326,9 +349,9 @@ fn buttons_ui(ui: &mut Ui, lesson: &OpenLesson, urged: bool) -> Option<LessonAct
         urge(&next, urged);
         action = next.clicked().then_some(LessonAction::NextLesson(name));
     }
-    let (name, chosen) = match lesson.is_last() {
-        true => ("Finish", LessonAction::Finish),
-        false => ("Next", LessonAction::Next),
+    let (name, chosen, hover) = match lesson.is_last() {
+        true => ("Finish", LessonAction::Finish, "Ends the lesson: your scene comes back as it was"),
+        false => ("Next", LessonAction::Next, "The next step (PageDown)"),
     };
     let condition = match lesson.step() {
         Step::Predict { .. } => "First choose what you expect, or Reveal.",
@@ -337,7 +360,7 @@ fn buttons_ui(ui: &mut Ui, lesson: &OpenLesson, urged: bool) -> Option<LessonAct
     let button = if following.is_none() { primary(ui, name) } else { Button::new(name) };
     let next = ui.add_enabled(lesson.may_go_on(), button).on_disabled_hover_text(condition);
     urge(&next, urged && lesson.is_last() && following.is_none());
-    if next.on_hover_text("The next step (PageDown)").clicked() {
+    if next.on_hover_text(hover).clicked() {
         action = Some(chosen);
     }
     let back = ui.add_enabled(lesson.number() > 0, Button::new("Back"));
@@ -373,8 +396,12 @@ fn rows_of(count: usize) -> usize {
 
 /// An option, with the votes for it if there are any.
 fn option_text(option: usize, choice: &Choice, votes: u32) -> String {
-    let votes = if votes > 0 { format!(" ({votes})") } else { String::new() };
-    format!("{}{votes}   {}", letter(option), plain(&choice.text))
+    let votes = match votes {
+        0 => String::new(),
+        1 => "  (1 vote)".to_owned(),
+        votes => format!("  ({votes} votes)"),
+    };
+    format!("{}   {}{votes}", letter(option), plain(&choice.text))
 }
 
 /// Width and height in points of each option.

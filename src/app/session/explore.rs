@@ -71,8 +71,8 @@ const COARSE: usize = 5;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum WalkQuantity {
     /// Displacements once a forcing period.
-    #[default]
     Strobes,
+    #[default]
     RmsVelocity,
     /// Mean power into the load of a transducer.
     LoadPower,

@@ -9,7 +9,7 @@ use eframe::egui::{
 use crate::app::words::kind::Kind;
 use crate::app::words::numbers::unbroken;
 
-use super::style::{BODY, COMPACT_BELOW, CONTROL, LEAST, Style};
+use super::style::{BODY, COMPACT_BELOW, CONTROL, LEAST, STATUS, Style};
 
 /// A dialog at most `width` points wide, with its contents below a heading. Returns the value of the
 /// contents, and whether the dialog was closed by a key or by a click beside it.
@@ -22,7 +22,7 @@ pub fn dialog_ui<R>(
     let frame = egui::Frame::popup(&ui.ctx().global_style()).inner_margin(16.0);
     let answer = egui::Modal::new(egui::Id::unique(id)).frame(frame).show(ui.ctx(), |ui| {
         ui.set_max_width(dialog_width(ui, width));
-        ui.heading(heading);
+        ui.label(heading.into().heading().size(STATUS));
         ui.add_space(space);
         contents(ui)
     });

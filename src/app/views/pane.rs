@@ -19,6 +19,7 @@ use crate::output::{
 
 use super::LegendRow;
 use super::hand::axes_input;
+use super::labels::plated;
 use super::memory::Memory;
 use super::view::View;
 
@@ -90,8 +91,8 @@ impl Pane {
         painter.add(Shape::mesh(mesh));
     }
 
-    /// Writes the values under the pointer at the right end of the legend, `beside` points from the end, and
-    /// covers entries that it would cut.
+    /// Writes the values under the pointer at the right end of the legend, `beside` points from the end, or
+    /// where that has no room in a corner of the frame.
     pub fn reading(&self, ui: &Ui, style: &Style, beside: f32, text: &str) {
         let area = self.response.rect;
         let painter = ui.painter().with_clip_rect(area);
@@ -99,11 +100,14 @@ impl Pane {
         let right = LegendRow::of(ui, area).right - beside;
         let row = Rect::from_min_max(area.min, pos2(right, area.top() + LEGEND));
         let at = Align2::RIGHT_CENTER.anchor_size(row.right_center() - vec2(6.0, 0.0), galley.size());
-        let entries = self.painting.legend.iter().map(|entry| entry.0);
-        let cut = entries.filter(|entry| entry.right() > at.left() - 4.0 && entry.center().y < row.bottom());
-        let left = cut.map(|entry| entry.left()).fold(at.left(), f32::min) - 2.0;
-        painter.rect_filled(row.with_min_x(left), 0.0, style.ground());
-        painter.galley(at.min, galley, style.ink());
+        let is_cut = self.painting.legend.iter().any(|entry| entry.0.intersects(at.expand2(vec2(4.0, 0.0))));
+        match self.frame(0).filter(|_| is_cut) {
+            Some(frame) => {
+                let corner = (frame.right_top() + vec2(-4.0, 4.0), Align2::RIGHT_TOP);
+                plated(&painter, style, corner, &with_minus(text), (style.small(), style.ink()));
+            }
+            None => painter.galley(at.min, galley, style.ink()),
+        }
     }
 
     /// The values of a panel's axes at a place on the screen.

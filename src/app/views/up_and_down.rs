@@ -226,14 +226,37 @@ fn picture_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axis: &SweepAxis, area
     let write = |at: egui::Pos2, align: Align2, text: &str, colour: egui::Color32| {
         haloed(ui.painter(), &style, (at, align), text, (style.small(), colour));
     };
-    if let Some((value, _)) = pane.response.hover_pos().and_then(|at| pane.values_at(0, at)) {
+    let pointed = pane.response.hover_pos().and_then(|at| pane.values_at(0, at));
+    let is_same = is_whole && current && !fine[0].is_empty() && differing(&fine, high - low).is_empty();
+    if pointed.is_none() && is_same {
+        let at = frame.right_top() + vec2(-6.0, 4.0);
+        write(at, Align2::RIGHT_TOP, "the same motion both ways", style.faint());
+    }
+    if let Some((value, _)) = pointed {
         let text =
             reading(&branches, value.clamp(axis.from, axis.to), quantity, name_and_unit(&axis.field).1);
         if let Some(at) = pane.place(0, (value.clamp(axis.from, axis.to), low)) {
             child.painter().vline(at.x, frame.y_range(), egui::Stroke::new(1.0, style.faint()));
         }
-        let place = (frame.right_top() + vec2(-4.0, 4.0), Align2::RIGHT_TOP);
-        plated(ui.painter(), &style, place, &text, (style.small(), style.ink()));
+        let size = ui.painter().layout_no_wrap(text.clone(), style.small(), style.ink()).size();
+        let corners = [
+            (frame.right_top() + vec2(-4.0, 4.0), Align2::RIGHT_TOP),
+            (frame.right_bottom() + vec2(-4.0, -4.0), Align2::RIGHT_BOTTOM),
+            (frame.left_top() + vec2(4.0, 4.0), Align2::LEFT_TOP),
+            (frame.left_bottom() + vec2(4.0, -4.0), Align2::LEFT_BOTTOM),
+        ];
+        let shown = branches.iter().flatten().flat_map(|visit| match quantity {
+            WalkQuantity::Strobes => strobes(visit).iter().map(|x| (visit.value, x * 1e3)).collect(),
+            _ => vec![(visit.value, number(visit, shown))],
+        });
+        let shown: Vec<egui::Pos2> = shown.filter_map(|point| pane.place(0, point)).collect();
+        let hidden = |corner: &&(egui::Pos2, Align2)| {
+            let place = corner.1.anchor_size(corner.0, size).expand(4.0);
+            shown.iter().filter(|at| place.contains(**at)).count()
+        };
+        if let Some(corner) = corners.iter().min_by_key(hidden) {
+            plated(ui.painter(), &style, *corner, &text, (style.small(), style.ink()));
+        }
     }
     if !is_whole && area.height() > 220.0 {
         let is_coarse = [0, 1].iter().any(|i| fine[*i].len() < branches[*i].len());

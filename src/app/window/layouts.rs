@@ -13,7 +13,10 @@ use crate::scene::Layout;
 
 use super::card::{Answer, Title, card_ui};
 
-use trees::{compact_lesson_tree, compact_tree, lesson_tree, tabs_tree, views_of, wide_tree};
+use trees::{
+    COVERED_SHARE, MAP_SHARE, WIDE, compact_lesson_tree, compact_tree, lesson_tree, tabs_tree, views_of,
+    wide_tree,
+};
 
 mod trees;
 
@@ -81,6 +84,39 @@ impl Tiling {
         Self { tree, room }
     }
 
+    /// Gives most of the width to the views beside a map or another survey while that is `covered`.
+    pub fn cover_surveys(&mut self, covered: bool) {
+        let tiles = &self.tree.tiles;
+        let is_within = |view: &View, id: TileId| {
+            std::iter::successors(tiles.find_pane(view), |tile| tiles.parent_of(*tile)).any(|tile| tile == id)
+        };
+        let is_survey = |id: TileId| {
+            let mut panes = View::ALL.into_iter().filter(|view| is_within(view, id));
+            let first = panes.next().is_some_and(View::is_survey);
+            first && panes.all(View::is_survey)
+        };
+        let root = self.tree.root();
+        let Some(Container::Linear(row)) = root.and_then(|root| tiles.get_container(root)) else { return };
+        let [left, right] = row.children[..] else { return };
+        let now = row.shares[left] / (row.shares[left] + row.shares[right]);
+        // a width that was chosen by hand stays
+        let is_as_wanted = covered == ((now - COVERED_SHARE).abs() < 1e-3);
+        if !is_survey(left) || is_survey(right) || row.dir != LinearDir::Horizontal || is_as_wanted {
+            return;
+        }
+        let share = match (covered, self.room.is_compact()) {
+            (true, _) => COVERED_SHARE,
+            (false, true) => WIDE,
+            (false, false) => MAP_SHARE,
+        };
+        if let Some(Tile::Container(Container::Linear(row))) =
+            root.and_then(|root| self.tree.tiles.get_mut(root))
+        {
+            row.shares.set_share(left, 2.0 * share);
+            row.shares.set_share(right, 2.0 * (1.0 - share));
+        }
+    }
+
     /// The tiles of the custom arrangement as they were saved; in a compact window, the same views as tabs.
     pub fn custom(saved: &Tree<View>, room: Room) -> Self {
         let tree = if room.is_compact() {
@@ -115,18 +151,13 @@ impl Tiling {
         self.tree.tiles.find_pane(&view).is_some_and(|id| self.tree.is_visible(id))
     }
 
-    /// Shows or hides a view. A view without a tile joins those of its kind, in a compact window as a tab, and
-    /// where a column is full as a tab of its last view.
+    /// Shows or hides a view. A view without a tile joins those of its kind, in a compact window as a tab.
     pub fn show(&mut self, view: View, shown: bool) {
         match self.tree.tiles.find_pane(&view) {
             Some(id) => self.tree.set_visible(id, shown),
             None if shown => {
-                let place = self.place_for(view).or(self.tree.root());
-                let last = place.and_then(|place| self.last_of_full(place));
-                if last.is_some_and(|last| self.join_tabs(view, last)) {
-                    return self.show_in_front(view);
-                }
                 let id = self.tree.tiles.insert_pane(view);
+                let place = self.place_for(view).or(self.tree.root());
                 if let Some(Tile::Container(container)) = place.and_then(|id| self.tree.tiles.get_mut(id)) {
                     container.add_child(id);
                 }
@@ -138,41 +169,22 @@ impl Tiling {
         }
     }
 
-    /// The last view of a container whose views, one below another, leave no room for one more.
-    fn last_of_full(&self, place: TileId) -> Option<View> {
-        let tiles = &self.tree.tiles;
-        let Container::Linear(column) = tiles.get_container(place)? else { return None };
-        let shown: Vec<TileId> = column.children.iter().copied().filter(|id| tiles.is_visible(*id)).collect();
-        let most = if self.room == Room::Large { 4 } else { 3 };
-        let last = shown.last().filter(|_| column.dir == LinearDir::Vertical && shown.len() >= most)?;
-        let is_in = |view: &&View| {
-            let pane = tiles.find_pane(view);
-            pane.is_some_and(|pane| pane == *last || tiles.parent_of(pane) == Some(*last))
-        };
-        View::ALL.iter().filter(|view| self.shows(**view)).find(is_in).copied()
-    }
-
     /// Shows a view. A view without a tile becomes a tab beside `other`, if that is shown among tabs.
     pub fn show_beside(&mut self, view: View, other: View) {
-        self.join_tabs(view, other);
-        self.show(view, true);
-        self.show_in_front(view);
-    }
-
-    /// Makes a view without a tile a tab beside `other`, if that is shown among tabs. Returns whether it is.
-    fn join_tabs(&mut self, view: View, other: View) -> bool {
         // gives new tiles their tabs
         self.tree.simplify(&simplification());
         let tiles = &mut self.tree.tiles;
         let shown = tiles.find_pane(&other).filter(|id| tiles.is_visible(*id));
         let is_tabs = |id: &TileId| matches!(tiles.get_container(*id), Some(Container::Tabs(_)));
         let place = shown.and_then(|id| tiles.parent_of(id)).filter(is_tabs);
-        let Some(place) = place.filter(|_| tiles.find_pane(&view).is_none()) else { return false };
-        let id = tiles.insert_pane(view);
-        if let Some(Tile::Container(container)) = tiles.get_mut(place) {
-            container.add_child(id);
+        if let Some(place) = place.filter(|_| tiles.find_pane(&view).is_none()) {
+            let id = tiles.insert_pane(view);
+            if let Some(Tile::Container(container)) = tiles.get_mut(place) {
+                container.add_child(id);
+            }
         }
-        true
+        self.show(view, true);
+        self.tree.make_active(|_, tile| matches!(tile, Tile::Pane(pane) if *pane == view));
     }
 
     /// Brings a view that is shown to the front of its tabs.

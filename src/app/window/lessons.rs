@@ -10,7 +10,6 @@ use crate::app::panels::hint::Hint;
 use crate::app::panels::lesson::{LessonAction, lesson_ui, navigation_ui};
 use crate::app::session::Session;
 use crate::app::session::editor::Editor;
-use crate::app::session::explore::WalkQuantity;
 use crate::app::session::lesson::{OpenLesson, Records, Turn, answers_text};
 use crate::app::ui::style::Style;
 use crate::app::ui::widgets::{bare, close_ui, dialog_ui, panel_frame, primary};
@@ -41,12 +40,12 @@ pub(super) struct Lessons {
     suspended: Option<Suspended>,
     pub records: Records,
     pub notes: Notes,
-    /// Whether the tiles leave out the surveys that the lesson covers.
-    pub hides_surveys: bool,
     /// The lesson that was finished, until its closing dialog is closed.
     finished: Option<Finished>,
     /// Whether the button that goes on is to have the keyboard focus.
     urged: bool,
+    /// The step whose covered prediction was asked about by a key that goes on.
+    asked: Option<usize>,
     /// The action of the buttons beside the status line in this frame.
     chosen: Option<LessonAction>,
     /// Rectangles of the controls in this frame.
@@ -158,9 +157,6 @@ impl Window {
         session.player.speed = lesson.lesson().speed.unwrap_or(session.player.speed);
         session.player.set_playing(plays);
         session.explore.walks.chosen.clone_from(&lesson.lesson().walk);
-        if lesson.lesson().walk.is_some() {
-            session.explore.walks.quantity = WalkQuantity::RmsVelocity;
-        }
         session.keeps_remedy = !lesson.tells_remedy();
         session.is_lesson = true;
         Ok(session)
@@ -250,15 +246,22 @@ impl Window {
         let Some(lesson) = &mut self.lessons.open else { return };
         // the result appears in the strip, which a view over the whole window hides
         self.filled = self.filled.filter(|_| matches!(act, LessonAction::Vote(..)));
+        self.lessons.asked = self.lessons.asked.filter(|_| act == LessonAction::Next);
         let turn = match act {
             LessonAction::Choose(option) => lesson.choose(option),
             LessonAction::Back => lesson.go_back(),
+            // a second press, of a clicker that has no Enter
+            LessonAction::Next if lesson.is_covering() && self.lessons.asked == Some(lesson.number()) => {
+                self.lessons.asked = None;
+                lesson.reveal()
+            }
             LessonAction::Next if lesson.is_covering() || lesson.is_last() => {
                 self.lessons.urged = true;
+                self.lessons.asked = Some(lesson.number()).filter(|_| lesson.is_covering());
                 let votes: u32 = lesson.answer().votes.iter().sum();
                 let counted = if votes == 0 { "Nobody has chosen yet" } else { "The votes are counted" };
                 return self.messages.notify(match (lesson.is_covering(), lesson.following()) {
-                    (true, _) => format!("{counted}: Reveal, or Enter, shows what it does"),
+                    (true, _) => format!("{counted}: PageDown once more shows what it does"),
                     (false, Some(name)) => format!("The last step: Enter goes on to {}", numbered(name)),
                     (false, None) => "The last step: Enter finishes the lesson".to_owned(),
                 });
@@ -352,8 +355,12 @@ impl Window {
     }
 
     fn take_turn(&mut self, turn: Turn) {
-        if self.lessons.open.as_ref().is_some_and(|open| open.hides_surveys() != self.lessons.hides_surveys) {
-            self.arrange(self.tiling.room());
+        if let Some(lesson) = &self.lessons.open {
+            self.tiling.cover_surveys(lesson.hides_surveys());
+        }
+        if !matches!(turn, Turn::Stay) {
+            // what was said of the step before
+            self.messages.notice = None;
         }
         self.show_named_views();
         let (Some(lesson), Turn::Show(scene, plays)) = (&self.lessons.open, turn) else { return };
@@ -449,7 +456,8 @@ impl Window {
             if lesson.is_covering() {
                 ui.disable();
             }
-            self.lessons.controls = controls::named_ui(ui, &mut self.session, &lesson.lesson().controls);
+            let (named, asks) = (&lesson.lesson().controls, lesson.covered_answer());
+            self.lessons.controls = controls::named_ui(ui, &mut self.session, named, asks);
         });
     }
 

@@ -20,7 +20,7 @@ use super::command::{Command, DISCARD, MENUS, Part};
 use super::keys::SPEED_KEYS;
 
 /// Name of the command that returns to the scene as it was opened, while nothing was changed.
-const BACK: &str = "Back to the start";
+const BACK: &str = "From the start again";
 
 /// Height in points of an item.
 const ROW: f32 = 20.0;

@@ -239,14 +239,22 @@ impl Window {
                     PinKind::Twin => "a twin that begins a micrometre beside the mass",
                 };
                 self.messages.notify(format!("Pinned as {letter}: {what}"));
-                self.tiling.show_beside(self.view_of_pins(), View::BeforeNow);
+                self.show_pins();
             }
             Err(why) => self.messages.notify(why),
         }
     }
 
+    /// Shows the view of the newest pin; where views share their places, behind what is in front.
+    pub(super) fn show_pins(&mut self) {
+        let in_front = View::ALL.into_iter().filter(|view| self.tiling.place_of(*view).is_some());
+        let in_front: Vec<View> = in_front.filter(|_| self.tiling.room().is_compact()).collect();
+        self.tiling.show_beside(self.view_of_pins(), View::BeforeNow);
+        in_front.into_iter().for_each(|view| self.tiling.show_in_front(view));
+    }
+
     /// The view that opens with the newest pin.
-    pub(super) fn view_of_pins(&self) -> View {
+    fn view_of_pins(&self) -> View {
         match self.session.pins.all().last().map(|pin| pin.kind) {
             Some(PinKind::Twin) => View::Distance,
             _ => View::Compare,

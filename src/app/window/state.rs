@@ -210,12 +210,9 @@ impl Window {
     /// Builds the tiles of the arrangement for a window of the size class `room`.
     pub(super) fn arrange(&mut self, room: Room) {
         if let Some(lesson) = &self.lessons.open {
-            // the room of a survey that is covered goes to the other views
-            let hides = lesson.hides_surveys();
             let views: Vec<View> = lesson.lesson().views.iter().map(|view| View::from(*view)).collect();
-            let open: Vec<View> = views.iter().copied().filter(|view| !(hides && view.is_survey())).collect();
-            self.tiling = Tiling::of_lesson(if open.is_empty() { &views } else { &open }, room);
-            self.lessons.hides_surveys = hides;
+            self.tiling = Tiling::of_lesson(&views, room);
+            self.tiling.cover_surveys(lesson.hides_surveys());
             return self.show_named_views();
         }
         self.tiling = match (self.arrangement, &self.custom) {
@@ -226,7 +223,7 @@ impl Window {
         // pinned motions keep their view
         let has_pins = !self.session.pins.all().is_empty();
         if has_pins && self.arrangement != Arrangement::Custom && self.tiling.shows(View::BeforeNow) {
-            self.tiling.show_beside(self.view_of_pins(), View::BeforeNow);
+            self.show_pins();
         }
     }
 }

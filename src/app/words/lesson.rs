@@ -69,7 +69,11 @@ pub fn script(notes: &str) -> Vec<(f64, &str, &str)> {
     lines
 }
 
-pub fn judged_by(lesson: &Lesson, start: Start) -> String {
+/// On what a task is judged, in a scene with this start, by a goal that names so many starts.
+pub fn judged_by(lesson: &Lesson, start: Start, starts: usize) -> String {
+    if starts > 1 {
+        return format!("Judged on runs from {starts} starts.");
+    }
     let from = if start == Start::Rest { "from rest" } else { "from the scene's start" };
     match (&lesson.walk, lesson.seeds) {
         (Some(_), _) => "Judged on runs up and down, each from the end of the one before.".to_owned(),

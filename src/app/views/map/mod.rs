@@ -291,7 +291,7 @@ fn reading(map: &Map, quantity: &SummaryField, (column, row): (usize, usize), is
     if let Some(settled) = cell.settled().filter(|settled| settled.regime != Regime::Rest) {
         let rms = settled.rms_velocity.map_or(UNKNOWN.to_owned(), speed);
         lines.push(format!("RMS velocity {rms} mm/s"));
-        lines.extend(settled.max_abs_x.map(|reach| format!("reach {:.2} mm", reach * 1e3)));
+        lines.extend(settled.max_abs_x.map(|reach| format!("reach {} mm", three(reach * 1e3))));
         let (impacts, crossings) = (settled.impacts, settled.crossings);
         lines.push(format!("{impacts} impacts, {crossings} crossings in {} s", map.window_s()));
         if let Some(period) = settled.period {
