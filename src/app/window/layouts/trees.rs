@@ -191,19 +191,14 @@ fn column(views: &[View]) -> Part {
     }
 }
 
-/// The tiles of a lesson in a compact window: its views side by side; the third and later ones share tabs if
-/// there are more than three. Beside views with legends all others share tabs.
+/// The tiles of a lesson in a compact window: its first view, and beside it the others as tabs if there are
+/// several. Beside views with legends all others share tabs.
 pub(super) fn compact_lesson_tree(views: &[View], room: Room) -> Tree<View> {
     let (wide, others): (Vec<View>, Vec<View>) = views.iter().partition(|view| is_wide(**view));
     let root = match views {
         _ if !wide.is_empty() && !others.is_empty() => parts(vec![Tabs(wide), Tabs(others)], WIDE, room),
-        [first, rest @ ..] if room == Room::Narrow && rest.len() > 1 => {
-            above(Pane(*first), Tabs(rest.to_vec()), HALF)
-        }
+        [first, rest @ ..] if rest.len() > 1 => parts(vec![Pane(*first), Tabs(rest.to_vec())], HALF, room),
         [one] => Pane(*one),
-        [left, middle, rest @ ..] if rest.len() > 1 => {
-            Columns(vec![Pane(*left), Pane(*middle), Tabs(rest.to_vec())])
-        }
         _ => parts(views.iter().copied().map(Pane).collect(), HALF, room),
     };
     tree("compact lesson", root)
