@@ -14,8 +14,8 @@ pub(crate) struct Stop<T> {
     pub stiffness: T,
 }
 
-/// A compliant stop: stiffness d^1.5 (1 + loss d') over mass, d the depth, kernel units; contact by Hertz, loss
-/// by Hunt and Crossley (1975). The force is clipped to 0 where the law would pull.
+/// A compliant stop: stiffness d^1.5 (1 + loss d') over mass, d the depth, kernel units; contact by
+/// Hertz, loss by Hunt and Crossley (1975). The force is clipped to 0 where the law would pull.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Compliant<T> {
     pub stiffness: T,

@@ -89,7 +89,7 @@ impl Model {
         pursued.into_iter().collect()
     }
 
-    /// [`run_together`](Self::run_together) in 4, 8 or 16 lanes, for tests; `None` if the processor lacks them.
+    /// [`run_together`](Self::run_together) in 4, 8 or 16 lanes, for tests; `None` if there are none.
     #[doc(hidden)]
     pub fn run_all_in_lanes(models: &[Self], width: usize) -> Option<Vec<Run>> {
         has_lanes(width).then(|| run_all(models, &Request::default(), width))

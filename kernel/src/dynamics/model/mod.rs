@@ -32,8 +32,8 @@ const PROBES: i32 = 60;
 ///
 /// It holds all quantities in SI units, the force curve and the excitation as they are integrated, and
 /// nothing is left to check: [`build`](Self::build) gives all faults of a scene at once. [`run`](Self::run)
-/// takes one run, [`run_together`](Self::run_together) many side by side with the same bits. A program that starts from
-/// a scene file has it from `questions::Simulation`.
+/// takes one run, [`run_together`](Self::run_together) many side by side with the same bits. A program that
+/// starts from a scene file has it from `questions::Simulation`.
 #[derive(Debug, Clone)]
 pub struct Model {
     pub(in crate::dynamics) mass: f64,
