@@ -42,7 +42,7 @@ fn alone_and_together(model: &Model) -> (f64, f64) {
             shared::cpu(|| some.iter().map(|each| each.run(&Request::default()).summary.steps).sum::<u64>())
                 / 8.0,
         );
-        together.push(shared::cpu(|| Model::run_all(&many, None, None)) / TOGETHER as f64);
+        together.push(shared::cpu(|| Model::run_together(&many, &Request::default())) / TOGETHER as f64);
     }
     (shared::median(&mut alone), shared::median(&mut together))
 }
@@ -53,7 +53,10 @@ fn cpu_of(models: &[Model], together: bool) -> f64 {
     for _ in 0..shared::rounds(3) {
         all.push(match together {
             true => shared::cpu(|| {
-                models.chunks(TOGETHER).map(|some| Model::run_all(some, None, None).len()).sum::<usize>()
+                models
+                    .chunks(TOGETHER)
+                    .map(|some| Model::run_together(some, &Request::default()).len())
+                    .sum::<usize>()
             }),
             false => shared::cpu(|| {
                 models.iter().map(|model| model.run(&Request::default()).summary.steps).sum::<u64>()

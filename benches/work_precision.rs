@@ -71,7 +71,7 @@ fn runs() {
             alone.push(model.run(&Request::default()).summary.cpu_s);
             if round % TOGETHER == 0 {
                 let many = vec![model.clone(); TOGETHER];
-                together.push(Model::run_all(&many, None, None)[0].summary.cpu_s);
+                together.push(Model::run_together(&many, &Request::default())[0].summary.cpu_s);
             }
         }
     }
@@ -107,7 +107,7 @@ fn map() {
         models.iter_mut().for_each(|model| *model = model.with_tolerance(tolerance));
         models
             .chunks(TOGETHER)
-            .flat_map(|many| Model::run_all(many, None, None))
+            .flat_map(|many| Model::run_together(many, &Request::default()))
             .map(|run| run.summary)
             .collect()
     };

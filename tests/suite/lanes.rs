@@ -25,7 +25,7 @@ fn alone(models: &[Model]) -> Vec<String> {
 
 /// The summaries of models run together, and of each alone.
 fn compare(models: &[Model]) {
-    let together = Model::run_all(models, None, None);
+    let together = Model::run_together(models, &Request::default());
     assert_eq!(bare(&together), alone(models));
     assert!(together.iter().all(|run| run.samples.is_empty() && run.events.is_empty()));
 }

@@ -125,9 +125,9 @@ fn a_motion_that_goes_on_is_the_same_motion() {
 fn runs_that_go_on_share_their_steps_too() {
     let models: Vec<Model> =
         (100..130).step_by(3).map(|g| unconstrained(f64::from(g) / 100.0, &[])).collect();
-    for (model, run) in models.iter().zip(Model::run_all(&models, Some(60.0), None)) {
-        let alone = model.run(&Request { until_settled: Some(60.0), ..Request::default() });
-        same_bits(&alone, &run);
+    let request = Request { until_settled: Some(60.0), ..Request::default() };
+    for (model, run) in models.iter().zip(Model::run_together(&models, &request)) {
+        same_bits(&model.run(&request), &run);
     }
 }
 

@@ -2,7 +2,6 @@
 
 use eframe::egui::accesskit::Role;
 use egui_kittest::kittest::Queryable as _;
-use interwell::mechanics::FLEXURE_TOLERANCE;
 use interwell::scene::Mechanism;
 
 use crate::support::{WIDE, session, window};
@@ -35,11 +34,8 @@ fn preload_reshapes_the_well_under_the_moving_mass() {
     assert_eq!((before.t, before.x), (after.t, after.x));
     assert!(session.player.watch().ledger().by_hand_j.abs() > 1e-6);
     // solved in earnest at the end of the gesture, bit for bit as a study does
-    let earnest = interwell::mechanics::Mechanism::build_with(
-        &session.scene().mechanism,
-        &session.editor.document().files,
-        FLEXURE_TOLERANCE,
-    );
+    let files = &session.editor.document().files;
+    let earnest = interwell::mechanics::Mechanism::build(&session.scene().mechanism, files);
     assert_eq!(session.model().mechanism().curve, earnest.unwrap().curve);
     assert!(session.undo() && preload(&session.scene().mechanism) == 2.7 && !session.undo());
     assert_eq!(session.model().mechanism().landscape.barrier.unwrap(), barrier);

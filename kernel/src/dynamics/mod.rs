@@ -3,9 +3,10 @@
 //! A [`Model`] is a scene that has been checked, in SI units. [`Model::run`] integrates it from its start to
 //! its end and gives a [`Run`]: samples, [`Event`]s, and a [`Summary`] with [`Regime`] and energy [`Ledger`].
 //! Displacement in m and velocity in m/s are relative to the base, times are in s. [`Model::build`] lists all
-//! faults of a scene; a run never fails, its [`Outcome`] says how it ended. [`Model::run_all`] runs a batch
-//! with the same bits, [`Model::run_reference`] computes with about 31 digits, [`StroboscopicMap`] gives the
-//! state one forcing period later with its derivatives, and [`Live`] continues a motion without a fixed end.
+//! faults of a scene; a run never fails, its [`Outcome`] says how it ended. [`Model::run_together`] runs a
+//! batch with the same bits, [`Model::run_reference`] computes with about 31 digits, [`StroboscopicMap`]
+//! gives the state one forcing period later with its derivatives, and [`Live`] continues a motion without a
+//! fixed end.
 //!
 //! # Method
 //!

@@ -6,17 +6,11 @@
 //! without stops six more digits cost 1.8 times the time (`benches/work_precision.rs`); a Runge-Kutta method
 //! of order 5 needs 16 times the time and a separate dense output to find contacts.
 //!
-//! Three rules keep events reliable:
-//!
-//! - After a located event the state is put exactly on the surface, which the next step takes into account
-//!   ([`Touch`]): the gap polynomial starts with coefficients that are 0 by definition (one after a rebound
-//!   or a break, two after a plastic impact, three after a release). It is divided by that power of time, so
-//!   the same contact cannot be found again, however short the flight. Since x = D exactly, the gap needs no
-//!   difference of large numbers: a flight at 1e-6 m/s has the same relative accuracy as one at 1 m/s.
-//! - A rebound that is pressed back lasts about 2 v / a, so the series is extended only until its terms are
-//!   negligible over that time: four or five coefficients, where a full step has sixteen. Its end is the one
-//!   root of that series in the gap, found without a search (`rebound`).
-//! - The rest of a chatter, once it is short, is summed in closed form (Nordmark and Piiroinen 2009).
+//! After a located event the state is put exactly on the surface, which the next step takes into account
+//! ([`Touch`]): the gap polynomial starts with coefficients that are 0 by definition (one after a rebound or
+//! a break, two after a plastic impact, three after a release). It is divided by that power of time, so the
+//! same contact cannot be found again, however short the flight. Since x = D exactly, the gap needs no
+//! difference of large numbers: a flight at 1e-6 m/s has the same relative accuracy as one at 1 m/s.
 //!
 //! [`Touch`]: super::state::Touch
 
@@ -29,6 +23,7 @@ use super::record::events::Call;
 use super::record::log::Log;
 use super::record::recorder::Recorder;
 use super::result::Request;
+use super::run::ending::Start;
 use super::state::{Checkpoint, Contact, Label, MotionState};
 use super::step::stepper::{Settings, Stepper};
 use super::step::work::Work;
@@ -53,6 +48,7 @@ pub(crate) struct Motion<'a, T: Scalar, D: Drive<T>> {
     pub label: Option<Label<T>>,
     /// Latest time in s to which the run is extended until the motion repeats.
     pub until_settled: Option<f64>,
+    pub start: Start<T>,
 }
 
 impl<'a, T: Scalar, D: Drive<T>> Motion<'a, T, D> {
@@ -89,14 +85,15 @@ impl<'a, T: Scalar, D: Drive<T>> Motion<'a, T, D> {
             symmetric: false,
             label: None,
             until_settled,
+            start: Start::default(),
         }
     }
 
     /// Permits the run to be completed from a recurrence if `recurs`.
-    pub fn with_recurrence(mut self, recurs: bool, model: &Model) -> Self {
+    pub fn with_recurrence(mut self, recurs: bool) -> Self {
         self.may_recur = recurs && self.stepper.drive.circuit().is_none();
         self.recurs = self.may_recur;
-        self.symmetric = self.recurs && model.is_symmetric();
+        self.symmetric = self.recurs && self.record.model.is_symmetric();
         self
     }
 

@@ -6,6 +6,8 @@
 //! of the motion: it changes only at a located crossing of a break and is never looked up by x, because
 //! rounding could put x on the wrong side of the break.
 
+use crate::numeric::shift;
+
 /// One polynomial piece: `F(x) = sum coefficients[i] (x - origin)^i`. [`ForceCurve::from_pieces`] joins
 /// several.
 #[derive(Debug, Clone, PartialEq)]
@@ -334,25 +336,14 @@ fn piece_of_sum(parts: &[&ForceCurve], left: f64, right: f64) -> Piece {
     };
     let mut coefficients = vec![0.0];
     for piece in pieces {
-        let moved = shifted_to(piece, origin);
+        let mut moved = piece.coefficients.clone();
+        if origin != piece.origin {
+            shift(&mut moved, origin - piece.origin);
+        }
         coefficients.resize(coefficients.len().max(moved.len()), 0.0);
         coefficients.iter_mut().zip(moved).for_each(|(sum, c)| *sum += c);
     }
     let keep = coefficients.iter().rposition(|c| *c != 0.0).map_or(1, |i| i + 1);
     coefficients.truncate(keep);
     Piece::new(origin, coefficients)
-}
-
-/// The coefficients of a piece expanded about another origin, by synthetic division.
-fn shifted_to(piece: &Piece, origin: f64) -> Vec<f64> {
-    let mut shifted = piece.coefficients.clone();
-    let step = origin - piece.origin;
-    if step != 0.0 {
-        for i in 0..shifted.len().saturating_sub(1) {
-            for j in (i..shifted.len() - 1).rev() {
-                shifted[j] += step * shifted[j + 1];
-            }
-        }
-    }
-    shifted
 }

@@ -76,31 +76,6 @@ pub fn transverse_magnet_force(strength: f64, gap: f64, x: f64) -> f64 {
     strength / gap.powi(4) * transverse_force(x / gap)
 }
 
-/// Energy in J at `x` in m over that at x = 0, of two magnets with transverse moments, of `strength` K in N
-/// m^4 at a `gap` g in m.
-///
-/// U = K/r^3 with r^2 = x^2 + g^2, less K/g^3.
-pub fn transverse_magnet_potential(strength: f64, gap: f64, x: f64) -> f64 {
-    // 1/r^3 - 1 without cancellation: with s = r^2 - 1 and p = r^3 it is -(p - 1)/p, and
-    // p - 1 = ((1 + s)^3 - 1)/(p + 1)
-    let s = (x / gap).powi(2);
-    let p = (1.0 + s) * (1.0 + s).sqrt();
-    strength / gap.powi(3) * (-(s * (3.0 + s * (3.0 + s))) / ((p + 1.0) * p))
-}
-
-/// Energy in J at `x` in m over that at x = 0, of two magnets with facing moments, of `strength` K in N m^4
-/// at a `gap` g in m.
-///
-/// U = K (1/r^3 - 3 g^2/r^5) with r^2 = x^2 + g^2, plus 2 K/g^3.
-pub fn magnet_potential(strength: f64, gap: f64, x: f64) -> f64 {
-    // 1/r^3 - 3/r^5 + 2 without cancellation: with s = r^2 - 1 and p = r^5 it is (s - 2 + 2 p)/p, and
-    // 2 p - 2 = 2 ((1 + s)^5 - 1)/(p + 1)
-    let s = (x / gap).powi(2);
-    let p = (1.0 + s).powi(2) * (1.0 + s).sqrt();
-    let grown = s * (5.0 + s * (10.0 + s * (10.0 + s * (5.0 + s))));
-    strength / gap.powi(3) * ((s + 2.0 * grown / (p + 1.0)) / p)
-}
-
 /// The curve for strength 1 and gap 1, computed once. Its report has the error in the same units.
 fn unit_curve(moments: Moments) -> Result<&'static ForceCurve, String> {
     type Unit = OnceLock<Result<ForceCurve, String>>;

@@ -50,7 +50,7 @@ pub use function::FunctionError;
 pub use hertz::{ContactMaterial, Hertz};
 pub use homoclinic::Homoclinic;
 pub use landscape::{Barrier, Equilibrium, ForceExtremum, Kink, KinkAtWell, Landscape, Well};
-pub use magnet::{magnet_force, magnet_potential, transverse_magnet_force, transverse_magnet_potential};
+pub use magnet::{magnet_force, transverse_magnet_force};
 pub use table::{ForceTable, MAX_POINTS, MIN_POINTS, TableError};
 
 use std::sync::Arc;
@@ -147,17 +147,7 @@ impl Mechanism {
     /// magnet whose forces leave the range of double precision and parts of a sum that have no range in
     /// common; the fault names the field. [`BuildError::Unsolved`] for flexures without a solution.
     pub fn build(described: &scene::Mechanism, files: &Files) -> Result<Self, BuildError> {
-        Self::build_with(described, files, FLEXURE_TOLERANCE)
-    }
-
-    /// Like [`build`](Self::build), with flexures solved to `flexure_tolerance` (1e-6 to 1e-9; see
-    /// [`Flexures::solve`]). A larger tolerance is faster, for a geometry that is being dragged.
-    pub fn build_with(
-        described: &scene::Mechanism,
-        files: &Files,
-        flexure_tolerance: f64,
-    ) -> Result<Self, BuildError> {
-        Self::build_inner(described, files, flexure_tolerance, None)
+        Self::build_with(described, files, FLEXURE_TOLERANCE, None)
     }
 
     /// Like [`build`](Self::build), but returns `None` soon after `cancel` is set. The flag is checked at
@@ -167,11 +157,14 @@ impl Mechanism {
         files: &Files,
         cancel: &AtomicBool,
     ) -> Option<Result<Self, BuildError>> {
-        let built = Self::build_inner(described, files, FLEXURE_TOLERANCE, Some(cancel));
+        let built = Self::build_with(described, files, FLEXURE_TOLERANCE, Some(cancel));
         (!cancel.load(Ordering::Relaxed)).then_some(built)
     }
 
-    fn build_inner(
+    /// Like [`build`](Self::build), with flexures solved to `flexure_tolerance` (1e-6 to 1e-9; see
+    /// [`Flexures::solve`]): a larger one is faster, for a geometry that is being dragged. Fails, with any
+    /// error, soon after `cancel` is set.
+    pub fn build_with(
         described: &scene::Mechanism,
         files: &Files,
         flexure_tolerance: f64,
@@ -241,7 +234,7 @@ impl Mechanism {
             }
             scene::Mechanism::Sum(parts) => {
                 let part = |(index, part): (usize, &scene::Mechanism)| {
-                    let mut built = Self::build_inner(part, files, flexure_tolerance, cancel);
+                    let mut built = Self::build_with(part, files, flexure_tolerance, cancel);
                     if let Err(BuildError::Wrong(fault)) = &mut built {
                         fault.field = fault.field.replacen("mechanism.", &format!("mechanism.{index}."), 1);
                     }

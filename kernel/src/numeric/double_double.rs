@@ -1,8 +1,8 @@
 //! Double-double arithmetic with about 31 digits.
 //!
-//! A number is the unevaluated sum of two doubles (Dekker 1971, "A floating-point technique for extending the
-//! available precision"; Knuth's two-sum). Products are split instead of using a fused multiply-add, so that
-//! the result does not depend on the processor. It is the integrator's reference number type, and slow.
+//! The method is that of Dekker 1971, "A floating-point technique for extending the available precision",
+//! with Knuth's two-sum. Products are split instead of using a fused multiply-add, so that the result does
+//! not depend on the processor.
 
 use std::cmp::Ordering;
 use std::ops::{Add, Div, Mul, Neg, Sub};

@@ -1,8 +1,6 @@
-//! Dual numbers: a value with its derivatives with respect to a few quantities.
-//!
-//! A number x + x1 e1 + .. + xn en in which every product of two of the e is 0 (Clifford 1873). Every result
-//! comes with its derivatives, exact to rounding. The value has the same bits as in plain double arithmetic
-//! and decides every comparison.
+//! Dual numbers x + x1 e1 + .. + xn en, in which every product of two of the e is 0 (Clifford 1873): every
+//! result comes with its derivatives, exact to rounding. The value has the same bits as in plain double
+//! arithmetic and decides every comparison.
 
 use std::cmp::Ordering;
 use std::ops::{Add, Div, Mul, Neg, Sub};

@@ -46,6 +46,7 @@ mod roots;
 #[doc(hidden)]
 pub mod round;
 mod scalar;
+mod shift;
 pub(crate) mod single_root;
 mod sum;
 mod survival;
@@ -68,6 +69,7 @@ pub use periodogram::{Periodogram, Taper, periodogram};
 pub use quadrature::{GaussLegendre, MAX_POINTS, even_half};
 pub use roots::{MAX_DEGREE, PolynomialRoots};
 pub use scalar::{Number, Scalar};
+pub(crate) use shift::shift;
 pub use sum::CompensatedSum;
 pub use survival::{QuantileRanks, Rate, Waiting, median};
 pub use text::{Ending, decimals, number_text, push_number, rounded, short, significant};
@@ -88,7 +90,7 @@ fn times_roots(factor: &[f64], roots: &[f64]) -> Vec<f64> {
 
 /// Numbers from 0 to 1, the same in every test.
 #[cfg(test)]
-fn random() -> impl FnMut() -> f64 {
+pub(crate) fn random() -> impl FnMut() -> f64 {
     let mut state = 1_u64;
     move || {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);

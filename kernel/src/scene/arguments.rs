@@ -5,6 +5,7 @@ use serde::Serialize;
 use super::data::Scene;
 use super::fields::{FieldPath, numeric_fields};
 use super::text;
+use super::written::covers;
 
 /// `FIELD=VALUE` for each field in which `to` differs from `from`, as `--set` takes them: single numbers
 /// if both scenes have the same fields, otherwise whole parts. Title, notes, sweep and hints for the
@@ -32,11 +33,9 @@ fn changes<T: PartialEq + Serialize>(
     name: &str,
     part: fn(&Scene) -> &T,
 ) -> Vec<String> {
-    let is_inside =
-        |path: &String| path.strip_prefix(name).is_some_and(|r| r.is_empty() || r.starts_with('.'));
     let mut changed = from.clone();
     let mut numbers = Vec::new();
-    for path in numeric_fields(to).into_iter().filter(is_inside) {
+    for path in numeric_fields(to).into_iter().filter(|path| covers(name, path)) {
         let field = FieldPath::new(&path);
         let (old, new) = (field.get(from), field.get(to));
         if let Some(new) = new.filter(|_| old != new) {

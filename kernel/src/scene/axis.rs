@@ -78,7 +78,7 @@ impl Axis {
             });
             listed.collect::<Result<Vec<f64>, String>>()?
         };
-        Self { field: field.to_owned(), values, steps, path: FieldPath::new(field) }.within(spec)
+        Self::within(field, values, steps, spec)
     }
 
     /// An axis with these values of a numeric field of `scene`. The error is a sentence.
@@ -87,8 +87,7 @@ impl Axis {
         match values.len() {
             0 => Err("has no values; give at least one".to_owned()),
             count if count > MAX_AXIS_VALUES => Err(too_long(count)),
-            _ => Self { field: field.to_owned(), values, steps: None, path: FieldPath::new(field) }
-                .within(spec),
+            _ => Self::within(field, values, None, spec),
         }
     }
 
@@ -96,17 +95,12 @@ impl Axis {
     /// part of the axis at fault (`field`, `from`, `to`, `step` or `values`) and a sentence.
     pub fn from_scene(axis: &SweepAxis, scene: &Scene) -> Result<Self, (&'static str, String)> {
         let spec = numeric(scene, &axis.field).map_err(|problem| ("field", problem))?;
-        let with = |values, steps| Self {
-            field: axis.field.clone(),
-            values,
-            steps,
-            path: FieldPath::new(&axis.field),
-        };
+        let within = |values, steps| Self::within(&axis.field, values, steps, spec);
         if !axis.values.is_empty() {
             if axis.values.len() > MAX_AXIS_VALUES {
                 return Err(("values", too_long(axis.values.len())));
             }
-            return with(axis.values.clone(), None).within(spec).map_err(|problem| ("values", problem));
+            return within(axis.values.clone(), None).map_err(|problem| ("values", problem));
         }
         let read = |part, value| {
             let problem = || (part, format!("{} is not a finite number", number_text(value)));
@@ -116,18 +110,13 @@ impl Axis {
         let part = if axis.step > 0.0 && axis.to < axis.from { "to" } else { "step" };
         let values = rounded_steps(parts).map_err(|problem| (part, problem))?;
         let part = if spec.range.contains(axis.from) { "to" } else { "from" };
-        with(values, Some([axis.from, axis.to, axis.step])).within(spec).map_err(|problem| (part, problem))
+        within(values, Some([axis.from, axis.to, axis.step])).map_err(|problem| (part, problem))
     }
 
     /// The axis for a scene's `sweep`: [`from_scene`](Self::from_scene) gives exactly the same values again.
     pub fn to_scene(&self, scene: &Scene) -> SweepAxis {
-        let even = self.steps.map(|[from, to, step]| SweepAxis {
-            field: self.field.clone(),
-            from,
-            to,
-            step,
-            values: Vec::new(),
-        });
+        let (field, values) = (self.field.clone(), Vec::new());
+        let even = self.steps.map(|[from, to, step]| SweepAxis { field, from, to, step, values });
         // An argument may have more digits than a double, so the steps may not reproduce the values.
         let same =
             |axis: &SweepAxis| Self::from_scene(axis, scene).is_ok_and(|read| read.values == self.values);
@@ -147,16 +136,19 @@ impl Axis {
         }
     }
 
-    fn within(self, spec: &FieldInfo) -> Result<Self, String> {
-        match self.values.iter().find(|value| !spec.range.contains(**value)) {
-            None => Ok(self),
-            Some(value) => Err(format!(
-                "{} takes {}, not {}; {}",
-                self.field,
-                spec.range,
-                number_text(*value),
-                spec.remedy
-            )),
+    /// An axis of a field whose values are within its range.
+    fn within(
+        field: &str,
+        values: Vec<f64>,
+        steps: Option<[f64; 3]>,
+        spec: &FieldInfo,
+    ) -> Result<Self, String> {
+        match values.iter().find(|value| !spec.range.contains(**value)) {
+            None => Ok(Self { field: field.to_owned(), values, steps, path: FieldPath::new(field) }),
+            Some(value) => {
+                let value = number_text(*value);
+                Err(format!("{field} takes {}, not {value}; {}", spec.range, spec.remedy))
+            }
         }
     }
 }

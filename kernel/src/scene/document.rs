@@ -104,10 +104,7 @@ impl Document {
     ///
     /// Those of [`load`](Self::load); [`SceneError::Unreadable`] also for a manifest that cannot be read.
     pub fn of_argument(spec: &str) -> Result<Self, SceneError> {
-        if is_link(spec) {
-            return Self::from_link(spec);
-        }
-        if let Some(document) = Self::built_in(spec) {
+        if let Some(document) = Self::without_file(spec) {
             return document;
         }
         let (name, text, files) = if spec == "-" {
@@ -133,13 +130,12 @@ impl Document {
     /// [`SceneError::Unreadable`] for a file that is no text or too large, [`SceneError::Structure`] for a
     /// text that is no scene. Values out of their range are found by [`check`](Self::check).
     pub fn load(spec: &str) -> Result<Self, SceneError> {
-        if is_link(spec) {
-            return Self::from_link(spec);
-        }
-        if let Some(document) = Self::built_in(spec) {
-            return document;
-        }
-        Self::from_file(Path::new(spec))
+        Self::without_file(spec).unwrap_or_else(|| Self::from_file(Path::new(spec)))
+    }
+
+    /// The scene of a link, or the built-in scene of that name; `None` if it can only be a file.
+    fn without_file(spec: &str) -> Option<Result<Self, SceneError>> {
+        if is_link(spec) { Some(Self::from_link(spec)) } else { Self::built_in(spec) }
     }
 
     /// Reads a scene file. Errors: those of [`load`](Self::load).

@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::data::is_default;
+
 /// Source of the restoring force.
 ///
 /// F(x) is what holds the mass at x, the derivative of the potential, so that the mechanism pushes the mass
@@ -146,10 +148,6 @@ pub struct FlexureGroup {
     pub length_mm: f64,
     /// Width of each in mm, 1e-15 to 1e15.
     pub width_mm: f64,
-}
-
-fn is_default(moments: &Moments) -> bool {
-    *moments == Moments::default()
 }
 
 fn default_poisson() -> f64 {

@@ -13,7 +13,7 @@ use crate::scene::{Document, Fault, Scene, SceneError, Stops};
 const RESTITUTION: f64 = 0.36;
 
 pub(super) fn mechanism(document: &Document, tolerance: f64) -> Result<Arc<Mechanism>, Error> {
-    let built = Mechanism::build_with(&document.scene.mechanism, &document.files, tolerance);
+    let built = Mechanism::build_with(&document.scene.mechanism, &document.files, tolerance, None);
     built.map(Arc::new).map_err(|error| Error::unbuilt(document, error))
 }
 

@@ -100,7 +100,7 @@ fn solved(of: &SceneWithFiles, tolerance: f64) -> Result<Arc<Mechanism>, String>
     if let Some(kept) = solved.iter().find(is_same) {
         return Ok(Arc::clone(&kept.3));
     }
-    let built = Mechanism::build_with(&of.mechanism, &of.files, tolerance);
+    let built = Mechanism::build_with(&of.mechanism, &of.files, tolerance, None);
     let built = Arc::new(built.map_err(|error| error.to_string())?);
     solved.truncate(KEPT - 1);
     solved.insert(0, (of.mechanism.clone(), of.files.clone(), tolerance, Arc::clone(&built)));

@@ -200,7 +200,7 @@ fn the_best_limit_under_noise_is_better_than_those_around_it() {
             preset("random-shaking", &changes.each_ref().map(String::as_str))
         };
         let models: Vec<Model> = (1..=5).map(model).collect();
-        let runs = Model::run_all(&models, None, None);
+        let runs = Model::run_together(&models, &Request::default());
         runs.iter().map(|run| 1e3 * run.summary.rms_velocity.unwrap()).sum::<f64>() / 5.0
     };
     let best = mean(limit);

@@ -70,7 +70,7 @@ fn a_run_told_to_stop_looks_by_work_and_not_by_steps() {
     let ended = model(&free).run(&request).summary;
     assert!(matches!(ended.outcome, Outcome::Cancelled { .. }) && ended.steps <= 2, "{ended:?}");
     let together = [model(&free), model(&free)];
-    let all = Model::run_all(&together, None, Some(&told));
+    let all = Model::run_together(&together, &request);
     assert!(all.iter().all(|run| run.summary.steps <= 2), "{:?}", all[0].summary);
     // On a stop it looks for its release, some strides of a third of a period of the fastest line at a time.
     let resting = nominal_scene(1.5, 0.36, many_lines(), 1e8);

@@ -1,6 +1,6 @@
 //! Sums of force curves, springs and magnets: exact sums, the closed form of the magnet, errors as stated.
 
-use interwell::mechanics::{ForceCurve, magnet_force, magnet_potential};
+use interwell::mechanics::{ForceCurve, magnet_force};
 use interwell::numeric::{DoubleDouble, Number, Scalar};
 use interwell::scene::{self, Document};
 
@@ -108,7 +108,6 @@ fn energy(strength: f64, gap: f64, x: f64) -> DoubleDouble {
 fn the_force_of_a_magnet_is_the_slope_of_its_energy() {
     let (strength, gap) = (7e-12, 4e-3);
     let at = |x: f64| energy(strength, gap, x);
-    let middle = at(0.0);
     // a step that a place and its neighbours are whole multiples of, and that is small enough to be exact
     let h = 2.0_f64.powi(-30);
     for x in [1e-5, 3e-4, 1e-3, 2.5e-3, 0.02, 0.1] {
@@ -116,9 +115,7 @@ fn the_force_of_a_magnet_is_the_slope_of_its_energy() {
         let difference = |n: f64| (at(x + n * h) - at(x - n * h)).to_f64();
         let slope = (8.0 * difference(1.0) - difference(2.0)) / (12.0 * h);
         close(magnet_force(strength, gap, x), slope, 1e-14);
-        close(magnet_potential(strength, gap, x), (at(x) - middle).to_f64(), 1e-14);
     }
-    assert_eq!(magnet_potential(strength, gap, 0.0), 0.0);
 }
 
 #[test]

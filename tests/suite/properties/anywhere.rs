@@ -64,7 +64,7 @@ fn runs_between_stops_anywhere_have_the_same_bits_in_company() {
         let (x, v) = model.start();
         let speed = model.scales().speed;
         let all: Vec<Model> = (0..6).map(|i| model.with_start((x, v + 0.1 * f64::from(i) * speed))).collect();
-        for (together, alone) in Model::run_all(&all, None, None).iter().zip(&all) {
+        for (together, alone) in Model::run_together(&all, &Request::default()).iter().zip(&all) {
             same_bits(&alone.run(&Request::default()), together)?;
         }
         Ok(true)

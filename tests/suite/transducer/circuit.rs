@@ -292,7 +292,7 @@ fn company_changes_no_bit() {
             preset("paper", &[&transducer, "run.duration_s=3", "run.settle_s=1"])
         })
         .collect();
-    let mut together = Model::run_all(&models, None, None);
+    let mut together = Model::run_together(&models, &Request::default());
     for (model, run) in models.iter().zip(&mut together) {
         let mut alone = model.run(&Request::default());
         (alone.summary.cpu_s, run.summary.cpu_s) = (0.0, 0.0);

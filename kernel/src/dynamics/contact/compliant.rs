@@ -79,7 +79,7 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         self.state.depth = Depth { root: T::zero(), clip_changed: false };
         self.state.contact = Contact::Compressing(end);
         self.state.touch = None;
-        self.stepper.work.add_impacts(1);
+        self.stepper.work.impacts += 1;
         self.record.touch(&self.state.at, end.side(), self.state.v, true);
     }
 

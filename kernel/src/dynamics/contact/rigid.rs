@@ -14,8 +14,8 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
     /// The mass reaches the stop of `end` with outward speed `speed` > 0.
     pub fn strike(&mut self, end: End, speed: T) {
         let sign = end.sign::<T>();
-        let rebound = self.stepper.equation.stop(end).map_or(speed, |stop| stop.rebound(speed));
-        self.stepper.work.add_impacts(1);
+        let rebound = self.stepper.equation.stop(end).map_or(speed, |stop| stop.restitution * speed);
+        self.stepper.work.impacts += 1;
         // 0 - keeps a rebound of 0 from being -0
         let (v_in, v_out) = (sign * speed, T::zero() - sign * rebound);
         self.report(Call::Impact { at: self.state.at, side: end.side(), v_in, v_out });

@@ -86,13 +86,15 @@ pub(crate) fn form<T: Scalar>(model: &Model, clock: &Clock<T>) -> Form<T> {
     }
 }
 
-/// This model's drive as the general type, which any drive fits.
-pub(crate) fn general<T: Scalar>(model: &Model, clock: &Clock<T>) -> General<T> {
-    match form(model, clock) {
-        Form::Constant(_) => General { only_constant: true, ..sum(model, clock) },
-        Form::Sine(sine) => General { sine: Some(sine), ..sum(model, clock) },
+/// Equation, clock and drive of a model with the drive in the general type, which any drive fits.
+pub(crate) fn general<T: Scalar>(model: &Model) -> (Equation<T>, Clock<T>, General<T>) {
+    let Kernel { equation, clock, drive } = Kernel::new(model);
+    let drive = match drive {
+        Form::Constant(_) => General { only_constant: true, ..sum(model, &clock) },
+        Form::Sine(sine) => General { sine: Some(sine), ..sum(model, &clock) },
         Form::General(general) => general,
-    }
+    };
+    (equation, clock, drive)
 }
 
 pub(crate) fn clock<T: Scalar>(model: &Model, unit: f64) -> Clock<T> {

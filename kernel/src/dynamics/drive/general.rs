@@ -1,8 +1,6 @@
 //! General drive: a constant and any number of tones, chirps and records, and the circuit of a transducer
-//! with an electrical state.
-//!
-//! A constant alone and a sine alone also have faster types, [`Constant`](super::Constant) and [`Sine`], with
-//! the same arithmetic. In double-double arithmetic every drive is of the general type.
+//! with an electrical state. In double-double arithmetic every drive is of this type, so that only one is
+//! compiled.
 
 use super::lines::{Lines, LinesCursor};
 use super::record::{Record, RecordSeries};

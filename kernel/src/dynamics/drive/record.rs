@@ -1,14 +1,12 @@
-//! A recorded acceleration: straight lines between its samples, and polynomials that replace many lines.
-//!
-//! If a record is smooth at the spacing of its samples, the motion uses a polynomial in place of many lines,
-//! accurate to a share of the tolerance ([`pieces`](crate::numeric::pieces)). The polynomials are fitted once
-//! for all runs that share the record. The base acceleration that is reported is that of the lines.
+//! A recorded acceleration: straight lines between its samples, and where it is smooth at their spacing,
+//! polynomials that replace many lines ([`pieces`](crate::numeric::pieces)). The base acceleration that is
+//! reported is that of the lines.
 
 use std::sync::Arc;
 
 use crate::dynamics::clock::{Clock, Instant};
-use crate::numeric::Scalar;
 use crate::numeric::pieces::{DEGREE, Piece};
+use crate::numeric::{Scalar, shift};
 use crate::scene;
 
 /// A straight line between two samples, or a polynomial over many.
@@ -124,13 +122,7 @@ impl<T: Scalar> Record<T> {
                 let mut about = [T::zero(); DEGREE + 1];
                 let coefficients = piece.polynomial.iter().flat_map(|all| all.iter());
                 about.iter_mut().zip(coefficients).for_each(|(about, c)| *about = T::of(*c));
-                // about s in place of 0
-                for k in 0..DEGREE {
-                    for power in (k..DEGREE).rev() {
-                        let above = about[power + 1];
-                        about[power] += s * above;
-                    }
-                }
+                shift(&mut about, s);
                 let (mut scale, unit) =
                     (T::of(self.clock.unit * self.clock.unit), T::of(self.clock.unit / half));
                 for (sum, c) in series.a.iter_mut().zip(about) {

@@ -1,6 +1,6 @@
 //! Force of one piece of the curve: a polynomial about the piece's origin.
 
-use crate::numeric::{Number, Scalar};
+use crate::numeric::{Number, Scalar, shift};
 
 /// The force of one piece over mass, in kernel units, about the piece's origin.
 #[derive(Debug, Clone)]
@@ -49,17 +49,5 @@ impl<T: Scalar> PieceForce<T> {
     pub fn steepest(&self, reach: T) -> T {
         let terms = self.coefficients.iter().enumerate().skip(1).rev();
         terms.fold(T::zero(), |sum, (k, c)| sum * reach + c.abs() * T::whole(k))
-    }
-}
-
-/// Makes coefficients of powers of a displacement those of powers of its difference from `y`.
-#[inline(always)]
-pub(crate) fn shift<T: Number>(terms: &mut [T], y: T) {
-    for first in 1..terms.len() {
-        let mut above = terms[terms.len() - 1];
-        for term in terms[first - 1..].iter_mut().rev().skip(1) {
-            above = *term + y * above;
-            *term = above;
-        }
     }
 }

@@ -1,8 +1,4 @@
-//! Laws of the stops.
-//!
-//! A rigid stop returns the mass with its restitution times the speed (Newton). A compliant one pushes with k
-//! d^1.5 (1 + a d'), d the depth: contact by Hertz, loss by Hunt and Crossley (1975). The force is clipped to
-//! 0 where the law would pull.
+//! Laws of the stops. A rigid stop returns the mass with its restitution times the speed (Newton).
 
 use crate::numeric::Scalar;
 
@@ -18,13 +14,8 @@ pub(crate) struct Stop<T> {
     pub stiffness: T,
 }
 
-impl<T: Scalar> Stop<T> {
-    pub fn rebound(&self, speed: T) -> T {
-        self.restitution * speed
-    }
-}
-
-/// A compliant stop: stiffness d^1.5 (1 + loss d') over mass, kernel units.
+/// A compliant stop: stiffness d^1.5 (1 + loss d') over mass, d the depth, kernel units; contact by
+/// Hertz, loss by Hunt and Crossley (1975). The force is clipped to 0 where the law would pull.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Compliant<T> {
     pub stiffness: T,

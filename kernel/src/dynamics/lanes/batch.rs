@@ -10,7 +10,6 @@ use crate::dynamics::equation::Equation;
 use crate::dynamics::model::Model;
 use crate::dynamics::motion::Motion;
 use crate::dynamics::result::{Outcome, Pursuit, Request};
-use crate::dynamics::run::ending::Initial;
 use crate::dynamics::series::{Integrals, SEEDED, Series};
 use crate::dynamics::state::Contact;
 use crate::dynamics::step::stepper::Step;
@@ -44,17 +43,16 @@ pub(super) trait Source<'a> {
     /// there will be no more.
     fn next(&mut self, under_way: UnderWay) -> Option<Prepared<'a>>;
 
-    /// Takes a motion that has ended, its initial values, and its outcome.
-    fn ended(&mut self, run: &Prepared<'a>, motion: LaneMotion<'a>, start: &Initial<f64>, outcome: Outcome);
+    /// Takes a motion that has ended, and its outcome.
+    fn ended(&mut self, run: &Prepared<'a>, motion: LaneMotion<'a>, outcome: Outcome);
 }
 
-/// A motion under way and its initial values.
+/// A motion under way.
 struct Member<'a> {
     /// Its number in order of start.
     index: usize,
     run: Prepared<'a>,
     motion: Box<LaneMotion<'a>>,
-    start: Initial<f64>,
 }
 
 /// Motions of one order whose forces have the same degree at present.
@@ -157,18 +155,18 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
         let motion = Motion::new(model, request, model.tolerance, run.equation, clock, run.drive);
         let mut motion = Box::new(match run.pursuit {
             Some(pursuit) => motion.pursuing(pursuit),
-            None => motion.with_recurrence(model.recurrence, model),
+            None => motion.with_recurrence(model.recurrence),
         });
-        let start = motion.begin(model);
-        self.members[place] = Some(Member { index: self.started, run, motion, start });
+        motion.begin();
+        self.members[place] = Some(Member { index: self.started, run, motion });
         self.started += 1;
         self.wait(place);
         true
     }
 
     fn end(&mut self, place: usize, outcome: Outcome) {
-        if let Some(Member { run, motion, start, .. }) = self.members[place].take() {
-            self.source.ended(&run, *motion, &start, outcome);
+        if let Some(Member { run, motion, .. }) = self.members[place].take() {
+            self.source.ended(&run, *motion, outcome);
             self.free.push(place);
         }
     }

@@ -24,7 +24,6 @@ use crate::dynamics::drive::tone::Sine;
 use crate::dynamics::equation::Equation;
 use crate::dynamics::model::Model;
 use crate::dynamics::result::{Outcome, Pursued, Pursuit, Request, Run};
-use crate::dynamics::run::ending::Initial;
 use crate::dynamics::run::pursue_alone;
 use crate::system::clock::ThreadClock;
 use crate::system::threads::UnderWay;
@@ -39,15 +38,9 @@ const MAX_LANES: usize = 16;
 const RUNS_PER_BLOCK: usize = 1024;
 
 impl Model {
-    /// Runs several models without any lists, in as many lanes as the processor has. Returns in order what
-    /// [`run`](Self::run) gives for each, bit for bit; `until_settled` as in [`Request`]. The CPU time is
-    /// shared evenly between the runs.
-    pub fn run_all(models: &[Self], until_settled: Option<f64>, cancel: Option<&AtomicBool>) -> Vec<Run> {
-        Self::run_together(models, &Request { cancel, until_settled, ..Request::default() })
-    }
-
-    /// Like [`run_all`](Self::run_all), with `request` for each. With a ledger, events or samples, the models
-    /// are run one by one.
+    /// Runs several models, with `request` for each, in as many lanes as the processor has. Returns in order
+    /// what [`run`](Self::run) gives for each, bit for bit. The CPU time is shared evenly between the runs.
+    /// With a ledger, events or samples, the models are run one by one.
     pub fn run_together(models: &[Self], request: &Request) -> Vec<Run> {
         run_all(models, request, MAX_LANES)
     }
@@ -96,7 +89,7 @@ impl Model {
         pursued.into_iter().collect()
     }
 
-    /// [`run_all`](Self::run_all) in 4, 8 or 16 lanes, for tests; `None` if the processor lacks them.
+    /// [`run_together`](Self::run_together) in 4, 8 or 16 lanes, for tests; `None` if there are none.
     #[doc(hidden)]
     pub fn run_all_in_lanes(models: &[Self], width: usize) -> Option<Vec<Run>> {
         has_lanes(width).then(|| run_all(models, &Request::default(), width))
@@ -166,8 +159,8 @@ impl<'a> Source<'a> for Runs<'a, '_, '_> {
         }
     }
 
-    fn ended(&mut self, run: &Prepared<'a>, motion: LaneMotion<'a>, start: &Initial<f64>, outcome: Outcome) {
-        (self.ended)(run.place, run.model, motion.finish(run.model, start, outcome));
+    fn ended(&mut self, run: &Prepared<'a>, motion: LaneMotion<'a>, outcome: Outcome) {
+        (self.ended)(run.place, run.model, motion.finish(outcome));
     }
 }
 
@@ -212,8 +205,8 @@ impl<'a, P: Fn(usize) -> Prepared<'a>> Source<'a> for Pursuits<'_, P> {
         (self.next)(under_way).map(&self.prepared)
     }
 
-    fn ended(&mut self, run: &Prepared<'a>, motion: LaneMotion<'a>, start: &Initial<f64>, outcome: Outcome) {
-        (self.ended)(run.place, motion.arrived(run.model, start, outcome));
+    fn ended(&mut self, run: &Prepared<'a>, motion: LaneMotion<'a>, outcome: Outcome) {
+        (self.ended)(run.place, motion.arrived(outcome));
     }
 }
 

@@ -3,10 +3,9 @@
 //! A kernel is built once for a model. Each call makes a [`Motion`] from it and drops it afterwards, which
 //! costs a few microseconds, so that the integrator needs no code for continuation.
 
-use crate::dynamics::clock::{Clock, Instant};
-use crate::dynamics::drive::form::{self, Form, with_drive};
+use crate::dynamics::clock::Instant;
+use crate::dynamics::drive::form::{Kernel, with_drive};
 use crate::dynamics::drive::{Base, Drive};
-use crate::dynamics::equation::Equation;
 use crate::dynamics::model::Model;
 use crate::dynamics::motion::Motion;
 use crate::dynamics::record::recorder::Recorder;
@@ -38,13 +37,6 @@ impl Sums {
     }
 }
 
-#[derive(Debug, Clone)]
-pub(crate) struct Kernel {
-    equation: Equation<f64>,
-    clock: Clock<f64>,
-    drive: std::sync::Arc<Form<f64>>,
-}
-
 /// The steps of one call.
 pub(crate) struct Stretch {
     pub samples: Vec<Sample>,
@@ -58,12 +50,7 @@ pub(crate) struct Stretch {
     pub exhausted: bool,
 }
 
-impl Kernel {
-    pub fn new(model: &Model) -> Self {
-        let form::Kernel { equation, clock, drive } = form::Kernel::new(model);
-        Self { equation, clock, drive: std::sync::Arc::new(drive) }
-    }
-
+impl Kernel<f64> {
     /// Seconds per kernel time unit.
     pub fn unit(&self) -> f64 {
         self.equation.unit
@@ -81,12 +68,12 @@ impl Kernel {
     /// Acceleration of the base in m/s^2 at a time in s.
     pub fn base_at(&self, t: f64) -> f64 {
         let at = self.clock.at(t);
-        self.base_within(with_drive!(&*self.drive, drive => self.segment(drive, &at)), &at)
+        self.base_within(with_drive!(&self.drive, drive => self.segment(drive, &at)), &at)
     }
 
     /// Acceleration of the base in m/s^2 at an instant within a segment of the drive.
     fn base_within(&self, segment: usize, at: &Instant<f64>) -> f64 {
-        with_drive!(&*self.drive, drive => drive.in_si(at, segment, self.unit()))
+        with_drive!(&self.drive, drive => drive.in_si(at, segment, self.unit()))
     }
 
     fn segment<D: Drive<f64>>(&self, drive: &D, at: &Instant<f64>) -> usize {
@@ -115,7 +102,7 @@ impl Kernel {
     /// The model's start at the time `now` in s, and the events that happen there at once.
     pub fn start(&self, model: &Model, now: f64) -> (Checkpoint<f64>, Vec<Event>) {
         let request = Request { events: true, ..Request::default() };
-        with_drive!(&*self.drive, drive => {
+        with_drive!(&self.drive, drive => {
             let mut motion = self.motion(model, drive, &request, None);
             motion.state.at = self.clock.at(now);
             motion.state.segment = self.segment(drive, &motion.state.at);
@@ -128,7 +115,7 @@ impl Kernel {
     pub fn proceed(&self, model: &Model, head: &Checkpoint<f64>, to: f64, times: &[f64]) -> Stretch {
         let request = Request { sample_times: times, events: true, ledger: true, ..Request::default() };
         let until = self.clock.at(to);
-        with_drive!(&*self.drive, drive => {
+        with_drive!(&self.drive, drive => {
             let mut motion = self.motion(model, drive, &request, Some(head));
             let (mut last, mut ended) = (None, None);
             while ended.is_none()
@@ -171,7 +158,7 @@ impl Kernel {
             return Vec::new();
         }
         let request = Request { sample_times: times, ..Request::default() };
-        with_drive!(&*self.drive, drive => {
+        with_drive!(&self.drive, drive => {
             let mut motion = self.motion(model, drive, &request, Some(tail));
             while self.clock.between(&motion.state.at, &head.state.at) > 0.0
                 && motion.stepper.work.done < WORK_PER_CALL
@@ -210,7 +197,7 @@ impl Kernel {
             return None;
         }
         let request = Request { ledger: true, ..Request::default() };
-        with_drive!(&*self.drive, drive => {
+        with_drive!(&self.drive, drive => {
             let mut motion = self.motion(model, drive, &request, Some(tail));
             motion.stepper.end = at;
             while motion.stepper.work.done < WORK_PER_CALL {

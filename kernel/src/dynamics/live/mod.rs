@@ -6,12 +6,15 @@
 
 mod kernel;
 
-use crate::dynamics::model::excitation::{ExcitationParts, TonePart};
+use std::sync::Arc;
+
+use crate::dynamics::drive::form::Kernel;
+use crate::dynamics::model::excitation::TonePart;
 use crate::dynamics::model::{MAX_PERIODS, Model};
 use crate::dynamics::result::{Event, EventKind, Outcome, Phase, Sample, Side};
 use crate::dynamics::state::{Checkpoint, Contact};
 use crate::numeric::{DoubleDouble, Scalar};
-use kernel::{Kernel, Sums};
+use kernel::Sums;
 
 /// Longest live run in kernel time units: some years for the prototype. The clock of an undriven scene is
 /// that of [`Model::run`].
@@ -76,7 +79,7 @@ pub struct Live {
     model: Model,
     /// Duration, and start of the settled window, of the scene.
     scene_times: (f64, f64),
-    kernel: Kernel,
+    kernel: Arc<Kernel<f64>>,
     /// Turns by which each tone is ahead of its scene.
     shifts: Vec<f64>,
     now: f64,
@@ -102,7 +105,7 @@ impl Live {
         let scene_times = (model.duration, model.settle);
         let model = without_end(model.clone());
         let shifts = vec![0.0; model.excitation.tones.len()];
-        let kernel = Kernel::new(&model);
+        let kernel = Arc::new(Kernel::new(&model));
         let (start, pending) = kernel.start(&model, 0.0);
         let start_energy = energy(&model, model.start) + model.electrical_energy(model.start_electrical);
         Self {
@@ -242,7 +245,9 @@ impl Live {
         self.shifts = phase_shifts(&self.model, model, &self.shifts, self.now);
         self.scene_times = (model.duration, model.settle);
         let mut next = without_end(model.clone());
-        shift_phases(&mut next.excitation, &self.shifts);
+        for (tone, shift) in next.excitation.tones.iter_mut().zip(&self.shifts) {
+            tone.phase = fraction(tone.phase + shift);
+        }
         let state = self.state();
         self.continue_with(next, (state.x, state.v), state.phase, into);
     }
@@ -275,7 +280,7 @@ impl Live {
         self.past.by_hand_j += energy(&next, next.start) + charged - before;
         let (was_compliant, is_compliant) = (self.model.compliant.is_some(), next.compliant.is_some());
         self.model = next;
-        self.kernel = Kernel::new(&self.model);
+        self.kernel = Arc::new(Kernel::new(&self.model));
         let (start, mut happened) = self.kernel.start(&self.model, self.now);
         // A rest that continues is not an event; the end of a rest is.
         let rests = start.state.phase();
@@ -307,7 +312,10 @@ impl Live {
         }
         let mut model = self.model.clone();
         (model.duration, model.settle) = self.scene_times;
-        advance_phases(&mut model.excitation, self.now);
+        for tone in &mut model.excitation.tones {
+            let turns = DoubleDouble::product(tone.frequency, self.now);
+            tone.phase = fraction(tone.phase + (turns - turns.floor()).to_f64());
+        }
         let turns = model.forcing_period.map_or(0.0, |period| self.now / period);
         model.start_phase = (model.start_phase + turns).rem_euclid(1.0);
         let (checkpoint, _) = self.present();
@@ -387,32 +395,16 @@ fn phase_shifts(old: &Model, new: &Model, shifts: &[f64], now: f64) -> Vec<f64> 
     if from.len() != to.len() {
         return vec![0.0; to.len()];
     }
-    from.iter().zip(to).zip(shifts).map(|((from, to), shift)| shifted(from, to, *shift, now)).collect()
-}
-
-/// The turns by which a tone that follows another one is ahead. A change of amplitude needs no correction; if
-/// the frequency f becomes f' at time t, the phase has to grow by (f - f') t turns.
-fn shifted(from: &TonePart, to: &TonePart, shift: f64, now: f64) -> f64 {
-    if from.frequency == to.frequency {
-        return shift;
-    }
-    let turns = DoubleDouble::product(from.frequency, now) - DoubleDouble::product(to.frequency, now);
-    fraction(shift + (turns - turns.floor()).to_f64())
-}
-
-/// Advances every tone by its shift.
-fn shift_phases(drive: &mut ExcitationParts, shifts: &[f64]) {
-    for (tone, shift) in drive.tones.iter_mut().zip(shifts).filter(|(_, shift)| **shift != 0.0) {
-        tone.phase = fraction(tone.phase + shift);
-    }
-}
-
-/// Makes `now` in s the time 0 of every tone.
-fn advance_phases(drive: &mut ExcitationParts, now: f64) {
-    for tone in &mut drive.tones {
-        let turns = DoubleDouble::product(tone.frequency, now);
-        tone.phase = fraction(tone.phase + (turns - turns.floor()).to_f64());
-    }
+    // a change of amplitude needs no correction; if the frequency f becomes f' at time t, the phase has to
+    // grow by (f - f') t turns
+    let shifted = |((from, to), shift): ((&TonePart, &TonePart), &f64)| {
+        if from.frequency == to.frequency {
+            return *shift;
+        }
+        let turns = DoubleDouble::product(from.frequency, now) - DoubleDouble::product(to.frequency, now);
+        fraction(shift + (turns - turns.floor()).to_f64())
+    };
+    from.iter().zip(to).zip(shifts).map(shifted).collect()
 }
 
 /// Fraction of a turn, 0 <= fraction < 1.

@@ -211,6 +211,7 @@ const BALANCINGS: usize = 4;
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::numeric::random;
 
     #[test]
     fn real_and_complex_eigenvalues() {
@@ -235,11 +236,7 @@ mod tests {
     /// The eigenvalues of a similar matrix of any scale: three real ones, or a real one and a pair.
     #[test]
     fn three_eigenvalues() {
-        let mut state = 7_u64;
-        let mut random = || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (state >> 11) as f64 / (1_u64 << 53) as f64
-        };
+        let mut random = random();
         for _ in 0..400 {
             let (l, re, im) = (2.0 * random() - 1.0, 2.0 * random() - 1.0, 2.0 * random() - 1.0);
             let pair = random() < 0.5;

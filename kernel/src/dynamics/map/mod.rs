@@ -15,7 +15,7 @@ mod passage;
 use std::sync::atomic::AtomicBool;
 
 use super::clock::{Clock, Instant};
-use super::drive::form::{Kernel, clock, general, with_drive};
+use super::drive::form::{Kernel, general, with_drive};
 use super::drive::general::General;
 use super::equation::Equation;
 use super::model::Model;
@@ -55,10 +55,7 @@ impl DualKernel {
         if !model.has_electrical_state() {
             return Self::Motion(Box::new(Kernel::new(model)));
         }
-        let unit = model.scales.unit();
-        let clock = clock(model, unit);
-        let drive = general(model, &clock);
-        Self::WithCircuit(Box::new((Equation::new(model, unit), clock, drive)))
+        Self::WithCircuit(Box::new(general(model)))
     }
 }
 
@@ -140,11 +137,6 @@ impl StroboscopicMap<'_> {
     /// The displacement must not lie beyond a stop or the curve; this is not checked.
     pub fn pass(&self, state: impl Into<MapState>, periods: u32) -> Passage {
         self.pass_between(state, (0.0, f64::from(periods)))
-    }
-
-    /// The same over a part of the forcing period, from 0 to 1.
-    pub fn pass_part(&self, state: impl Into<MapState>, part: f64) -> Passage {
-        self.pass_between(state, (0.0, part))
     }
 
     /// The same between two times after a strobe, in forcing periods.

@@ -6,7 +6,6 @@ use std::sync::Arc;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
-use super::start::fault;
 use crate::numeric::{Ratio, elementary, greatest_common_divisor};
 use crate::scene::{Excitation, Fault, Harmonic, Record};
 
@@ -172,7 +171,7 @@ impl ExcitationParts {
                 Some(record) => self.records.push(Arc::clone(record)),
                 None => {
                     let problem = "has not been read: take the scene from a document";
-                    return Err(fault(&format!("{path}.path"), file, problem));
+                    return Err(Fault::new(format!("{path}.path"), file, problem));
                 }
             },
             Excitation::Sum(terms) => {

@@ -17,7 +17,7 @@ use crate::scene::{self, Damping, Fault, Scene, Start};
 use excitation::{ExcitationParts, Rhythm};
 pub use read::Beginning;
 use scales::{Scales, scales};
-use start::{fault, start_state};
+use start::start_state;
 use stops::{StopAt, StopPair};
 use transducer::Transducer;
 
@@ -32,8 +32,8 @@ const PROBES: i32 = 60;
 ///
 /// It holds all quantities in SI units, the force curve and the excitation as they are integrated, and
 /// nothing is left to check: [`build`](Self::build) gives all faults of a scene at once. [`run`](Self::run)
-/// takes one run, [`run_all`](Self::run_all) many side by side with the same bits. A program that starts from
-/// a scene file has it from `questions::Simulation`.
+/// takes one run, [`run_together`](Self::run_together) many side by side with the same bits. A program that
+/// starts from a scene file has it from `questions::Simulation`.
 #[derive(Debug, Clone)]
 pub struct Model {
     pub(in crate::dynamics) mass: f64,
@@ -91,7 +91,7 @@ fn damping_coefficient(scene: &Scene, mechanism: &Mechanism, mass: f64) -> Resul
     let Some(k) = mechanism.damping_stiffness() else {
         let problem = "a damping ratio needs a stable equilibrium with a stiffness above 0, and this \
                        mechanism has none; use Coefficient(c_n_s_per_m: ..) instead";
-        return Err(fault("damping.xi", xi, problem));
+        return Err(Fault::new("damping.xi", xi.to_string(), problem));
     };
     let c = 2.0 * xi * (k * mass).sqrt();
     if !c.is_finite() {
@@ -99,7 +99,7 @@ fn damping_coefficient(scene: &Scene, mechanism: &Mechanism, mass: f64) -> Resul
             "makes no finite damping coefficient with the stiffness {k:e} N/m of the equilibrium; use \
              Coefficient(c_n_s_per_m: ..) instead"
         );
-        return Err(fault("damping.xi", xi, problem));
+        return Err(Fault::new("damping.xi", xi.to_string(), problem));
     }
     Ok(c)
 }
@@ -119,7 +119,7 @@ impl Model {
             let value = if piezoelectric { "Piezoelectric(..)" } else { "Electromagnetic(..)" };
             let problem = "its rates, damping or power are not finite with this mass; give numbers closer to \
                            those of a real transducer";
-            faults.push(fault("transducer", value, problem));
+            faults.push(Fault::new("transducer", value, problem));
         }
         let stops = StopPair::of(&scene.stops);
         let compliant = Hertz::of(&scene.stops);
@@ -131,7 +131,7 @@ impl Model {
                 "makes {periods:e} periods of the excitation; at most {MAX_PERIODS:e} can be counted: \
                  shorten the run or lower the frequency"
             );
-            faults.push(fault("run.duration_s", scene.run.duration_s, problem));
+            faults.push(Fault::new("run.duration_s", scene.run.duration_s.to_string(), problem));
         }
         if !faults.is_empty() {
             // a number that is not finite may have caused them: report it first
@@ -206,7 +206,8 @@ impl Model {
 
     /// The left and the right stop, if there are any.
     pub(in crate::dynamics) fn sides(&self) -> (Option<StopAt>, Option<StopAt>) {
-        self.stops.map_or((None, None), |pair| (pair.left, pair.right))
+        let StopPair { left, right } = self.stops.unwrap_or_default();
+        (left, right)
     }
 
     /// Kinetic and potential energy in J at a displacement in m and a velocity in m/s. The potential is 0 at

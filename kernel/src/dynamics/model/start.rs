@@ -5,10 +5,6 @@ use crate::mechanics::{Hertz, Mechanism};
 use crate::numeric::bisect;
 use crate::scene::{Fault, Scene, Start};
 
-pub(crate) fn fault(field: &str, value: impl ToString, problem: impl Into<String>) -> Fault {
-    Fault { field: field.into(), value: value.to_string(), problem: problem.into() }
-}
-
 /// Displacement in m and velocity in m/s of the start of a scene.
 pub(crate) fn start_state(
     scene: &Scene,
@@ -16,12 +12,12 @@ pub(crate) fn start_state(
     stops: Option<StopPair>,
     compliant: Option<Hertz>,
 ) -> Result<(f64, f64), Fault> {
-    let (left, right) = stops.map_or((None, None), |pair| (pair.left, pair.right));
+    let StopPair { left, right } = stops.unwrap_or_default();
     let domain = mechanism.curve.domain();
     match scene.start {
         Start::Rest => {
             let at = [left, right].map(|stop| stop.map(|stop| stop.x));
-            let x = rest(mechanism, at, compliant).map_err(|problem| fault("start", "Rest", problem))?;
+            let x = rest(mechanism, at, compliant).map_err(|problem| Fault::new("start", "Rest", problem))?;
             Ok((x, 0.0))
         }
         Start::At { x_mm, v_m_per_s, .. } => {
@@ -29,12 +25,12 @@ pub(crate) fn start_state(
             let (x, v_m_per_s) = (x_mm / 1e3 + 0.0, v_m_per_s + 0.0);
             if let Some(stop) = right.filter(|s| x > s.x).or(left.filter(|s| x < s.x)) {
                 let problem = format!("lies beyond the stop at {} mm; start between the stops", stop.x * 1e3);
-                return Err(fault("start.x_mm", x_mm, problem));
+                return Err(Fault::new("start.x_mm", x_mm.to_string(), problem));
             }
             if x < domain.0 || x > domain.1 {
                 let (from, to) = (domain.0 * 1e3, domain.1 * 1e3);
                 let problem = format!("lies outside the force curve, which is known from {from} to {to} mm");
-                return Err(fault("start.x_mm", x_mm, problem));
+                return Err(Fault::new("start.x_mm", x_mm.to_string(), problem));
             }
             Ok((x, v_m_per_s))
         }

@@ -3,7 +3,7 @@
 use crate::scene::Stops;
 
 /// The stops of a scene; a side without one is open.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[non_exhaustive]
 pub struct StopPair {
     /// The one that limits the mass to the left.
@@ -25,27 +25,12 @@ pub struct StopAt {
 impl StopPair {
     /// The stops of a scene; `None` if it has none.
     pub(crate) fn of(stops: &Stops) -> Option<Self> {
-        // the sum with 0 makes a 0 of -0
-        let at =
-            |mm: f64, sign: f64, restitution: f64| Some(StopAt { x: sign * (mm / 1e3) + 0.0, restitution });
-        match *stops {
-            Stops::None => None,
-            Stops::Hertz { travel_limit_mm, .. } => {
-                let [left, right] = [-1.0, 1.0].map(|sign| at(travel_limit_mm, sign, 1.0));
-                Some(Self { left, right })
-            }
-            Stops::Rigid { travel_limit_mm, restitution } => {
-                let [left, right] = [-1.0, 1.0].map(|sign| at(travel_limit_mm, sign, restitution));
-                Some(Self { left, right })
-            }
-            Stops::Uneven { left_mm, right_mm, restitution_left, restitution_right } => {
-                let of = |given: Option<f64>, other: Option<f64>| given.or(other).unwrap_or(1.0);
-                Some(Self {
-                    left: left_mm.and_then(|mm| at(mm, -1.0, of(restitution_left, restitution_right))),
-                    right: right_mm.and_then(|mm| at(mm, 1.0, of(restitution_right, restitution_left))),
-                })
-            }
-        }
+        let (positions, restitutions) = (stops.positions_mm(), stops.restitutions());
+        let [left, right] = [0, 1].map(|side| {
+            let restitution = restitutions[side].unwrap_or(1.0);
+            positions[side].map(|mm| StopAt { x: mm / 1e3, restitution })
+        });
+        (*stops != Stops::None).then_some(Self { left, right })
     }
 
     /// Whether a displacement in m lies between the stops and on neither.

@@ -1,7 +1,7 @@
 //! Goal of a pursued motion: the motion, region or event that ends the pursuit.
 
 use super::regime::Classifier;
-use crate::dynamics::result::{Arrival, MapState, Pursuit};
+use crate::dynamics::result::{Arrival, MapState, Pursuit, ReleaseIdentity};
 
 /// Number of stroboscopic states, beyond two periods of the motion, that must also repeat.
 const CONFIRMING_STATES: u64 = 12;
@@ -9,7 +9,8 @@ const CONFIRMING_STATES: u64 = 12;
 #[derive(Debug)]
 pub(crate) struct Goal<'a> {
     pursuit: Pursuit<'a>,
-    pub reached: Option<Arrival>,
+    /// What ended the pursuit, and the number of the first stroboscopic state after it.
+    pub reached: Option<(Arrival, u64)>,
 }
 
 impl<'a> Goal<'a> {
@@ -23,28 +24,27 @@ impl<'a> Goal<'a> {
             return;
         }
         let periods = classifier.strobes.seen - 1;
-        if let Some(which) = self.pursuit.known.iter().position(|known| known.is_reached(state)) {
-            self.reached = Some(Arrival::Captured { which, periods });
-        } else if let Some(which) =
-            self.pursuit.regions.iter().position(|region| region.holds((state.x, state.v)))
-        {
-            self.reached = Some(Arrival::Entered { which, periods });
-        } else if periods >= self.pursuit.repeats_from {
-            let period = classifier.strobes.repeats_for(CONFIRMING_STATES);
-            self.reached = period.map(|period| Arrival::Repeats { period, state, periods });
-        }
+        let Pursuit { known, regions, repeats_from, .. } = self.pursuit;
+        let captured = known.iter().position(|known| known.is_reached(state)).map(Arrival::Captured);
+        let entered = || regions.iter().position(|region| region.holds((state.x, state.v)));
+        let repeats = || {
+            let period = (periods >= repeats_from).then(|| classifier.strobes.repeats_for(CONFIRMING_STATES));
+            period.flatten().map(|period| Arrival::Repeats { period, state })
+        };
+        let arrival = captured.or_else(|| entered().map(Arrival::Entered)).or_else(repeats);
+        self.reached = arrival.map(|arrival| (arrival, periods));
     }
 
     /// A release. It ends the pursuit unless it is one of those to be skipped.
-    pub fn release(&mut self, arrival: Arrival) {
+    pub fn release(&mut self, identity: ReleaseIdentity, periods: u64) {
         match self.pursuit.releases.checked_sub(1) {
             Some(left) => self.pursuit.releases = left,
-            None => self.end(arrival),
+            None => self.end(Arrival::Released(identity), periods),
         }
     }
 
     /// Ends the pursuit if it has not ended yet.
-    pub fn end(&mut self, arrival: Arrival) {
-        self.reached.get_or_insert(arrival);
+    pub fn end(&mut self, arrival: Arrival, periods: u64) {
+        self.reached.get_or_insert((arrival, periods));
     }
 }

@@ -5,39 +5,35 @@ use super::sums::Sums;
 use crate::dynamics::clock::Instant;
 use crate::dynamics::model::excitation::Rhythm;
 use crate::dynamics::result::{Harvest, Ledger, MapState, Outcome, Place, Regime, Run, Sample, Summary};
+use crate::dynamics::run::ending::Start;
 use crate::dynamics::state::MotionState;
 use crate::numeric::{CompensatedSum, Scalar};
 
 /// Share of the length scale up to which a motion is rounding: the mass has not moved.
 pub(crate) const MAX_ROUNDING: f64 = 1e-12;
 
-/// The end of a run, as the recorder needs it.
-pub(crate) struct Ending<T> {
-    pub state: MotionState<T>,
-    /// Velocity at time 0, kernel units.
-    pub start_v: T,
-    /// State of the circuit at time 0.
-    pub start_circuit: T,
-    /// Change of the potential over the run in J.
-    pub potential: f64,
-    pub outcome: Outcome,
-}
-
 fn value<T: Scalar>(sum: &CompensatedSum<T>) -> f64 {
     sum.value().to_f64()
 }
 
 impl<T: Scalar> Recorder<'_, T> {
-    pub fn finish(mut self, ending: &Ending<T>) -> Run {
-        let &Ending { state: MotionState { at: end, x, v, circuit, .. }, outcome, .. } = ending;
+    /// The results of a run that ends in `state`; `potential` is the change of the potential over it in J.
+    pub fn finish(
+        mut self,
+        state: &MotionState<T>,
+        start: &Start<T>,
+        potential: f64,
+        outcome: Outcome,
+    ) -> Run {
+        let &MotionState { at: end, x, v, circuit, .. } = state;
         let (final_x, final_v) = (x.to_f64(), v.to_f64() / self.unit);
         let electrical = self.electrical(circuit);
-        self.sample_the_end(&ending.state);
-        self.last_strobe(&ending.state);
+        self.sample_the_end(state);
+        self.last_strobe(state);
         let (section, carried) = self.listed(&end, MapState { x: final_x, v: final_v, electrical });
         let covered = value(&self.covered);
         let seen = covered > 0.0;
-        let ledger = self.ledger.then(|| self.energy_ledger(ending));
+        let ledger = self.ledger.then(|| self.energy_ledger(state, start, potential));
         let rms = (value(&self.settled.squared_velocity) / covered).sqrt() / self.unit;
         let work = value(&self.settled.work);
         let travel = (self.high - self.low).to_f64();
@@ -137,15 +133,14 @@ impl<T: Scalar> Recorder<'_, T> {
     }
 
     /// The energies of the whole run, and their residual.
-    fn energy_ledger(&self, ending: &Ending<T>) -> Ledger {
-        let &Ending { state: MotionState { v, circuit, .. }, start_v, start_circuit, potential, .. } = ending;
+    fn energy_ledger(&self, state: &MotionState<T>, start: &Start<T>, potential: f64) -> Ledger {
         let (energy, transducer) = (self.energy_unit(), self.model.transducer);
         let kinetic = |v: T| (v * v).to_f64() * 0.5;
         let work_j = value(&self.whole.work) * energy;
         let damping_j = self.model.damping * value(&self.whole.squared_velocity) / self.unit;
         let impact_j = value(&self.whole.impact) * energy;
-        let charged = transducer.map_or(0.0, |_| kinetic(circuit) - kinetic(start_circuit));
-        let stored_j = (kinetic(v) - kinetic(start_v) + charged) * energy + potential;
+        let charged = transducer.map_or(0.0, |_| kinetic(state.circuit) - kinetic(start.circuit));
+        let stored_j = (kinetic(state.v) - kinetic(start.v) + charged) * energy + potential;
         let (taken, moved) = ((work_j - damping_j) - impact_j, self.work_moved + self.peak_kinetic);
         let moved = moved * energy + damping_j + impact_j.abs() + stored_j.abs();
         let electrical = transducer.map(|transducer| transducer.energies(self.squared_signal(&self.whole)));

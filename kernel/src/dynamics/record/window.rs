@@ -177,21 +177,17 @@ impl<'a, T: Scalar> Recorder<'a, T> {
             || self.until_crossing && self.counts.total_crossings > 0
     }
 
-    pub fn arrival(&mut self) -> Option<Arrival> {
-        self.goal.as_mut().and_then(|goal| goal.reached.take())
-    }
-
     /// The mass was released with this identity. Returns whether the motion is pursued.
     pub fn released(&mut self, at: &Instant<T>, identity: ReleaseIdentity) -> bool {
         let periods = self.periods_until(at);
-        self.goal.as_mut().map(|goal| goal.release(Arrival::Released { identity, periods })).is_some()
+        self.goal.as_mut().map(|goal| goal.release(identity, periods)).is_some()
     }
 
     /// The mass rests from `at` on and will never be released.
     pub fn rests_forever(&mut self, at: &Instant<T>, side: Side) {
         let periods = self.periods_until(at);
         if let Some(goal) = &mut self.goal {
-            goal.end(Arrival::Rests { side, periods });
+            goal.end(Arrival::Rests(side), periods);
         }
     }
 

@@ -106,45 +106,27 @@ impl Pursuit<'_> {
 pub struct Pursued {
     /// What ended it.
     pub arrival: Arrival,
+    /// The number of the first stroboscopic state after the arrival, where the start has the number 0; `None`
+    /// if the motion is unsettled.
+    pub periods: Option<u64>,
     /// Crossings of the barrier up to the arrival.
     pub crossings: u64,
     /// Work done, in units of some ten nanoseconds.
     pub work: u64,
 }
 
-/// What ended a pursuit. `periods` is the number of the first stroboscopic state after it; the start has the
-/// number 0.
+/// What ended a pursuit.
 #[doc(hidden)]
 #[derive(Debug, Clone, PartialEq)]
 pub enum Arrival {
-    /// A known motion.
-    Captured {
-        /// Its index among the known ones.
-        which: usize,
-        /// See above.
-        periods: u64,
-    },
-    /// A known region.
-    Entered {
-        /// Its index among the known ones.
-        which: usize,
-        /// See above.
-        periods: u64,
-    },
-    /// A release with an identity.
-    Released {
-        /// Which one.
-        identity: ReleaseIdentity,
-        /// See above.
-        periods: u64,
-    },
-    /// A rest that never ends.
-    Rests {
-        /// On which stop.
-        side: Side,
-        /// See above.
-        periods: u64,
-    },
+    /// A known motion, by its index among the known ones.
+    Captured(usize),
+    /// A known region, by its index among the known ones.
+    Entered(usize),
+    /// A release with this identity.
+    Released(ReleaseIdentity),
+    /// A rest that never ends, on this stop.
+    Rests(Side),
     /// The stroboscopic states repeat, to a thousandth of the scales, for two periods of the motion and
     /// twelve more states.
     Repeats {
@@ -152,24 +134,8 @@ pub enum Arrival {
         period: u32,
         /// The last of the states.
         state: MapState,
-        /// See above.
-        periods: u64,
     },
     /// None of these. The settled window of the summary is the last hundred periods, or all if there
     /// were fewer.
     Unsettled(Box<Summary>),
-}
-
-impl Arrival {
-    /// The number of the first stroboscopic state after it; `None` if the motion is unsettled.
-    pub fn periods(&self) -> Option<u64> {
-        match self {
-            Self::Captured { periods, .. }
-            | Self::Entered { periods, .. }
-            | Self::Released { periods, .. }
-            | Self::Rests { periods, .. }
-            | Self::Repeats { periods, .. } => Some(*periods),
-            Self::Unsettled(_) => None,
-        }
-    }
 }

@@ -8,7 +8,7 @@ use crate::dynamics::drive::Drive;
 use crate::dynamics::equation::Equation;
 use crate::dynamics::model::Model;
 use crate::dynamics::motion::Motion;
-use crate::dynamics::record::summary::{Ending, MAX_ROUNDING};
+use crate::dynamics::record::summary::MAX_ROUNDING;
 use crate::dynamics::result::{Ledger, Outcome, Run};
 use crate::dynamics::state::MotionState;
 use crate::numeric::Scalar;
@@ -34,9 +34,10 @@ const MAX_MISSING_SHARE: f64 = 0.1;
 const STRONG_COUPLING: f64 = 1e3;
 
 /// The state at the start of a run.
-pub(crate) struct Initial<T> {
-    v: T,
-    circuit: T,
+pub(crate) struct Start<T> {
+    /// Velocity and state of the circuit, kernel units.
+    pub v: T,
+    pub circuit: T,
     mode: usize,
     /// Displacement in m.
     x: f64,
@@ -44,23 +45,28 @@ pub(crate) struct Initial<T> {
     stop_energy: f64,
 }
 
+impl<T: Scalar> Default for Start<T> {
+    fn default() -> Self {
+        Self { v: T::zero(), circuit: T::zero(), mode: 0, x: 0.0, stop_energy: 0.0 }
+    }
+}
+
 impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
     /// Starts the motion.
-    pub fn begin(&mut self, model: &Model) -> Initial<T> {
+    pub fn begin(&mut self) {
         let MotionState { v, circuit, .. } = self.state;
         self.place_at_start();
-        let stop_energy = stop_energy(model, self.stepper.equation, &self.state);
-        Initial { v, circuit, mode: self.state.mode, x: self.state.x.to_f64(), stop_energy }
+        let stop_energy = stop_energy(self.record.model, self.stepper.equation, &self.state);
+        self.start = Start { v, circuit, mode: self.state.mode, x: self.state.x.to_f64(), stop_energy };
     }
 
     /// Closes the record.
-    pub fn finish(self, model: &Model, start: &Initial<T>, outcome: Outcome) -> Run {
-        let Self { stepper, state, record, steps, .. } = self;
-        let step_range = record.step_range;
+    pub fn finish(self, outcome: Outcome) -> Run {
+        let Self { stepper, state, record, steps, start, .. } = self;
+        let (model, step_range) = (record.model, record.step_range);
         let speed = (2.0 * record.peak_kinetic).sqrt() / stepper.equation.unit;
-        let potential = potential_change(model, stepper.equation, start, &state);
-        let (start_v, start_circuit) = (start.v, start.circuit);
-        let mut run = record.finish(&Ending { state, start_v, start_circuit, potential, outcome });
+        let potential = potential_change(model, stepper.equation, &start, &state);
+        let mut run = record.finish(&state, &start, potential, outcome);
         run.summary.steps = steps;
         run.summary.evaluations = stepper.evaluations;
         run.summary.outcome = checked_outcome(model, &run, step_range, speed);
@@ -72,7 +78,7 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
 fn potential_change<T: Scalar>(
     model: &Model,
     equation: &Equation<T>,
-    start: &Initial<T>,
+    start: &Start<T>,
     state: &MotionState<T>,
 ) -> f64 {
     let piece = |mode: usize| &model.mechanism.curve.pieces()[equation.modes[mode].piece];

@@ -7,8 +7,7 @@ mod recurrence;
 
 use crate::dynamics::clock::Instant;
 use crate::dynamics::drive::Drive;
-use crate::dynamics::drive::form::{Kernel, clock, general, with_drive};
-use crate::dynamics::equation::Equation;
+use crate::dynamics::drive::form::{Kernel, general, with_drive};
 use crate::dynamics::model::Model;
 use crate::dynamics::motion::Motion;
 use crate::dynamics::record::goal::Goal;
@@ -18,7 +17,6 @@ use crate::dynamics::step::stepper::Settings;
 use crate::dynamics::step::work::{Costs, IMPACT_BUDGET};
 use crate::numeric::{DoubleDouble, Scalar};
 use crate::system::clock::ThreadClock;
-use ending::Initial;
 use event_free::FastPath;
 
 impl Model {
@@ -31,8 +29,8 @@ impl Model {
         let Kernel { equation, clock, drive } = Kernel::<f64>::new(self);
         let mut run = with_drive!(&drive, drive => {
             Motion::new(self, request, self.tolerance, &equation, clock, drive)
-                .with_recurrence(self.recurrence, self)
-                .run(self)
+                .with_recurrence(self.recurrence)
+                .run()
         });
         run.summary.cpu_s = watch.seconds();
         run
@@ -54,10 +52,8 @@ impl Model {
     /// is completed from a recurrence.
     pub fn run_reference(&self, request: &Request, tolerance: f64) -> Run {
         let watch = ThreadClock::start();
-        let unit = self.scales.unit();
-        let (equation, clock) = (Equation::new(self, unit), clock(self, unit));
-        let drive = general::<DoubleDouble>(self, &clock);
-        let mut run = Motion::new(self, request, tolerance, &equation, clock, &drive).run(self);
+        let (equation, clock, drive) = general::<DoubleDouble>(self);
+        let mut run = Motion::new(self, request, tolerance, &equation, clock, &drive).run();
         run.summary.cpu_s = watch.seconds();
         run
     }
@@ -65,10 +61,10 @@ impl Model {
 
 impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
     /// Runs from start to end.
-    fn run(mut self, model: &Model) -> Run {
-        let start = self.begin(model);
+    fn run(mut self) -> Run {
+        self.begin();
         let outcome = self.run_to_end();
-        self.finish(model, &start, outcome)
+        self.finish(outcome)
     }
 
     /// Runs from event to event until the run has ended.
@@ -183,11 +179,12 @@ impl<'a, T: Scalar, D: Drive<T>> Motion<'a, T, D> {
     }
 
     /// Result of the pursuit.
-    pub fn arrived(mut self, model: &Model, start: &Initial<T>, outcome: Outcome) -> Pursued {
+    pub fn arrived(mut self, outcome: Outcome) -> Pursued {
         let (crossings, work) = (self.record.counts.total_crossings, self.stepper.work.done);
-        let arrival = self.record.arrival().filter(|_| outcome == Outcome::Done);
-        let unsettled = || Arrival::Unsettled(Box::new(self.finish(model, start, outcome).summary));
-        Pursued { arrival: arrival.unwrap_or_else(unsettled), crossings, work }
+        let reached = self.record.goal.as_mut().and_then(|goal| goal.reached.take());
+        let (arrival, periods) = reached.filter(|_| outcome == Outcome::Done).unzip();
+        let unsettled = || Arrival::Unsettled(Box::new(self.finish(outcome).summary));
+        Pursued { arrival: arrival.unwrap_or_else(unsettled), periods, crossings, work }
     }
 }
 
@@ -197,8 +194,8 @@ pub(crate) fn pursue_alone(model: &Model, pursuit: &Pursuit, request: &Request) 
     with_drive!(&drive, drive => {
         let motion = Motion::new(model, request, model.tolerance, &equation, clock, drive);
         let mut motion = motion.pursuing(pursuit);
-        let start = motion.begin(model);
+        motion.begin();
         let outcome = motion.run_to_end();
-        motion.arrived(model, &start, outcome)
+        motion.arrived(outcome)
     })
 }

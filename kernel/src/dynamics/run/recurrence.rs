@@ -134,7 +134,7 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
             if !(self.stepper.clock.between(&next, &self.stepper.end) > T::zero()) {
                 break;
             }
-            if self.stepper.work.is_cancelled() || self.stepper.work.is_spent() {
+            if self.stepper.work.is_cancelled() || !self.stepper.work.has_room_for(0) {
                 return; // the rest of the run is integrated
             }
             if let Some(lap_totals) = lap.lap_totals {
@@ -182,13 +182,13 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
             if number > laps {
                 break;
             }
-            if self.stepper.work.is_cancelled() || self.stepper.work.is_spent() {
+            if self.stepper.work.is_cancelled() || !self.stepper.work.has_room_for(0) {
                 covered = done;
                 break;
             }
             if self.stepper.clock.between(&next, &begin(number)) >= T::zero() {
                 let impacts = self.replay(log, (lap.first, None), CycleShift(later + number * lap.cycles));
-                self.stepper.work.add_impacts(impacts);
+                self.stepper.work.impacts += impacts;
             }
             done = number;
         }

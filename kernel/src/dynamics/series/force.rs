@@ -19,8 +19,8 @@
 //! the step; all other terms are known earlier, so that the processor can sum them in advance.
 
 use super::order::ROOM;
-use crate::dynamics::equation::force::{PieceForce, shift};
-use crate::numeric::Number;
+use crate::dynamics::equation::force::PieceForce;
+use crate::numeric::{Number, shift};
 
 /// Number of depths that are summed side by side.
 const BLOCK: usize = 4;

@@ -1,8 +1,5 @@
-//! Choice of the length of a step of free flight, and the state of a circuit along it.
-//!
-//! The event-free step is written three times: here (with `run/flight.rs`, which takes the step), as the fast
-//! path of a single motion (`run/event_free.rs`), and for a batch (`lanes/columns/step.rs`). The three do the
-//! same arithmetic and must stay equal to the bit.
+//! Choice of the length of a step of free flight, and the state of a circuit along it. It must stay equal to
+//! the bit with the two other event-free steps, see `run/event_free.rs`.
 
 use super::stepper::{MAX_HALVINGS, RESIDUAL, ROUNDINGS, Step, Stepper};
 use crate::dynamics::drive::Drive;

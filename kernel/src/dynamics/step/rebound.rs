@@ -1,9 +1,11 @@
 //! Time of flight of a rebound that is pressed back onto its stop.
 //!
 //! Before a mass comes to rest it bounces a dozen times, each time at a fraction of the speed; most impacts
-//! of a run are of this kind. Their flights are nearly parabolas, so their ends need no search: the gap is 0
-//! at the start by definition, and divided by time it is a polynomial with one root. A third-order method
-//! that starts from the end of the parabola finds the root to the last digit in two or three steps.
+//! of a run are of this kind. A flight lasts about 2 v / a, so the series is extended only until its terms
+//! are negligible over that time: four or five coefficients, where a full step has sixteen. It is nearly a
+//! parabola, so its end needs no search: the gap is 0 at the start by definition, and divided by time it is a
+//! polynomial with one root. A third-order method that starts from the end of the parabola finds the root to
+//! the last digit in two or three steps.
 
 use super::stepper::Stepper;
 use crate::dynamics::drive::Drive;

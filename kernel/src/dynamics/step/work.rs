@@ -84,11 +84,6 @@ impl<'a> Work<'a> {
         self.done += units;
     }
 
-    #[inline]
-    pub fn add_impacts(&mut self, count: u64) {
-        self.impacts += count;
-    }
-
     /// Whether this many more units are within the budgets.
     pub fn has_room_for(&self, units: u64) -> bool {
         self.done + units < self.max_units && self.impacts < IMPACT_BUDGET
@@ -96,10 +91,6 @@ impl<'a> Work<'a> {
 
     pub fn is_done(&self) -> bool {
         self.done >= self.max_units
-    }
-
-    pub fn is_spent(&self) -> bool {
-        !self.has_room_for(0)
     }
 
     /// Number of pieces of this cost up to the next check of the cancel flag, at least one.

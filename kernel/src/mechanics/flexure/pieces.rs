@@ -169,31 +169,15 @@ fn line(segment: &Segment) -> ScaledPiece {
 
 /// The odd polynomial from 0 to `to`.
 fn odd_piece(solver: &mut Solver, segment: &mut Segment, to: f64) -> Result<ScaledPiece, Failure> {
-    let terms = 2 * ODD_POINTS + 1;
-    let mut matrix = DMatrix::zeros(terms, terms);
-    let mut right = DVector::zeros(terms);
-    let degrees: Vec<usize> = (0..terms).map(|i| 2 * i + 1).collect();
-    for j in 0..=ODD_POINTS {
-        let t = elementary::cos(0.5 * PI * j as f64 / ODD_POINTS as f64);
-        let (t, x) = if j == ODD_POINTS { (0.0, 0.0) } else { (t, t * to) };
-        let point = segment.at(solver, x)?;
-        let slope_row = if j == ODD_POINTS { 2 * ODD_POINTS } else { 2 * j + 1 };
-        for (column, degree) in degrees.iter().enumerate() {
-            let (value, slope) = chebyshev(*degree, t);
-            matrix[(slope_row, column)] = slope;
-            if j < ODD_POINTS {
-                matrix[(2 * j, column)] = value;
-            }
-        }
-        right[slope_row] = point.stiffness * to;
-        if j < ODD_POINTS {
-            right[2 * j] = point.force;
-        }
-    }
-    let all = solved(matrix, &right);
-    let mut coefficients = vec![0.0; 2 * terms];
-    for (degree, c) in degrees.iter().zip(all.iter()) {
-        coefficients[*degree] = *c;
+    let degrees: Vec<usize> = (0..=2 * ODD_POINTS).map(|i| 2 * i + 1).collect();
+    let node = |j: usize| match elementary::cos(0.5 * PI * j as f64 / ODD_POINTS as f64) {
+        _ if j == ODD_POINTS => (0.0, 0.0),
+        t => (t, t * to),
+    };
+    let found = interpolation(solver, segment, &degrees, (0..=ODD_POINTS).map(node), to)?;
+    let mut coefficients = vec![0.0; 2 * degrees.len()];
+    for (degree, c) in degrees.iter().zip(found) {
+        coefficients[*degree] = c;
     }
     Ok(ScaledPiece::new(to, 0.0, monomials(&coefficients, to)))
 }
@@ -201,32 +185,51 @@ fn odd_piece(solver: &mut Solver, segment: &mut Segment, to: f64) -> Result<Scal
 /// The polynomial from `from` to `to`.
 fn piece(solver: &mut Solver, segment: &mut Segment, from: f64, to: f64) -> Result<ScaledPiece, Failure> {
     let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
-    let terms = 2 * POINTS;
-    let mut matrix = DMatrix::zeros(terms, terms);
-    let mut right = DVector::zeros(terms);
-    for j in 0..POINTS {
+    let degrees: Vec<usize> = (0..2 * POINTS).collect();
+    let node = |j: usize| {
         let t = -elementary::cos(PI * j as f64 / (POINTS - 1) as f64);
-        let x = match j {
-            0 => from,
-            _ if j == POINTS - 1 => to,
-            _ => middle + half * t,
-        };
-        let point = segment.at(solver, x)?;
-        for degree in 0..terms {
-            let (value, slope) = chebyshev(degree, t);
-            matrix[(2 * j, degree)] = value;
-            matrix[(2 * j + 1, degree)] = slope;
-        }
-        right[2 * j] = point.force;
-        right[2 * j + 1] = point.stiffness * half;
-    }
-    let coefficients = solved(matrix, &right);
+        (
+            t,
+            if j == 0 {
+                from
+            } else if j == POINTS - 1 {
+                to
+            } else {
+                middle + half * t
+            },
+        )
+    };
+    let coefficients = interpolation(solver, segment, &degrees, (0..POINTS).map(node), half)?;
     Ok(ScaledPiece::new(to, middle, monomials(&coefficients, half)))
 }
 
-/// Solves for the coefficients of an interpolation; its points are distinct, so that the matrix is regular.
-fn solved(matrix: DMatrix<f64>, right: &DVector<f64>) -> Vec<f64> {
-    matrix.lu().solve(right).map_or_else(|| vec![f64::NAN; right.len()], |c| c.as_slice().to_vec())
+/// The coefficients of the Chebyshev polynomials of these degrees in t whose sum has the force and the slope
+/// of the states at the nodes, each t with its x; `half` is dx/dt. A node at x = 0 gives the slope alone, as
+/// the force there is 0 by symmetry.
+fn interpolation(
+    solver: &mut Solver,
+    segment: &mut Segment,
+    degrees: &[usize],
+    nodes: impl Iterator<Item = (f64, f64)>,
+    half: f64,
+) -> Result<Vec<f64>, Failure> {
+    let terms = degrees.len();
+    let (mut matrix, mut right) = (DMatrix::zeros(terms, terms), DVector::zeros(terms));
+    let mut row = 0;
+    for (t, x) in nodes {
+        let point = segment.at(solver, x)?;
+        let slope_row = if x == 0.0 { row } else { row + 1 };
+        for (column, degree) in degrees.iter().enumerate() {
+            let (value, slope) = chebyshev(*degree, t);
+            matrix[(row, column)] = value;
+            matrix[(slope_row, column)] = slope;
+        }
+        right[row] = point.force;
+        right[slope_row] = point.stiffness * half;
+        row = slope_row + 1;
+    }
+    // the nodes are distinct, so that the matrix is regular
+    Ok(matrix.lu().solve(&right).map_or_else(|| vec![f64::NAN; terms], |c| c.as_slice().to_vec()))
 }
 
 /// Chebyshev polynomial of a given degree and its derivative at `t`.

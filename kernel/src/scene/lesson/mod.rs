@@ -68,11 +68,7 @@ pub struct Lesson {
 impl Lesson {
     /// The conditions of its steps.
     pub fn conditions(&self) -> impl Iterator<Item = &Condition> {
-        self.steps.iter().flat_map(|step| match step {
-            Step::Say(_) | Step::Explain(_) => Vec::new(),
-            Step::Predict { options, .. } => options.iter().map(|option| &option.holds).collect(),
-            Step::Do { goal, .. } => vec![goal],
-        })
+        self.steps.iter().flat_map(Step::conditions)
     }
 }
 

@@ -231,19 +231,19 @@ impl Rounds {
 
     /// Records the result of an item; returns the item that continues it, if its fate depends on one.
     fn note(&mut self, item: Item, pursued: Pursued, scope: &Stroboscope) -> Option<Item> {
-        let way = item.way(pursued.arrival.periods().unwrap_or(PATIENCE), pursued.crossings);
+        let way = item.way(pursued.periods.unwrap_or(PATIENCE), pursued.crossings);
         let fate = match pursued.arrival {
-            Arrival::Captured { which, .. } => Fate::Kind(self.kind(Kind::Orbit(self.orbit_of[which])), way),
-            Arrival::Entered { which, .. } => Fate::Kind(self.region_of[which], way),
-            Arrival::Rests { side, .. } => Fate::Kind(self.kind(Kind::Rest(side)), way),
-            Arrival::Released { identity, .. } => {
+            Arrival::Captured(which) => Fate::Kind(self.kind(Kind::Orbit(self.orbit_of[which])), way),
+            Arrival::Entered(which) => Fate::Kind(self.region_of[which], way),
+            Arrival::Rests(side) => Fate::Kind(self.kind(Kind::Rest(side)), way),
+            Arrival::Released(identity) => {
                 let (place, new) = self.release(identity);
                 self.put(item, Fate::Release(place, way));
                 let after = Some((place, item.after.map_or(way, |(_, before)| before.and(way))));
                 return new.then_some(Item { releases: item.releases + 1, after, repeats_from: 0, ..item });
             }
-            Arrival::Repeats { periods, .. } => {
-                return Some(Item { repeats_from: 2 * periods, ..item });
+            Arrival::Repeats { .. } => {
+                return Some(Item { repeats_from: 2 * pursued.periods?, ..item });
             }
             Arrival::Unsettled(summary) => match self.verdict(&summary, scope) {
                 Verdict::Lost => Fate::Lost { spent: matches!(summary.outcome, Outcome::StepBudget { .. }) },
@@ -257,15 +257,15 @@ impl Rounds {
 
     /// The fate of an item that was followed once more; `None` if its attractor is not among the known ones.
     pub fn known_fate(&self, item: &Item, pursued: &Pursued, scope: &Stroboscope) -> Option<Fate> {
-        let way = item.way(pursued.arrival.periods().unwrap_or(PATIENCE), pursued.crossings);
+        let way = item.way(pursued.periods.unwrap_or(PATIENCE), pursued.crossings);
         let kind = match &pursued.arrival {
-            Arrival::Captured { which, .. } => self.known_kind(&Kind::Orbit(self.orbit_of[*which])),
-            Arrival::Entered { which, .. } => Some(self.region_of[*which]),
-            Arrival::Rests { side, .. } => self.known_kind(&Kind::Rest(*side)),
+            Arrival::Captured(which) => self.known_kind(&Kind::Orbit(self.orbit_of[*which])),
+            Arrival::Entered(which) => Some(self.region_of[*which]),
+            Arrival::Rests(side) => self.known_kind(&Kind::Rest(*side)),
             Arrival::Unsettled(summary) => {
                 self.known_kind(&Kind::Judged(self.verdict(summary, scope), summary.clone()))
             }
-            Arrival::Released { identity, .. } => {
+            Arrival::Released(identity) => {
                 return self.known_release(*identity).map(|place| Fate::Release(place, way));
             }
             Arrival::Repeats { .. } => None,
@@ -381,7 +381,7 @@ fn round(
     let pursued = scope.pursue(&pursuits, &tick)?;
     let (mut next, mut proposals, mut unsettled) = (Vec::new(), Vec::new(), Vec::new());
     for (item, pursued) in items.into_iter().zip(pursued) {
-        if let Arrival::Repeats { period, state, .. } = pursued.arrival {
+        if let Arrival::Repeats { period, state } = pursued.arrival {
             proposals.push((period, state));
         }
         if let Arrival::Unsettled(end) = &pursued.arrival

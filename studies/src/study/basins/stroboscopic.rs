@@ -186,7 +186,7 @@ impl Effort {
             Arrival::Unsettled(summary) => summary.outcome.ended_at().map(|at| (at / period) as u64),
             _ => None,
         };
-        let periods = pursued.arrival.periods().or_else(ended).unwrap_or(pursuit.max_periods);
+        let periods = pursued.periods.or_else(ended).unwrap_or(pursuit.max_periods);
         self.done.fetch_add(pursued.work, Ordering::Relaxed);
         self.periods.fetch_add(periods, Ordering::Relaxed);
     }
@@ -225,8 +225,8 @@ mod tests {
             releases: 0,
             max_work: u64::MAX,
         };
-        let arrival = Arrival::Captured { which: 0, periods: 1000 };
-        let pursued = |work| Pursued { arrival: arrival.clone(), crossings: 0, work };
+        let arrival = Arrival::Captured(0);
+        let pursued = |work| Pursued { arrival: arrival.clone(), periods: Some(1000), crossings: 0, work };
         effort.add(&pursuit, &pursued(MAP_WORK), 1.0);
         // 2e7 units a period, and 2e9 are left
         assert!(effort.has_room_for(100) && !effort.has_room_for(101));

@@ -238,7 +238,7 @@ impl Corrector<'_> {
         if phase == self.phase {
             return Some(orbit.clone());
         }
-        let passage = self.map(value)?.pass_part(orbit.state, (phase - self.phase).rem_euclid(1.0));
+        let passage = self.map(value)?.pass_between(orbit.state, (0.0, (phase - self.phase).rem_euclid(1.0)));
         (passage.outcome == Outcome::Done).then(|| Orbit { state: MapState::from(&passage), ..orbit.clone() })
     }
 
@@ -272,7 +272,7 @@ impl Corrector<'_> {
         for _ in 0..self.periods {
             all.push(state.x);
             for part in QUARTERS {
-                all.push(done(map.pass_part(state, part))?.x);
+                all.push(done(map.pass_between(state, (0.0, part)))?.x);
             }
             state = done(map.pass(state, 1))?;
         }

@@ -1,8 +1,5 @@
-//! One step of all lanes.
-//!
-//! The event-free step is written three times: here, as the general step of a single motion (`step/choose.rs`
-//! with `run/flight.rs`), and as its fast path (`run/event_free.rs`). The three do the same arithmetic and
-//! must stay equal to the bit.
+//! One step of all lanes. It must stay equal to the bit with the two event-free steps of a single motion, see
+//! `run/event_free.rs`.
 
 use super::Columns;
 use super::landing::Arrivals;
