@@ -38,6 +38,11 @@ const MAX_LANES: usize = 16;
 const RUNS_PER_BLOCK: usize = 1024;
 
 impl Model {
+    /// [`run_together`](Self::run_together) without any lists; `until_settled` as in [`Request`].
+    pub fn run_all(models: &[Self], until_settled: Option<f64>, cancel: Option<&AtomicBool>) -> Vec<Run> {
+        Self::run_together(models, &Request { cancel, until_settled, ..Request::default() })
+    }
+
     /// Runs several models, with `request` for each, in as many lanes as the processor has. Returns in order
     /// what [`run`](Self::run) gives for each, bit for bit. The CPU time is shared evenly between the runs.
     /// With a ledger, events or samples, the models are run one by one.
