@@ -71,7 +71,7 @@ pub struct Arguments {
 }
 
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
-    let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
+    let picture = Picture::of_chart(&options.chart, common)?;
     let (document, warnings) = load(&options.scene, common)?;
     let request = Best {
         over: options.over.clone(),

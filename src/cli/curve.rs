@@ -95,7 +95,7 @@ const SHAPES: u32 = 21;
 
 /// Writes the curve as CSV and, if requested, the landscape as JSON and the shapes of the flexures as CSV.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
-    let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
+    let picture = Picture::of_chart(&options.chart, common)?;
     let plot = &options.chart.plot;
     let mut shapes_picture = Picture::of(Output::SHAPES_PLOT, options.shapes_plot.as_deref(), plot, common)?;
     let mut contact_picture =

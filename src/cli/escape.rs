@@ -48,7 +48,7 @@ pub struct Arguments {
 }
 
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
-    let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
+    let picture = Picture::of_chart(&options.chart, common)?;
     let (document, warnings, grid) = load_over(&options.scene, &options.over, common)?;
     if picture.is_some() {
         can_show_over_field(&grid, "escapes")?;

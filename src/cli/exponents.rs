@@ -46,7 +46,7 @@ pub struct Arguments {
 }
 
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
-    let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
+    let picture = Picture::of_chart(&options.chart, common)?;
     let periods = options.periods.unwrap_or(ExponentOptions::PERIODS);
     let until_settled = settle_limit(options.until_settled.as_deref())?;
     let settings = ExponentOptions { periods, until_settled, circuits: false };

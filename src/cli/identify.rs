@@ -90,7 +90,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let question = question(options, WhatToIdentify::named(of).unwrap_or(WhatToIdentify::Damping));
     question.check()?;
     let watch = Watch::start();
-    let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
+    let picture = Picture::of_chart(&options.chart, common)?;
     let record = [file.to_path_buf()];
     let mut outputs = Outputs::new(&record)
         .with_rows(Some(common.out()))?

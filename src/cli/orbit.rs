@@ -81,7 +81,7 @@ fn events() -> PossibleValuesParser {
 
 /// Finds the motion, or follows its branch or the loci from it, and writes the table.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
-    let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
+    let picture = Picture::of_chart(&options.chart, common)?;
     if picture.is_some() && options.branch.is_none() {
         refuse!("--plot shows a branch; add --branch FIELD=A:B, or leave it out");
     }

@@ -10,6 +10,7 @@ use interwell::questions::{Distance, Sampling, Simulation};
 use interwell_studies::study::{Keep, ended_remedy, yield_warning};
 
 use super::measured::MeasuredOptions;
+use super::picture::range_option;
 use super::support::{Watch, beside, inputs, load_simulation, number, numbers, settle_limit};
 use super::{ChartOptions, Common, Failure, Output, Outputs, Picture, caption, interrupt, refuse, say};
 
@@ -68,7 +69,7 @@ pub struct Arguments {
 }
 
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
-    let picture = Picture::of_chart(&options.chart, "--plot-time", common)?;
+    let picture = Picture::of_chart(&options.chart, common)?;
     let sampling = match (&options.at, &options.dt) {
         (Some(text), _) => Sampling::At(numbers("--at", text, ',')?),
         (None, Some(text)) => {
@@ -90,7 +91,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let window = picture.and_then(|picture| picture.ranges.x).or_else(|| span(&sampling));
     let longest = until_settled.unwrap_or(model.duration());
     if let Some((from, to)) = window.filter(|(from, to)| *from < 0.0 || *to > longest) {
-        refuse!("--plot-time {from}:{to}: the run lasts from 0 to {longest} s");
+        refuse!("{} {from}:{to}: the run lasts from 0 to {longest} s", range_option());
     }
     let record = options.measured.read(common)?;
     let inset = record.as_ref().and_then(|measured| measured.inset);

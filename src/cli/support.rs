@@ -142,7 +142,12 @@ pub fn load_simulation(spec: &str, common: &Common) -> Result<Simulation, Failur
 
 /// The simulation of a scene that is drawn beside another one, which no `--set` changes.
 pub fn beside(spec: &str) -> Result<Simulation, Failure> {
-    Ok(Simulation::build(Document::of_argument(spec)?, &interrupt::progress())?)
+    let document = Document::of_argument(spec).map_err(Error::Scene);
+    let built = document.and_then(|document| Simulation::build(document, &interrupt::progress()));
+    built.map_err(|error| match error {
+        Error::Scene(error) => Failure::argument(format!("--beside {error}")),
+        error => error.into(),
+    })
 }
 
 /// Checks a scene and builds its model; prints the warnings of both.

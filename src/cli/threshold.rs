@@ -131,7 +131,7 @@ impl Asked {
 }
 
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
-    let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
+    let picture = Picture::of_chart(&options.chart, common)?;
     let (document, warnings, grid) = load_over(&options.scene, &options.over, common)?;
     let (asked, Document { scene, name, .. }) = (Asked::new(options)?, &document);
     let (scan, onset) = (asked.scan(&document, &grid)?, asked.onset());

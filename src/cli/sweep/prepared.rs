@@ -120,7 +120,7 @@ impl<'a> Prepared<'a> {
     /// Loads the scene, checks the arguments and prints the warnings. An argument overrides a manifest that
     /// is given as the scene.
     pub fn new(options: &'a Arguments, common: &Common) -> Result<Self, Failure> {
-        let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
+        let picture = Picture::of_chart(&options.chart, common)?;
         // an unknown name is reported by `can_show`, with the names that exist
         let quantity = SummaryField::named(&options.quantity).map_or(&*options.quantity, |field| field.name);
         if options.check && !is_manifest(options.scene.as_ref()) {
