@@ -42,7 +42,7 @@ pub fn sweep(
     let (shown, grid, about, table) = work(py, &Way { threads, progress }, |progress| {
         let shown = question.nominal(&scene.inner, progress)?;
         let grid = shown.grid(&question.over)?;
-        let cells = question.cells(shown.document(), grid.clone(), None, progress)?;
+        let cells = question.cells(shown.document(), grid.clone(), &[], progress)?;
         let about = cells.sweep.options().draws.about();
         let table = question.run(&shown, progress)?;
         Ok((shown, grid, about, table))

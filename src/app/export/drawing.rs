@@ -15,7 +15,7 @@ use crate::output::{
     Caption, Chart, Figure, Overlay, Ranges, RunPanel, SpectrumQuantity, SweepPicture, Theme, View,
     basins_chart, can_show, compared_name, comparison_chart, comparison_title, curve_chart, distance_chart,
     measured_chart, measured_force_chart, mechanism_chart, run_chart, scene_accuracy_chart, section_chart,
-    spectrum_chart, sweep_chart,
+    shown_columns, spectrum_chart, sweep_chart,
 };
 use crate::questions::{
     Accuracy, Basins, Carry, Compare, Curve, Distance, EvenRange, Grid, Progress, Scheme, Section,
@@ -155,7 +155,9 @@ impl Drawing<'_> {
     fn sweep(&self, subject: &Subject, quantity: &str, view: View) -> Result<Chart> {
         let (scene, carry) = (&self.document.scene, subject.is_walked().then_some(Carry::Both));
         let question = Sweep { carry, ..Sweep::default() };
-        let cells = question.cells(&self.document, self.grid(subject)?, Some(quantity), &self.progress)?;
+        let grid = self.grid(subject)?;
+        let shown = shown_columns(quantity, &view, &grid);
+        let cells = question.cells(&self.document, grid, &shown, &self.progress)?;
         let (sweep, grid) = (&cells.sweep, cells.sweep.grid());
         can_show(grid, quantity, &view, &sweep.empty_table())?;
         let rows = cells.rows(&self.document, &self.progress)?;

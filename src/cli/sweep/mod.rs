@@ -30,7 +30,12 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let Some((mut rows_out, mut all)) = opened else { return prepared.has_all_rows(common) };
     let from = all.cells;
     if let (Rows::Blocks(blocks), Some(_), 1..) = (&rows_out, picture, from) {
-        job.shown = blocks.table(&sweep.empty_table())?;
+        job.shown = blocks.table(&sweep.empty_table().only(&prepared.columns))?;
+        let lacking = prepared.lacking_columns().join(" and ");
+        if !lacking.is_empty() {
+            let lost = "the picture has no dots where motions may be transients";
+            common.say(&format!("warning: {lost}: the rows that were there have no {lacking}"));
+        }
     }
     let result = job.run(sweep, slice, from, "cells", |outputs, table, tally| {
         rows_out.put(outputs, rows(&table.only(&prepared.columns), 0..usize::MAX), tally)

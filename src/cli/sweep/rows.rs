@@ -3,7 +3,7 @@
 use std::io::{BufReader, Read};
 use std::path::Path;
 
-use interwell::output::{csv_table, manifest_path, plan_differences};
+use interwell::output::{csv_table, manifest_path, plan_differences, shown_columns};
 use interwell::questions::Table;
 use interwell::system::checksum::file_checksum;
 use interwell::system::clock::WallClock;
@@ -117,9 +117,10 @@ impl Prepared<'_> {
                 format!("{left}: go on with --resume, or start anew with --force")
             }
             Some(existing) if existing != head => is_of_another(part, &existing, "begun"),
-            Some(_) if let Some(column) = self.lacking_column() => format!(
-                "--resume: the rows in {part} have no column {column}, which --plot needs: leave --plot out, \
-                 or start anew with --force and --columns all"
+            Some(_) if self.lacking_columns().contains(&self.quantity) => format!(
+                "--resume: the rows in {part} have no column {}, which --plot needs: leave --plot out, \
+                 or start anew with --force and --columns all",
+                self.quantity
             ),
             Some(_) => {
                 let (part, blocks) = opened.resume(force).map_err(refused)?;
@@ -138,13 +139,11 @@ impl Prepared<'_> {
         Blocks { part, rows, unit, block: Tally::default(), clock: WallClock::start() }
     }
 
-    /// A column that a picture needs and the rows do not have.
-    fn lacking_column(&self) -> Option<String> {
-        self.picture?;
-        let table = self.sweep.empty_table();
-        let needed = table.columns().iter().map(|column| column.name.as_str());
-        let mut needed = std::iter::once(self.quantity).chain(needed);
-        needed.find(|name| !self.columns.iter().any(|column| column == name)).map(str::to_owned)
+    /// The columns that a picture shows and the rows do not have.
+    pub fn lacking_columns(&self) -> Vec<&str> {
+        let shown = |_| shown_columns(self.quantity, &self.view, self.sweep.grid());
+        let shown = self.picture.map_or_else(Vec::new, shown);
+        shown.into_iter().filter(|name| !self.columns.iter().any(|column| column == name)).collect()
     }
 
     /// The manifest of the file, if both exist.

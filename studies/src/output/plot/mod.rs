@@ -71,6 +71,7 @@ pub use figure::{Area, Figure, Shape, Text};
 pub use font::{HACK, INTER, width as text_width};
 pub use frame::Frame;
 pub use ledger::{LedgerTerm, ledger_bars, ledger_decimals, ledger_number, share_of_work};
+pub use map::shown_columns;
 pub use mark::Caption;
 pub use mechanism::mechanism_chart;
 pub use names::{
