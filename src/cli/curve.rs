@@ -3,10 +3,10 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use interwell::dynamics::Model;
+use interwell::dynamics::{Model, STANDARD_GRAVITY};
 use interwell::numeric::extent;
 use interwell::output::{
-    contact_chart, curve_chart, landscape, measured_force_chart, mechanism_chart, shapes_chart,
+    contact_chart, curve_chart, landscape, measured_force_chart, mechanism_chart, shapes_chart, well_chart,
 };
 use interwell::questions::{Curve, Error, Simulation};
 use interwell_studies::study::{
@@ -14,8 +14,8 @@ use interwell_studies::study::{
 };
 
 use super::measured::MeasuredForceOptions;
-use super::support::{beside, inputs, load_with_mechanism, number, numbers, range};
-use super::{ChartOptions, Common, Failure, Output, Outputs, Picture, caption, interrupt, whole};
+use super::support::{beside, finite, inputs, load_with_mechanism, number, numbers, range};
+use super::{ChartOptions, Common, Failure, Output, Outputs, Picture, caption, interrupt, refuse, whole};
 
 #[derive(Debug, Args)]
 pub struct Arguments {
@@ -63,6 +63,15 @@ pub struct Arguments {
     #[arg(long, value_name = "FILE", allow_hyphen_values = true, group = "picture")]
     pub mechanism_plot: Option<PathBuf>,
 
+    /// With --well-plot: the acceleration of the base in g [default: the largest of the excitation]
+    #[arg(long, value_name = "G", allow_hyphen_values = true, requires = "well_plot")]
+    pub base_accel_g: Option<String>,
+
+    /// Draw the potential, tipped by the push of an accelerated base, and the mass on it, at the first of the
+    /// positions that are named, else where a run starts; the name ends in .png, .svg or .pdf
+    #[arg(long, value_name = "FILE", allow_hyphen_values = true, group = "picture")]
+    pub well_plot: Option<PathBuf>,
+
     /// Of a compliant stop: write the effect of one impact over the impact speed as CSV, speed_m_per_s,
     /// restitution, rigid_restitution, contact_time_s, depth_m, peak_force_n, peak_pressure_pa, in closed
     /// form
@@ -93,23 +102,48 @@ pub struct Arguments {
 /// Default number of positions at which the flexures are drawn; each gives some hundred rows.
 const SHAPES: u32 = 21;
 
+/// The pictures that are asked for.
+struct Pictures<'a> {
+    curve: Option<Picture<'a>>,
+    shapes: Option<Picture<'a>>,
+    mechanism: Option<Picture<'a>>,
+    well: Option<Picture<'a>>,
+    contact: Option<Picture<'a>>,
+}
+
+impl<'a> Pictures<'a> {
+    fn new(options: &'a Arguments, common: &Common) -> Result<Self, Failure> {
+        let of = |output: Output, path: &'a Option<PathBuf>| {
+            Picture::of(output, path.as_deref(), &options.chart.plot, common)
+        };
+        let mut all = Self {
+            curve: Picture::of_chart(&options.chart, common)?,
+            shapes: of(Output::SHAPES_PLOT, &options.shapes_plot)?,
+            mechanism: of(Output::MECHANISM_PLOT, &options.mechanism_plot)?,
+            well: of(Output::WELL_PLOT, &options.well_plot)?,
+            contact: of(Output::CONTACT_PLOT, &options.contact_plot)?,
+        };
+        // --plot-data holds the numbers of the first of them
+        let Self { curve, shapes, mechanism, well, contact } = &mut all;
+        let pictures = [curve, shapes, mechanism, well, contact].into_iter().flatten();
+        pictures.skip(1).for_each(|picture| picture.data = None);
+        Ok(all)
+    }
+
+    fn open(&self, outputs: Outputs) -> Result<Outputs, Failure> {
+        let Self { curve, shapes, mechanism, well, contact } = *self;
+        let mut all = [curve, shapes, mechanism, well, contact].into_iter();
+        all.try_fold(outputs, Outputs::with_picture)
+    }
+}
+
 /// Writes the curve as CSV and, if requested, the landscape as JSON and the shapes of the flexures as CSV.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
-    let picture = Picture::of_chart(&options.chart, common)?;
-    let plot = &options.chart.plot;
-    let mut shapes_picture = Picture::of(Output::SHAPES_PLOT, options.shapes_plot.as_deref(), plot, common)?;
-    let mut contact_picture =
-        Picture::of(Output::CONTACT_PLOT, options.contact_plot.as_deref(), plot, common)?;
-    let mechanism_path = options.mechanism_plot.as_deref();
-    let mut mechanism_picture = Picture::of(Output::MECHANISM_PLOT, mechanism_path, plot, common)?;
-    // with several pictures, --plot-data holds the numbers of the first of them
-    let mut has_data = picture.is_some();
-    for another in [&mut shapes_picture, &mut mechanism_picture, &mut contact_picture].into_iter().flatten() {
-        another.data = another.data.filter(|_| !has_data);
-        has_data = true;
-    }
+    let pictures = Pictures::new(options, common)?;
     let remedy = "give a coefficient of restitution, 0 to 1, such as 0.36";
     let rigid = number("--rigid", &options.rigid, |value: &f64| (0.0..=1.0).contains(value), remedy)?;
+    let accel = |text| finite("--base-accel-g", text, "give an acceleration in g, such as 0.8 or -0.8");
+    let accel = options.base_accel_g.as_deref().map(accel).transpose()?;
     let (document, mechanism) = load_with_mechanism(&options.scene, common)?;
     let range = |text| range("--range-mm", text, "A:B in mm with A below B, such as -8:8");
     let range = options.range_mm.as_deref().map(range).transpose()?;
@@ -119,6 +153,14 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     };
     let listed = options.at_mm.as_deref().map(|text| numbers("--at-mm", text, ',')).transpose()?;
     let listed: Option<Vec<f64>> = listed.map(|mm| mm.into_iter().map(metres).collect());
+    if let (Some([_, _, _, ..]), Some(text), Some(other)) =
+        (listed.as_deref(), &options.at_mm, &options.beside)
+    {
+        refuse!(
+            "--at-mm {text}: with --beside {other} two masses are drawn, at two positions: give two, or leave \
+             --beside out"
+        );
+    }
     let positions = |points: u32| match &listed {
         Some(listed) => listed.clone(),
         None => even(options.points.unwrap_or(points) as usize),
@@ -146,12 +188,12 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let of_flexures = [
         options.full.then_some("--full"),
         options.shapes.is_some().then_some("--shapes"),
-        shapes_picture.is_some().then_some("--shapes-plot"),
+        pictures.shapes.is_some().then_some("--shapes-plot"),
     ];
     // a mechanism without flexures is refused before files are opened
     of_flexures.into_iter().flatten().try_for_each(|option| flexures(Vec::new(), option).map(drop))?;
     let contact_output = options.contact.as_ref().map(|_| Output::CONTACT);
-    let contact_output = contact_output.or(contact_picture.map(|picture| picture.output));
+    let contact_output = contact_output.or(pictures.contact.map(|picture| picture.output));
     let impact = |output: Output| {
         let simulation = Simulation::new(&document)?;
         let wrong = |error: Error| Failure::argument(format!("{}: {}", output.option(), error.message()));
@@ -162,16 +204,13 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     read.extend(options.measured.measured.clone());
     let other = options.beside.as_deref().map(beside).transpose()?;
     read.extend(options.beside.iter().zip(&other).flat_map(|(spec, other)| inputs(spec, other.document())));
-    let mut outputs = Outputs::new(&read)
+    let outputs = Outputs::new(&read)
         .with_rows(Some(common.out()))?
         .with(Output::LANDSCAPE, options.landscape.as_deref())?
         .with(Output::SHAPES, options.shapes.as_deref())?
-        .with(Output::CONTACT, options.contact.as_deref())?
-        .with_picture(picture)?
-        .with_picture(shapes_picture)?
-        .with_picture(mechanism_picture)?
-        .with_picture(contact_picture)?
-        .with(Output::COMPARISON, options.measured.comparison.as_deref())?;
+        .with(Output::CONTACT, options.contact.as_deref())?;
+    let mut outputs =
+        pictures.open(outputs)?.with(Output::COMPARISON, options.measured.comparison.as_deref())?;
     let measured = options.measured.compare(&document, &mechanism, common)?;
     if let Some(found) = &measured {
         outputs.table(Output::COMPARISON, &found.table)?;
@@ -187,7 +226,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     outputs.write(Output::LANDSCAPE, landscape(&mechanism, document.scene.mass_g / 1e3))?;
     // The picture shows the whole curve, even if few positions were requested.
     let stops = stop_positions(&document.scene);
-    outputs.draw(picture, &document, |ranges| match &measured {
+    outputs.draw(pictures.curve, &document, |ranges| match &measured {
         Some(found) => {
             let range = extent(found.positions.iter().copied());
             let table = Curve::drawn(Some(range), &document, &mechanism).map_err(told)?;
@@ -201,16 +240,16 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     if outputs.has(Output::SHAPES) {
         outputs.table(Output::SHAPES, &flexures(positions(SHAPES), "--shapes")?.shapes())?;
     }
-    outputs.draw(shapes_picture, &document, |_| {
+    outputs.draw(pictures.shapes, &document, |_| {
         let is_named = listed.is_some() || options.points.is_some() || range.is_some();
         let equilibria = || mechanism.landscape.equilibria.iter().map(|equilibrium| equilibrium.x).collect();
         let at = if is_named { positions(SHAPES) } else { equilibria() };
         Ok(shapes_chart(&flexures(at, "--shapes-plot")?.states, &mechanism, stops))
     })?;
-    if let Some(picture) = mechanism_picture {
+    let named = |place: usize| listed.as_ref().and_then(|at| at.get(place)).copied();
+    if let Some(picture) = pictures.mechanism {
         let simulation = Simulation::new(&document)?;
         let models = [Some(&simulation), other.as_ref()].into_iter().flatten().map(Simulation::model);
-        let named = |place: usize| listed.as_ref().and_then(|at| at.get(place)).copied();
         let at = |(place, model): (usize, _)| (model, named(place).unwrap_or(Model::start(model).0));
         let chart = mechanism_chart(&models.enumerate().map(at).collect::<Vec<_>>()).map_err(|problem| {
             Failure::argument(format!("--mechanism-plot: {}: {problem}", document.name))
@@ -218,11 +257,18 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         let caption = caption(&document).with_others(other.iter().map(Simulation::document));
         picture.write(&mut outputs, &chart, &caption)?;
     }
+    outputs.draw(pictures.well, &document, |_| {
+        let simulation = Simulation::new(&document)?;
+        let (model, ends) = (simulation.model(), even(2));
+        let largest = if model.is_shaken() { model.largest_base_acceleration() } else { 0.0 };
+        let accel = accel.map_or(largest, |accel| accel * STANDARD_GRAVITY);
+        Ok(well_chart(model, named(0).unwrap_or(model.start().0), accel, (ends[0], ends[1])))
+    })?;
     if let Some((table, simulation)) = &impacts {
         let model = simulation.model();
         outputs.table(Output::CONTACT, table)?;
         if let Some(stop) = model.compliant() {
-            outputs.draw(contact_picture, &document, |_| Ok(contact_chart(table, &stop, model.mass())))?;
+            outputs.draw(pictures.contact, &document, |_| Ok(contact_chart(table, &stop, model.mass())))?;
         }
     }
     outputs.finish_rows(&document, 1)

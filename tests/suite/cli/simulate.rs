@@ -63,6 +63,8 @@ fn the_distance_of_two_runs_is_drawn_and_the_rows_stay_those_of_the_first() {
         headless(&format!("curve paper --beside {} --mechanism-plot {}", wrong.display(), plot.display())),
         &[&name],
     );
+    let three = "curve paper --at-mm 1,2,3 --beside magnet --out /dev/null --mechanism-plot";
+    refused(headless(&format!("{three} {}", plot.display())), &["--at-mm 1,2,3: ", "--beside magnet", "two"]);
 }
 
 #[test]

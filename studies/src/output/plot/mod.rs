@@ -51,6 +51,7 @@ mod sweep;
 mod swept;
 mod thinned;
 mod threshold;
+mod well;
 
 use std::path::Path;
 
@@ -97,6 +98,7 @@ pub use surface::SurfaceFrame;
 pub use sweep::{MAX_PICTURE_CELLS, NoPicture, can_show, sweep_about, sweep_chart};
 pub use swept::{Cut, Overlay, SweepPicture, View};
 pub use threshold::{can_show_thresholds, threshold_chart};
+pub use well::{TippedPotential, well_chart, well_panel};
 
 words! {
     /// A kind of file that holds a picture.
