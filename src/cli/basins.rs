@@ -9,7 +9,7 @@ use interwell::questions::{Basins, BasinsAnswer, EvenRange};
 use interwell_studies::study;
 
 use super::progress::duration;
-use super::support::{Watch, counted, load_with_mechanism, numbers, outputs};
+use super::support::{counted, load_with_mechanism, numbers, outputs};
 use super::{Common, Failure, Output, Outputs, Picture, PlotOptions, ask, interrupt, refuse, say};
 
 const EXAMPLES: &str = "\
@@ -62,7 +62,6 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let mut outputs = outputs(&options.scene, &document, common)?
         .with_picture(picture)?
         .with(Output::ATTRACTORS, options.attractors.as_deref())?;
-    outputs.watch = Watch::start();
     if !common.quiet {
         forecast(&basins).iter().for_each(|line| say(line));
     }

@@ -11,7 +11,7 @@ use interwell_studies::study::{Keep, ended_remedy, yield_warning};
 
 use super::measured::MeasuredOptions;
 use super::picture::range_option;
-use super::support::{Watch, beside, inputs, load_simulation, number, numbers, settle_limit};
+use super::support::{beside, inputs, load_simulation, number, numbers, settle_limit};
 use super::{ChartOptions, Common, Failure, Output, Outputs, Picture, caption, interrupt, refuse, say};
 
 #[derive(Debug, Args)]
@@ -111,7 +111,6 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         .with(Output::SUMMARY, options.summary.as_deref())?
         .with_picture(picture)?
         .with(Output::COMPARISON, options.measured.comparison.as_deref())?;
-    let watch = Watch::start();
     let progress = interrupt::progress();
     let (run, trace) = match picture.filter(|_| others.is_empty()) {
         None => (simulation.kept(&keep, &progress)?, None),
@@ -123,7 +122,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let compared = record.as_ref().map(|measured| measured.compare(&simulation)).transpose()?;
     outputs.table(Output::DATA, &run.samples)?;
     outputs.table(Output::EVENTS, &run.events)?;
-    outputs.write(Output::SUMMARY, summary(&run.summary, &document.scene, &watch.origin(1)))?;
+    outputs.write(Output::SUMMARY, summary(&run.summary, &document.scene, &outputs.watch.origin(1)))?;
     let compared = record.as_ref().zip(compared.as_ref());
     if let Some(trace) = trace {
         let of = (&**model.mechanism(), model.mass());

@@ -89,17 +89,18 @@ impl Prepared<'_> {
                 plan_differences(&plan_with_shard(existing), &plan_with_shard(&head))
             )
         };
-        if resume && !opened.has_rows() && self.is_whole(&head) {
-            opened.leave();
-            return Ok(None);
-        }
         if resume
-            && !force
             && !opened.has_rows()
-            && let Some(existing) = self.existing_head().filter(|existing| *existing != head)
+            && let Some((existing, sha256)) = self.existing()
         {
-            opened.leave();
-            refuse!("{}", is_of_another(out.display().to_string(), &existing, "made"));
+            if existing == head && sha256 == file_checksum(out).ok() {
+                opened.leave();
+                return Ok(None);
+            }
+            if existing != head && !force {
+                opened.leave();
+                refuse!("{}", is_of_another(out.display().to_string(), &existing, "made"));
+            }
         }
         if !opened.has_rows() || (force && !resume) {
             let part = opened.begin(&head.to_string(), header).map_err(refused)?;
@@ -146,23 +147,13 @@ impl Prepared<'_> {
         shown.into_iter().filter(|name| !self.columns.iter().any(|column| column == name)).collect()
     }
 
-    /// The manifest of the file, if both exist.
-    fn manifest(&self) -> Option<Value> {
-        let text = files::bytes(&manifest_path(&self.out)).ok().filter(|_| files::exists(&self.out));
-        text.and_then(|text| serde_json::from_slice::<Value>(&text).ok())
-    }
-
-    /// The plan and the shard of the sweep in the file, from its manifest.
-    fn existing_head(&self) -> Option<Value> {
-        let manifest = self.manifest()?;
-        manifest["plan"].is_object().then(|| json!({ "plan": manifest["plan"], "shard": manifest["shard"] }))
-    }
-
-    /// Whether the file has all rows of the sweep with this head, according to its manifest and checksum.
-    fn is_whole(&self, head: &Value) -> bool {
-        let is_intact =
-            |manifest: Value| manifest["sha256"].as_str() == file_checksum(&self.out).ok().as_deref();
-        self.existing_head().as_ref() == Some(head) && self.manifest().is_some_and(is_intact)
+    /// The plan and the shard of the sweep in the file, and the checksum that it should have, from its manifest.
+    fn existing(&self) -> Option<(Value, Option<String>)> {
+        let text = files::bytes(&manifest_path(&self.out)).ok().filter(|_| files::exists(&self.out))?;
+        let manifest: Value =
+            serde_json::from_slice(&text).ok().filter(|all: &Value| all["plan"].is_object())?;
+        let sha256 = manifest["sha256"].as_str().map(str::to_owned);
+        Some((json!({ "plan": manifest["plan"], "shard": manifest["shard"] }), sha256))
     }
 }
 

@@ -83,7 +83,6 @@ pub use over_time::OverTime;
 pub use page::Room;
 pub use png::PaintError;
 pub use portrait::portrait_panel;
-pub use projection::Projection;
 pub use quantity::{RMS, quantities, suited_unit, words_of};
 pub use record::{identified_chart, measured_chart, measured_force_chart};
 pub use role::{Look, Role};
