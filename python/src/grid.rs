@@ -1,7 +1,7 @@
 //! Questions that can be asked for every cell of a grid.
 
 use interwell_studies::output::{
-    Overlay, SweepPicture, View, escape_chart, exponents_chart, section_chart, sweep_chart, threshold_chart,
+    Overlay, SweepPicture, escape_chart, exponents_chart, section_chart, sweep_chart, threshold_chart,
 };
 use interwell_studies::questions::{
     Carry, Error, Escape, ExponentOptions, Exponents, Grid, Onset, ProbableThreshold, Section, SectionAt,
@@ -55,9 +55,8 @@ pub fn sweep(
             None => Overlay::of(scene, mechanism, &grid, rows),
         };
         let quantity = asked.quantity.as_deref().unwrap_or("rms_velocity_m_per_s");
-        let (grid, view, ranges) = (&grid, View::Top, asked.ranges);
-        let picture =
-            SweepPicture { rows, grid, scene, until_settled, quantity, overlay, view, ranges, draws: &about };
+        let picture = SweepPicture::of(rows, &grid, scene, quantity);
+        let picture = SweepPicture { until_settled, overlay, ranges: asked.ranges, draws: &about, ..picture };
         sweep_chart(&picture).map_err(|problem| problem.to_string())
     }))
 }

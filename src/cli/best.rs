@@ -64,8 +64,6 @@ pub struct Arguments {
     #[arg(long, value_name = "SEED", default_value_t = 1)]
     pub seed: u64,
 
-    /// The picture: over one field the values that were tried, over two a map of the scan, over more the
-    /// values in the order in which they were tried.
     #[command(flatten)]
     pub chart: ChartOptions,
 }

@@ -14,7 +14,7 @@ use interwell_studies::study::{
 };
 
 use super::measured::MeasuredForceOptions;
-use super::support::{beside, finite, inputs, load_with_mechanism, number, numbers, range};
+use super::support::{beside, if_given, inputs, load_with_mechanism, number, numbers, range};
 use super::{ChartOptions, Common, Failure, Output, Outputs, Picture, caption, interrupt, refuse, whole};
 
 #[derive(Debug, Args)]
@@ -91,7 +91,6 @@ pub struct Arguments {
     #[arg(long, value_name = "FILE", allow_hyphen_values = true)]
     pub landscape: Option<PathBuf>,
 
-    /// A measured force to compare with.
     #[command(flatten)]
     pub measured: MeasuredForceOptions,
 
@@ -142,8 +141,8 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let pictures = Pictures::new(options, common)?;
     let remedy = "give a coefficient of restitution, 0 to 1, such as 0.36";
     let rigid = number("--rigid", &options.rigid, |value: &f64| (0.0..=1.0).contains(value), remedy)?;
-    let accel = |text| finite("--base-accel-g", text, "give an acceleration in g, such as 0.8 or -0.8");
-    let accel = options.base_accel_g.as_deref().map(accel).transpose()?;
+    let remedy = "give an acceleration in g, such as 0.8 or -0.8";
+    let accel = if_given("--base-accel-g", options.base_accel_g.as_deref(), remedy)?;
     let (document, mechanism) = load_with_mechanism(&options.scene, common)?;
     let range = |text| range("--range-mm", text, "A:B in mm with A below B, such as -8:8");
     let range = options.range_mm.as_deref().map(range).transpose()?;

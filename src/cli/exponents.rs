@@ -40,7 +40,6 @@ pub struct Arguments {
     #[arg(long, value_name = "MAX_S", allow_hyphen_values = true)]
     pub until_settled: Option<String>,
 
-    /// The picture, with --over one field: the exponents, each with its standard error.
     #[command(flatten)]
     pub chart: ChartOptions,
 }

@@ -60,7 +60,6 @@ pub struct Arguments {
           conflicts_with_all = ["measured", "panels", "plot_y"])]
     pub beside: Vec<String>,
 
-    /// A measured motion to compare with.
     #[command(flatten)]
     pub measured: MeasuredOptions,
 

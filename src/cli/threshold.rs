@@ -7,7 +7,7 @@ use interwell::questions::{Error, Escape, Grid, Onset, ProbableThreshold, Progre
 use interwell::scene::Document;
 use interwell_studies::study::{Chance, Scan, can_cross};
 
-use super::support::{finite, load_over, mechanism_of_all, outputs, settle_limit};
+use super::support::{if_given, load_over, mechanism_of_all, outputs, settle_limit};
 use super::{ChartOptions, Common, Failure, Output, Picture, ask, whole};
 
 const EXAMPLES: &str = "\
@@ -75,8 +75,6 @@ pub struct Arguments {
     #[arg(long, value_name = "FIELD=FROM:TO:STEP|a,b,c", allow_hyphen_values = true)]
     pub over: Vec<String>,
 
-    /// The picture: over one field of --over a line, over two a line for each value of the one that has few,
-    /// or a map.
     #[command(flatten)]
     pub chart: ChartOptions,
 }
@@ -89,13 +87,11 @@ enum Asked {
 
 impl Asked {
     fn new(options: &Arguments) -> Result<Self, Failure> {
-        let number = |option: &str, text: &Option<String>, remedy: &str| {
-            text.as_deref().map(|text| finite(option, text, remedy)).transpose()
-        };
         let remedy = "give a number above 0, in the unit of the field";
-        let resolution = number("--resolution", &options.resolution, remedy)?;
-        let probability = number("--probability", &options.probability, "give a share, such as 0.5")?;
-        let within = number("--within", &options.within, "give a time in s, such as 100")?;
+        let resolution = if_given("--resolution", options.resolution.as_deref(), remedy)?;
+        let probability = options.probability.as_deref();
+        let probability = if_given("--probability", probability, "give a share, such as 0.5")?;
+        let within = if_given("--within", options.within.as_deref(), "give a time in s, such as 100")?;
         let (field, over) = (options.field.clone(), Vec::new());
         let Some(probability) = probability else {
             let of = Onset::named(&options.of).unwrap_or(Onset::Crossing);

@@ -174,17 +174,7 @@ impl Drawing<'_> {
             Some(_) => Overlay::default(),
             None => Overlay::of(scene, sweep.first_mechanism().ok().as_deref(), grid, &rows),
         };
-        Ok(sweep_chart(&SweepPicture {
-            rows: &rows,
-            grid,
-            scene,
-            until_settled: None,
-            quantity,
-            overlay,
-            view,
-            ranges: Ranges::default(),
-            draws: "",
-        })?)
+        Ok(sweep_chart(&SweepPicture { overlay, view, ..SweepPicture::of(&rows, grid, scene, quantity) })?)
     }
 
     fn diagram(&self, subject: &Subject) -> Result<Chart> {

@@ -1,6 +1,6 @@
 //! Pictures of sweeps: rest, missing values and categories, in all of them by the same words.
 
-use interwell::output::{Cut, Marks, NoPicture, Overlay, Ranges, SweepPicture, View, sweep_chart};
+use interwell::output::{Cut, Marks, NoPicture, SweepPicture, View, sweep_chart};
 use interwell::scene::Scene;
 use interwell_studies::study::{Grid, Table};
 
@@ -17,17 +17,7 @@ fn has(texts: &[String], words: &str) -> bool {
 
 /// The picture of the RMS velocity of a sweep of a scene.
 fn picture<'a>(rows: &'a Table, grid: &'a Grid, scene: &'a Scene, view: View) -> SweepPicture<'a> {
-    SweepPicture {
-        rows,
-        grid,
-        scene,
-        until_settled: None,
-        quantity: "rms_velocity_m_per_s",
-        overlay: Overlay::default(),
-        view,
-        ranges: Ranges::default(),
-        draws: "",
-    }
+    SweepPicture { view, ..SweepPicture::of(rows, grid, scene, "rms_velocity_m_per_s") }
 }
 
 #[test]

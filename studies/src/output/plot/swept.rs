@@ -77,6 +77,14 @@ pub struct SweepPicture<'a> {
     pub draws: &'a str,
 }
 
+impl<'a> SweepPicture<'a> {
+    /// The quantity of these rows from above, without lines over a map, over all values of the fields.
+    pub fn of(rows: &'a Table, grid: &'a Grid, scene: &'a Scene, quantity: &'a str) -> Self {
+        let (overlay, view, ranges) = Default::default();
+        Self { rows, grid, scene, until_settled: None, quantity, overlay, view, ranges, draws: "" }
+    }
+}
+
 /// The cells with the quantity and their words, if their fields lie in `ranges`.
 pub(super) fn drawn(picture: &SweepPicture, ranges: &[(&str, Option<(f64, f64)>)]) -> Drawn {
     let SweepPicture { rows, grid, quantity, .. } = picture;
