@@ -101,44 +101,26 @@ pub struct Arguments {
 /// Default number of positions at which the flexures are drawn; each gives some hundred rows.
 const SHAPES: u32 = 21;
 
-/// The pictures that are asked for.
-struct Pictures<'a> {
-    curve: Option<Picture<'a>>,
-    shapes: Option<Picture<'a>>,
-    mechanism: Option<Picture<'a>>,
-    well: Option<Picture<'a>>,
-    contact: Option<Picture<'a>>,
-}
-
-impl<'a> Pictures<'a> {
-    fn new(options: &'a Arguments, common: &Common) -> Result<Self, Failure> {
-        let of = |output: Output, path: &'a Option<PathBuf>| {
-            Picture::of(output, path.as_deref(), &options.chart.plot, common)
-        };
-        let mut all = Self {
-            curve: Picture::of_chart(&options.chart, common)?,
-            shapes: of(Output::SHAPES_PLOT, &options.shapes_plot)?,
-            mechanism: of(Output::MECHANISM_PLOT, &options.mechanism_plot)?,
-            well: of(Output::WELL_PLOT, &options.well_plot)?,
-            contact: of(Output::CONTACT_PLOT, &options.contact_plot)?,
-        };
-        // --plot-data holds the numbers of the first of them
-        let Self { curve, shapes, mechanism, well, contact } = &mut all;
-        let pictures = [curve, shapes, mechanism, well, contact].into_iter().flatten();
-        pictures.skip(1).for_each(|picture| picture.data = None);
-        Ok(all)
-    }
-
-    fn open(&self, outputs: Outputs) -> Result<Outputs, Failure> {
-        let Self { curve, shapes, mechanism, well, contact } = *self;
-        let mut all = [curve, shapes, mechanism, well, contact].into_iter();
-        all.try_fold(outputs, Outputs::with_picture)
-    }
+/// The pictures that are asked for: of the curve, the shapes, the mechanism, the well and the contact.
+fn pictures<'a>(options: &'a Arguments, common: &Common) -> Result<[Option<Picture<'a>>; 5], Failure> {
+    let of =
+        |output, path: &'a Option<PathBuf>| Picture::of(output, path.as_deref(), &options.chart.plot, common);
+    let mut all = [
+        Picture::of_chart(&options.chart, common)?,
+        of(Output::SHAPES_PLOT, &options.shapes_plot)?,
+        of(Output::MECHANISM_PLOT, &options.mechanism_plot)?,
+        of(Output::WELL_PLOT, &options.well_plot)?,
+        of(Output::CONTACT_PLOT, &options.contact_plot)?,
+    ];
+    // --plot-data holds the numbers of the first of them
+    all.iter_mut().flatten().skip(1).for_each(|picture| picture.data = None);
+    Ok(all)
 }
 
 /// Writes the curve as CSV and, if requested, the landscape as JSON and the shapes of the flexures as CSV.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
-    let pictures = Pictures::new(options, common)?;
+    let pictures = pictures(options, common)?;
+    let [of_curve, of_shapes, of_mechanism, of_well, of_contact] = pictures;
     let remedy = "give a coefficient of restitution, 0 to 1, such as 0.36";
     let rigid = number("--rigid", &options.rigid, |value: &f64| (0.0..=1.0).contains(value), remedy)?;
     let remedy = "give an acceleration in g, such as 0.8 or -0.8";
@@ -164,14 +146,13 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         Some(listed) => listed.clone(),
         None => even(options.points.unwrap_or(points) as usize),
     };
-    let told = |error: Error| match (error, &options.at_mm, &options.range_mm) {
-        (Error::Argument { problem, .. }, Some(text), _) => {
-            Failure::argument(format!("--at-mm {text}: {problem}"))
+    let given = options.at_mm.as_ref().map(|text| ("--at-mm", text));
+    let given = given.or(options.range_mm.as_ref().map(|text| ("--range-mm", text)));
+    let told = |error: Error| match (error, given) {
+        (Error::Argument { problem, .. }, Some((option, text))) => {
+            Failure::argument(format!("{option} {text}: {problem}"))
         }
-        (Error::Argument { problem, .. }, _, Some(text)) => {
-            Failure::argument(format!("--range-mm {text}: {problem}"))
-        }
-        (error, ..) => error.into(),
+        (error, _) => error.into(),
     };
     let curve = |positions: Vec<f64>| {
         Curve { positions: Some(positions) }.of_mechanism(&document, &mechanism).map_err(told)
@@ -187,18 +168,19 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let of_flexures = [
         options.full.then_some("--full"),
         options.shapes.is_some().then_some("--shapes"),
-        pictures.shapes.is_some().then_some("--shapes-plot"),
+        of_shapes.is_some().then_some("--shapes-plot"),
     ];
     // a mechanism without flexures is refused before files are opened
     of_flexures.into_iter().flatten().try_for_each(|option| flexures(Vec::new(), option).map(drop))?;
     let contact_output = options.contact.as_ref().map(|_| Output::CONTACT);
-    let contact_output = contact_output.or(pictures.contact.map(|picture| picture.output));
-    let impact = |output: Output| {
-        let simulation = Simulation::new(&document)?;
+    let contact_output = contact_output.or(of_contact.map(|picture| picture.output));
+    let needs_model = contact_output.is_some() || of_mechanism.is_some() || of_well.is_some();
+    let simulation = needs_model.then(|| Simulation::new(&document)).transpose()?;
+    let impact = |(simulation, output): (&Simulation, Output)| {
         let wrong = |error: Error| Failure::argument(format!("{}: {}", output.option(), error.message()));
-        Ok::<_, Failure>((simulation.impact(rigid).map_err(wrong)?, simulation))
+        simulation.impact(rigid).map_err(wrong)
     };
-    let impacts = contact_output.map(impact).transpose()?;
+    let impacts = simulation.as_ref().zip(contact_output).map(impact).transpose()?;
     let mut read = inputs(&options.scene, &document);
     read.extend(options.measured.measured.clone());
     let other = options.beside.as_deref().map(beside).transpose()?;
@@ -208,8 +190,8 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         .with(Output::LANDSCAPE, options.landscape.as_deref())?
         .with(Output::SHAPES, options.shapes.as_deref())?
         .with(Output::CONTACT, options.contact.as_deref())?;
-    let mut outputs =
-        pictures.open(outputs)?.with(Output::COMPARISON, options.measured.comparison.as_deref())?;
+    let outputs = pictures.into_iter().try_fold(outputs, Outputs::with_picture)?;
+    let mut outputs = outputs.with(Output::COMPARISON, options.measured.comparison.as_deref())?;
     let measured = options.measured.compare(&document, &mechanism, common)?;
     if let Some(found) = &measured {
         outputs.table(Output::COMPARISON, &found.table)?;
@@ -225,7 +207,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     outputs.write(Output::LANDSCAPE, landscape(&mechanism, document.scene.mass_g / 1e3))?;
     // The picture shows the whole curve, even if few positions were requested.
     let stops = stop_positions(&document.scene);
-    outputs.draw(pictures.curve, &document, |ranges| match &measured {
+    outputs.draw(of_curve, &document, |ranges| match &measured {
         Some(found) => {
             let range = extent(found.positions.iter().copied());
             let table = Curve::drawn(Some(range), &document, &mechanism).map_err(told)?;
@@ -239,16 +221,18 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     if outputs.has(Output::SHAPES) {
         outputs.table(Output::SHAPES, &flexures(positions(SHAPES), "--shapes")?.shapes())?;
     }
-    outputs.draw(pictures.shapes, &document, |_| {
+    outputs.draw(of_shapes, &document, |_| {
         let is_named = listed.is_some() || options.points.is_some() || range.is_some();
         let equilibria = || mechanism.landscape.equilibria.iter().map(|equilibrium| equilibrium.x).collect();
         let at = if is_named { positions(SHAPES) } else { equilibria() };
         Ok(shapes_chart(&flexures(at, "--shapes-plot")?.states, &mechanism, stops))
     })?;
     let named = |place: usize| listed.as_ref().and_then(|at| at.get(place)).copied();
-    if let Some(picture) = pictures.mechanism {
-        let simulation = Simulation::new(&document)?;
-        let models = [Some(&simulation), other.as_ref()].into_iter().flatten().map(Simulation::model);
+    let Some(model) = simulation.as_ref().map(Simulation::model) else {
+        return outputs.finish_rows(&document, 1);
+    };
+    if let Some(picture) = of_mechanism {
+        let models = [Some(model), other.as_ref().map(Simulation::model)].into_iter().flatten();
         let at = |(place, model): (usize, _)| (model, named(place).unwrap_or(Model::start(model).0));
         let chart = mechanism_chart(&models.enumerate().map(at).collect::<Vec<_>>()).map_err(|problem| {
             Failure::argument(format!("--mechanism-plot: {}: {problem}", document.name))
@@ -256,18 +240,16 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         let caption = caption(&document).with_others(other.iter().map(Simulation::document));
         picture.write(&mut outputs, &chart, &caption)?;
     }
-    outputs.draw(pictures.well, &document, |_| {
-        let simulation = Simulation::new(&document)?;
-        let (model, ends) = (simulation.model(), even(2));
+    outputs.draw(of_well, &document, |_| {
         let largest = if model.is_shaken() { model.largest_base_acceleration() } else { 0.0 };
         let accel = accel.map_or(largest, |accel| accel * STANDARD_GRAVITY);
+        let ends: Vec<f64> = even(2);
         Ok(well_chart(model, named(0).unwrap_or(model.start().0), accel, (ends[0], ends[1])))
     })?;
-    if let Some((table, simulation)) = &impacts {
-        let model = simulation.model();
+    if let Some(table) = &impacts {
         outputs.table(Output::CONTACT, table)?;
         if let Some(stop) = model.compliant() {
-            outputs.draw(pictures.contact, &document, |_| Ok(contact_chart(table, &stop, model.mass())))?;
+            outputs.draw(of_contact, &document, |_| Ok(contact_chart(table, &stop, model.mass())))?;
         }
     }
     outputs.finish_rows(&document, 1)
