@@ -138,8 +138,8 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         (listed.as_deref(), &options.at_mm, &options.beside)
     {
         refuse!(
-            "--at-mm {text}: with --beside {other} two masses are drawn, at two positions: give two, or leave \
-             --beside out"
+            "--at-mm {text}: with --beside {other} two masses are drawn, at two positions: give two, or \
+             leave --beside out"
         );
     }
     let positions = |points: u32| match &listed {

@@ -33,8 +33,8 @@ pub enum Subject {
     Curve,
     /// The mechanism with the mass at a displacement in mm.
     Mechanism(f64),
-    /// The potential with the mass at a displacement in mm, tipped by the push at an acceleration of the base in
-    /// g.
+    /// The potential with the mass at a displacement in mm, tipped by the push of the base at an acceleration
+    /// in g.
     Well(f64, f64),
     /// The mechanisms of this scene and of one given as a link, with the masses at displacements in mm.
     SideBySide([f64; 2], String),

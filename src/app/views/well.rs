@@ -1,8 +1,8 @@
 //! View of the potential well, with the mass on it.
 //!
 //! The mass moves like a ball on the potential that the push of the base tips ([`TippedPotential`]), which is
-//! drawn thick, the potential of the mechanism alone thin. The vertical range follows the largest push in a few
-//! coarse steps, so that the curve tilts and does not rescale, and it holds while the mechanism changes.
+//! drawn thick, the potential of the mechanism alone thin. The vertical range follows the largest push in a
+//! few coarse steps, so that the curve tilts and does not rescale, and it holds while the mechanism changes.
 
 use std::sync::Arc;
 

@@ -147,7 +147,7 @@ impl Prepared<'_> {
         shown.into_iter().filter(|name| !self.columns.iter().any(|column| column == name)).collect()
     }
 
-    /// The plan and the shard of the sweep in the file, and the checksum that it should have, from its manifest.
+    /// The plan and the shard of the sweep in the file, and the checksum that its manifest has.
     fn existing(&self) -> Option<(Value, Option<String>)> {
         let text = files::bytes(&manifest_path(&self.out)).ok().filter(|_| files::exists(&self.out))?;
         let manifest: Value =

@@ -321,8 +321,8 @@ fn a_picture_of_rows_that_were_there_is_the_same() {
 /// Dots on a map need columns that are not written by default; rows that were there are drawn without them.
 #[test]
 fn a_map_of_rows_that_were_there_says_that_it_has_no_dots() {
-    let line = "sweep paper --set run.duration_s=2 --set run.settle_s=1 --over stops.travel_limit_mm=1:7:0.0625 \
-        --over excitation.amplitude_g=0.5:1.5:0.01";
+    let line = "sweep paper --set run.duration_s=2 --set run.settle_s=1 \
+        --over stops.travel_limit_mm=1:7:0.0625 --over excitation.amplitude_g=0.5:1.5:0.01";
     let sweep = Unfinished::new(line, 400);
     let data = sweep.path("d.csv");
     let drawn = |mut command: assert_cmd::Command| {

@@ -17,8 +17,8 @@ use crate::numeric::{extent, short};
 /// Number of points of a curve.
 const POINTS: usize = 400;
 
-/// The potential of a model over displacement, tipped by a push, counted from the bottom of the deepest well or
-/// without a well from the lower stop.
+/// The potential of a model over displacement, tipped by a push. It is counted from the bottom of the deepest
+/// well, without a well from the lower stop.
 #[doc(hidden)]
 #[derive(Debug, Clone, Copy)]
 pub struct TippedPotential<'a> {
@@ -111,7 +111,10 @@ pub fn well_chart(model: &Model, x: f64, base_accel: f64, range: (f64, f64)) -> 
     let level = tipped.at_acceleration(0.0);
     let mut panel = well_panel(&level, range, (across, up), base_accel != 0.0);
     let (points, mass) = (tipped.points(range), (x * 1e3, tipped.at(x * 1e3)));
+    // the lines lie over the stops
+    let lines = std::mem::take(&mut panel.layers);
     panel.upright_stops(stops(model, 1e3));
+    panel.layers.extend(lines);
     panel.layers.extend(tipped.line(points.clone()));
     panel.layer(Role::Mass, "mass", Marks::Points(vec![mass]));
     let mut drawn = Drawn::new(["x_m", "potential_j"], &[]);
@@ -139,7 +142,7 @@ fn push(model: &Model, base_accel: f64) -> String {
         0.0 => "no push".to_owned(),
         _ => {
             let [newton, accel] = [newton.abs(), base_accel / STANDARD_GRAVITY].map(short);
-            format!("pushed by {newton} N to the {direction} (base at {accel} g)")
+            format!("pushed by {newton} N to the {direction} (base acceleration {accel} g)")
         }
     }
 }
