@@ -50,10 +50,7 @@ pub fn sweep(
     Ok(Answer::new(py, table, scene.caption()).drawn(move |rows, asked| {
         let (scene, mechanism) = (shown.scene(), shown.mechanism());
         let mechanism = (!grid.changes_mechanism()).then_some(&**mechanism);
-        let overlay = match carry {
-            Some(_) => Overlay::default(),
-            None => Overlay::of(scene, mechanism, &grid, rows),
-        };
+        let overlay = Overlay::of(scene, mechanism, &grid, rows);
         let quantity = asked.quantity.as_deref().unwrap_or("rms_velocity_m_per_s");
         let picture = SweepPicture::of(rows, &grid, scene, quantity);
         let picture = SweepPicture { until_settled, overlay, ranges: asked.ranges, draws: &about, ..picture };

@@ -170,10 +170,7 @@ impl Drawing<'_> {
         let (sweep, grid) = (&cells.sweep, cells.sweep.grid());
         can_show(grid, quantity, &view, &sweep.empty_table())?;
         let rows = cells.rows(&self.document, &self.progress)?;
-        let overlay = match carry {
-            Some(_) => Overlay::default(),
-            None => Overlay::of(scene, sweep.first_mechanism().ok().as_deref(), grid, &rows),
-        };
+        let overlay = Overlay::of(scene, sweep.first_mechanism().ok().as_deref(), grid, &rows);
         Ok(sweep_chart(&SweepPicture { overlay, view, ..SweepPicture::of(&rows, grid, scene, quantity) })?)
     }
 

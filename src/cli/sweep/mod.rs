@@ -102,12 +102,8 @@ impl Prepared<'_> {
 
     fn chart(&self, rows: &Table, ranges: Ranges) -> Result<Chart, Failure> {
         let (grid, scene) = (self.sweep.grid(), &self.document.scene);
-        let &SweepOptions { until_settled, carry, ref draws, .. } = self.sweep.options();
-        // The overlay holds for runs from rest only.
-        let overlay = match carry {
-            Some(_) => Overlay::default(),
-            None => Overlay::of(scene, self.mechanism.as_deref(), grid, rows),
-        };
+        let &SweepOptions { until_settled, ref draws, .. } = self.sweep.options();
+        let overlay = Overlay::of(scene, self.mechanism.as_deref(), grid, rows);
         let (quantity, view, draws) = (self.quantity, self.view.clone(), &*draws.about());
         let shown = SweepPicture { rows, grid, scene, until_settled, quantity, overlay, view, ranges, draws };
         Ok(sweep_chart(&shown)?)

@@ -24,8 +24,11 @@ pub struct Overlay {
 
 impl Overlay {
     /// The lines over the rows of a sweep of this scene, if runs begin at rest and all cells have the same
-    /// mechanism.
+    /// mechanism; none over those of a walk.
     pub fn of(scene: &Scene, mechanism: Option<&Mechanism>, grid: &Grid, rows: &Table) -> Self {
+        if rows.column(DIRECTION).is_some() {
+            return Self::default();
+        }
         Self {
             release: mechanism.and_then(|mechanism| release_line(scene, mechanism, grid)),
             first_crossing: first_crossing(grid, rows),
