@@ -6,7 +6,6 @@ mod shared;
 
 use std::sync::atomic::AtomicBool;
 
-use interwell::dynamics::Model;
 use interwell::output::{
     Caption, Chart, Format, Overlay, Ranges, RunPanel, SweepPicture, Theme, curve_chart, run_chart,
     sweep_chart,
@@ -76,8 +75,7 @@ fn run(document: &Document) -> Chart {
     let times = sample_times(&document.scene, &model, &Sampling::Default, None).expect("times are known");
     let keep = Keep { times, events: false, until_settled: None };
     let (simulation, trace) = simulate_with_trace(&model, &keep, None, None);
-    let mechanism = (&**Model::mechanism(&model), model.mass());
-    run_chart(&trace, &simulation.summary, mechanism, &RunPanel::ALL, Ranges::default())
+    run_chart(&trace, &simulation.summary, &model, &RunPanel::ALL, Ranges::default())
 }
 
 fn force(document: &Document) -> Chart {

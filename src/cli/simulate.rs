@@ -124,13 +124,12 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     outputs.write(Output::SUMMARY, summary(&run.summary, &document.scene, &outputs.watch.origin(1)))?;
     let compared = record.as_ref().zip(compared.as_ref());
     if let Some(trace) = trace {
-        let of = (&**model.mechanism(), model.mass());
         outputs.draw(picture, document, |ranges| match compared {
             Some((measured, found)) => {
                 let quantity = measured.record.channels[1].quantity;
                 Ok(measured_chart(&trace, (found, quantity), inset, ranges))
             }
-            None => Ok(run_chart(&trace, &run.summary, of, &panels, ranges)),
+            None => Ok(run_chart(&trace, &run.summary, model, &panels, ranges)),
         })?;
     }
     if let Some(picture) = picture.filter(|_| !others.is_empty()) {

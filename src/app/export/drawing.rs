@@ -103,9 +103,7 @@ impl Drawing<'_> {
         let simulation = self.simulation()?;
         let (run, trace) = simulation.traced(&Keep::default(), times, &self.progress)?;
         let trace = RunPanel::complete(panels, trace, simulation.model(), self.progress.stop());
-        let (of, ranges) =
-            ((&**simulation.mechanism(), simulation.model().mass()), Ranges { x: times, y: None });
-        Ok(run_chart(&trace, &run.summary, of, panels, ranges))
+        Ok(run_chart(&trace, &run.summary, simulation.model(), panels, Ranges { x: times, y: None }))
     }
 
     fn curve(&self) -> Result<Chart> {
