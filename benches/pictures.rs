@@ -6,9 +6,8 @@ mod shared;
 
 use std::sync::atomic::AtomicBool;
 
-use interwell::dynamics::Model;
 use interwell::output::{
-    Caption, Chart, Format, Overlay, Ranges, RunPanel, SweepPicture, Theme, View, curve_chart, run_chart,
+    Caption, Chart, Format, Overlay, Ranges, RunPanel, SweepPicture, Theme, curve_chart, run_chart,
     sweep_chart,
 };
 use interwell::scene::Document;
@@ -67,18 +66,7 @@ fn map(document: &Document) -> Chart {
     assert!(end.is_ok());
     let (grid, scene) = (sweep.grid(), &document.scene);
     let overlay = Overlay::of(scene, sweep.first_mechanism().ok().as_deref(), grid, &rows);
-    let (quantity, view, ranges) = ("rms_velocity_m_per_s", View::Top, Ranges::default());
-    let picture = SweepPicture {
-        rows: &rows,
-        grid,
-        scene,
-        until_settled: None,
-        quantity,
-        overlay,
-        view,
-        ranges,
-        draws: "",
-    };
+    let picture = SweepPicture { overlay, ..SweepPicture::of(&rows, grid, scene, "rms_velocity_m_per_s") };
     sweep_chart(&picture).expect("a map can be shown")
 }
 
@@ -87,8 +75,7 @@ fn run(document: &Document) -> Chart {
     let times = sample_times(&document.scene, &model, &Sampling::Default, None).expect("times are known");
     let keep = Keep { times, events: false, until_settled: None };
     let (simulation, trace) = simulate_with_trace(&model, &keep, None, None);
-    let mechanism = (&**Model::mechanism(&model), model.mass());
-    run_chart(&trace, &simulation.summary, mechanism, &RunPanel::ALL, Ranges::default())
+    run_chart(&trace, &simulation.summary, &model, &RunPanel::ALL, Ranges::default())
 }
 
 fn force(document: &Document) -> Chart {

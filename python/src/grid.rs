@@ -1,7 +1,7 @@
 //! Questions that can be asked for every cell of a grid.
 
 use interwell_studies::output::{
-    Overlay, SweepPicture, View, escape_chart, exponents_chart, section_chart, sweep_chart, threshold_chart,
+    Overlay, SweepPicture, escape_chart, exponents_chart, section_chart, sweep_chart, threshold_chart,
 };
 use interwell_studies::questions::{
     Carry, Error, Escape, ExponentOptions, Exponents, Grid, Onset, ProbableThreshold, Section, SectionAt,
@@ -42,7 +42,7 @@ pub fn sweep(
     let (shown, grid, about, table) = work(py, &Way { threads, progress }, |progress| {
         let shown = question.nominal(&scene.inner, progress)?;
         let grid = shown.grid(&question.over)?;
-        let cells = question.cells(shown.document(), grid.clone(), None, progress)?;
+        let cells = question.cells(shown.document(), grid.clone(), &[], progress)?;
         let about = cells.sweep.options().draws.about();
         let table = question.run(&shown, progress)?;
         Ok((shown, grid, about, table))
@@ -50,14 +50,10 @@ pub fn sweep(
     Ok(Answer::new(py, table, scene.caption()).drawn(move |rows, asked| {
         let (scene, mechanism) = (shown.scene(), shown.mechanism());
         let mechanism = (!grid.changes_mechanism()).then_some(&**mechanism);
-        let overlay = match carry {
-            Some(_) => Overlay::default(),
-            None => Overlay::of(scene, mechanism, &grid, rows),
-        };
+        let overlay = Overlay::of(scene, mechanism, &grid, rows);
         let quantity = asked.quantity.as_deref().unwrap_or("rms_velocity_m_per_s");
-        let (grid, view, ranges) = (&grid, View::Top, asked.ranges);
-        let picture =
-            SweepPicture { rows, grid, scene, until_settled, quantity, overlay, view, ranges, draws: &about };
+        let picture = SweepPicture::of(rows, &grid, scene, quantity);
+        let picture = SweepPicture { until_settled, overlay, ranges: asked.ranges, draws: &about, ..picture };
         sweep_chart(&picture).map_err(|problem| problem.to_string())
     }))
 }

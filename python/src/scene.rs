@@ -230,9 +230,8 @@ impl Simulation {
             let found = shown.traced(&keep, asked.ranges.x, &progress);
             let (run, trace) = found.map_err(|error| error.to_string())?;
             let trace = RunPanel::complete(&panels, trace, shown.model(), asked.cancel);
-            let (of, ranges) =
-                ((&**shown.mechanism(), shown.model().mass()), Ranges { x: None, y: asked.ranges.y });
-            Ok(run_chart(&trace, &run.summary, of, &panels, ranges))
+            let ranges = Ranges { x: None, y: asked.ranges.y };
+            Ok(run_chart(&trace, &run.summary, shown.model(), &panels, ranges))
         };
         Ok(Run {
             samples: Py::new(py, Answer::new(py, found.samples, caption.clone()).drawn(drawn))?,

@@ -37,8 +37,6 @@ pub struct Arguments {
     #[arg(long)]
     pub list: bool,
 
-    /// The picture: error over processor time, of the problems p1, p2 and flexures, or of the scene, with its
-    /// runs in fixed steps.
     #[command(flatten)]
     pub plot: PlotOptions,
 }

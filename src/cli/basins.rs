@@ -9,7 +9,7 @@ use interwell::questions::{Basins, BasinsAnswer, EvenRange};
 use interwell_studies::study;
 
 use super::progress::duration;
-use super::support::{Watch, counted, load_with_mechanism, numbers, outputs};
+use super::support::{counted, load_with_mechanism, numbers, outputs};
 use super::{Common, Failure, Output, Outputs, Picture, PlotOptions, ask, interrupt, refuse, say};
 
 const EXAMPLES: &str = "\
@@ -62,7 +62,6 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let mut outputs = outputs(&options.scene, &document, common)?
         .with_picture(picture)?
         .with(Output::ATTRACTORS, options.attractors.as_deref())?;
-    outputs.watch = Watch::start();
     if !common.quiet {
         forecast(&basins).iter().for_each(|line| say(line));
     }
@@ -131,14 +130,11 @@ fn outcome(answer: &study::Answer, seconds: f64) -> String {
 const AS_EVEN: &str = "write A:B:N, the first value, the last and how many, such as -5:5:101";
 
 fn question(options: &Arguments) -> Result<Basins, Failure> {
-    let given = |option: &'static str, text: &Option<String>| {
-        let missing = || Failure::argument(format!("{option} is missing: {AS_EVEN}"));
-        text.clone().map(|text| (option, text)).ok_or_else(missing)
-    };
-    let texts = [given("--x-mm", &options.x_mm)?, given("--v", &options.v)?];
+    let missing = |option: &str| Failure::argument(format!("{option} is missing: {AS_EVEN}"));
+    let x_mm = options.x_mm.as_deref().ok_or_else(|| missing("--x-mm"))?;
+    let v = options.v.as_deref().ok_or_else(|| missing("--v"))?;
     let Some(text) = &options.random else {
-        let [x_mm, v] = texts.map(|(option, text)| even(option, &text));
-        return Ok(Basins { x_mm: x_mm?, v: v?, random: None });
+        return Ok(Basins { x_mm: even("--x-mm", x_mm)?, v: even("--v", v)?, random: None });
     };
     let whole = |option: &str, text: &str| {
         let wrong = |_| Failure::argument(format!("{option} {text}: give a whole number, such as 1000"));
@@ -146,14 +142,12 @@ fn question(options: &Arguments) -> Result<Basins, Failure> {
     };
     let count = whole("--random", text)?;
     let seed = options.seed.as_deref().map_or(Ok(0), |text| whole("--seed", text))?;
-    let [x_mm, v] = texts.map(|(option, text)| {
-        let [from, to] = numbers(option, &text, ':')?[..] else {
-            let message = "with --random write A:B; --random says how many";
-            refuse!("{option} {text}: {message}");
-        };
-        Ok(EvenRange { from, to, count: 1 })
-    });
-    Ok(Basins { x_mm: x_mm?, v: v?, random: Some((count, seed)) })
+    let between = |option: &str, text: &str| match numbers(option, text, ':')?[..] {
+        [from, to] => Ok(EvenRange { from, to, count: 1 }),
+        _ => refuse!("{option} {text}: with --random write A:B; --random says how many"),
+    };
+    let (x_mm, v) = (between("--x-mm", x_mm)?, between("--v", v)?);
+    Ok(Basins { x_mm, v, random: Some((count, seed)) })
 }
 
 /// The values `A:B:N` as given to `option`.

@@ -64,14 +64,12 @@ pub struct Arguments {
     #[arg(long, value_name = "SEED", default_value_t = 1)]
     pub seed: u64,
 
-    /// The picture: over one field the values that were tried, over two a map of the scan, over more the
-    /// values in the order in which they were tried.
     #[command(flatten)]
     pub chart: ChartOptions,
 }
 
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
-    let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
+    let picture = Picture::of_chart(&options.chart, common)?;
     let (document, warnings) = load(&options.scene, common)?;
     let request = Best {
         over: options.over.clone(),

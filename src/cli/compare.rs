@@ -34,7 +34,6 @@ pub struct Arguments {
     #[arg(long, value_name = "MAX_S", allow_hyphen_values = true)]
     pub until_settled: Option<String>,
 
-    /// The picture: a row a scene, a panel a quantity.
     #[command(flatten)]
     pub plot: PlotOptions,
 }

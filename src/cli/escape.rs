@@ -4,7 +4,7 @@ use clap::Args;
 use interwell::output::{can_show_over_field, escape_chart};
 use interwell::questions::{Escape, Table, Until, Values};
 
-use super::support::{counted, finite, load_over, mechanism_of_all, outputs};
+use super::support::{counted, if_given, load_over, mechanism_of_all, outputs};
 use super::{ChartOptions, Common, Failure, Output, Picture, ask, whole};
 
 const EXAMPLES: &str = "\
@@ -42,19 +42,17 @@ pub struct Arguments {
     #[arg(long, value_name = "FIELD=FROM:TO:STEP|a,b,c", allow_hyphen_values = true)]
     pub over: Vec<String>,
 
-    /// The picture, with --over one field: the rate with its interval, logarithmic, and Kramers' rate.
     #[command(flatten)]
     pub chart: ChartOptions,
 }
 
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
-    let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
+    let picture = Picture::of_chart(&options.chart, common)?;
     let (document, warnings, grid) = load_over(&options.scene, &options.over, common)?;
     if picture.is_some() {
         can_show_over_field(&grid, "escapes")?;
     }
-    let within = options.within.as_deref();
-    let within = within.map(|text| finite("--within", text, "give a time in s, such as 100")).transpose()?;
+    let within = if_given("--within", options.within.as_deref(), "give a time in s, such as 100")?;
     let until = Until::named(&options.until).unwrap_or(Until::Well);
     let question = Escape { runs: options.runs, within, until, ..Escape::default() };
     let settings = question.options(&document, &grid)?;

@@ -40,13 +40,12 @@ pub struct Arguments {
     #[arg(long, value_name = "MAX_S", allow_hyphen_values = true)]
     pub until_settled: Option<String>,
 
-    /// The picture, with --over one field: the exponents, each with its standard error.
     #[command(flatten)]
     pub chart: ChartOptions,
 }
 
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
-    let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
+    let picture = Picture::of_chart(&options.chart, common)?;
     let periods = options.periods.unwrap_or(ExponentOptions::PERIODS);
     let until_settled = settle_limit(options.until_settled.as_deref())?;
     let settings = ExponentOptions { periods, until_settled, circuits: false };

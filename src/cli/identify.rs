@@ -9,7 +9,6 @@ use interwell::scene::Timing;
 use interwell_studies::study::Identity;
 
 use super::measured::{ColumnOptions, PositionOptions};
-use super::support::Watch;
 use super::{ChartOptions, Common, Failure, Output, Outputs, Picture, interrupt, refuse};
 
 const EXAMPLES: &str = "\
@@ -89,8 +88,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     };
     let question = question(options, WhatToIdentify::named(of).unwrap_or(WhatToIdentify::Damping));
     question.check()?;
-    let watch = Watch::start();
-    let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
+    let picture = Picture::of_chart(&options.chart, common)?;
     let record = [file.to_path_buf()];
     let mut outputs = Outputs::new(&record)
         .with_rows(Some(common.out()))?
@@ -101,7 +99,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         question.run(file, &interrupt::progress())?;
     common.say(&format!("{}: {columns}", file.display()));
     outputs.table(Output::DATA, &found.rows)?;
-    outputs.write(Output::SUMMARY, identified(of, &found, timing.as_ref(), &watch.origin(1)))?;
+    outputs.write(Output::SUMMARY, identified(of, &found, timing.as_ref(), &outputs.watch.origin(1)))?;
     if let Some(picture) = picture {
         let name = file.file_name().unwrap_or_default().to_string_lossy();
         let caption = Caption::of_record(&name, of, env!("CARGO_PKG_VERSION"));

@@ -8,7 +8,7 @@ use interwell::scene::{Axis, Document};
 use interwell_studies::study::BranchOptions;
 
 use super::progress::bar_on_terminal;
-use super::support::{finite, outputs, read, simulation};
+use super::support::{finite, if_given, outputs, read, simulation};
 use super::{ChartOptions, Common, Failure, Output, Picture, interrupt, refuse, whole};
 
 const EXAMPLES: &str = "\
@@ -67,7 +67,6 @@ pub struct Arguments {
     #[arg(long, value_name = "FIELD=C:D", allow_hyphen_values = true, requires = "locus")]
     pub and: Option<String>,
 
-    /// The picture, of a branch or of loci.
     #[command(flatten)]
     pub chart: ChartOptions,
 }
@@ -81,7 +80,7 @@ fn events() -> PossibleValuesParser {
 
 /// Finds the motion, or follows its branch or the loci from it, and writes the table.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
-    let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
+    let picture = Picture::of_chart(&options.chart, common)?;
     if picture.is_some() && options.branch.is_none() {
         refuse!("--plot shows a branch; add --branch FIELD=A:B, or leave it out");
     }
@@ -108,8 +107,8 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         outputs.table(Output::DATA, &found.table())?;
         return outputs.finish_rows(document, 1);
     };
-    let step = options.step.as_ref().map(|text| finite("--step", text, "give a share, such as 0.01"));
-    let step = step.transpose()?.unwrap_or(BranchOptions::STEP);
+    let step = if_given("--step", options.step.as_deref(), "give a share, such as 0.01")?;
+    let step = step.unwrap_or(BranchOptions::STEP);
     let count = options.count.unwrap_or(BranchOptions::COUNT);
     let branch = Branch { field, range, period, phase_deg, step, count };
     let of = options.locus.as_deref().map(|name| name.strip_suffix("-breaking").unwrap_or(name));

@@ -38,6 +38,7 @@ impl Output {
     pub const SHAPES: Self = Self("--shapes");
     pub const SHAPES_PLOT: Self = Self("--shapes-plot");
     pub const MECHANISM_PLOT: Self = Self("--mechanism-plot");
+    pub const WELL_PLOT: Self = Self("--well-plot");
     pub const CONTACT: Self = Self("--contact");
     pub const CONTACT_PLOT: Self = Self("--contact-plot");
     pub const LESSON: Self = Self("--new");

@@ -5,7 +5,7 @@ use std::path::Path;
 use interwell::output::{Caption, Chart, Format, Ranges, Sheet, SheetText, Theme, picture_arguments};
 use interwell::scene::Document;
 
-use super::support::range;
+use super::support::{arguments, range};
 use super::{ChartOptions, Common, Failure, Output, Outputs, PlotOptions, given, refuse, say};
 
 /// A requested picture.
@@ -32,18 +32,14 @@ impl<'a> Picture<'a> {
         Self::of(Output::PLOT, options.plot.as_deref(), options, common)
     }
 
-    /// Like [`new`](Self::new), with the ranges of its axes; errors name the horizontal axis `across`.
-    pub fn of_chart(
-        options: &'a ChartOptions,
-        across: &'static str,
-        common: &Common,
-    ) -> Result<Option<Self>, Failure> {
+    /// Like [`new`](Self::new), with the ranges of its axes.
+    pub fn of_chart(options: &'a ChartOptions, common: &Common) -> Result<Option<Self>, Failure> {
         let picture = Self::new(&options.plot, common)?;
         let of = |option, text: &Option<String>| {
             let form = "A:B with A below B, such as 0:2";
             text.as_deref().map(|text| range(option, text, form)).transpose()
         };
-        let ranges = Ranges { x: of(across, &options.plot_x)?, y: of("--plot-y", &options.plot_y)? };
+        let ranges = Ranges { x: of(range_option(), &options.plot_x)?, y: of("--plot-y", &options.plot_y)? };
         Ok(picture.map(|picture| Self { ranges, ..picture }))
     }
 
@@ -109,6 +105,12 @@ impl Outputs {
         let Some(picture) = picture else { return Ok(()) };
         picture.write(self, &chart(picture.ranges)?, &caption(document))
     }
+}
+
+/// The option that gives the range of the horizontal axis, by the name with which it was given.
+pub fn range_option() -> &'static str {
+    let is_time = |argument: &String| argument.split('=').next() == Some("--plot-time");
+    if arguments().iter().any(is_time) { "--plot-time" } else { "--plot-x" }
 }
 
 fn sheet(options: &PlotOptions, format: Format) -> Result<Option<Sheet>, Failure> {

@@ -82,7 +82,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
 }
 
 fn single(options: &Arguments, common: &Common, question: &Section) -> Result<(), Failure> {
-    let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
+    let picture = Picture::of_chart(&options.chart, common)?;
     let simulation = load_simulation(&options.scene, common)?;
     let document = simulation.document();
     let mut outputs = outputs(&options.scene, document, common)?.with_picture(picture)?;
@@ -108,7 +108,7 @@ fn phase(question: &Section) -> Option<f64> {
 
 /// The sections of all cells, written as they are computed.
 fn diagram(options: &Arguments, common: &Common, question: &Section) -> Result<(), Failure> {
-    let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
+    let picture = Picture::of_chart(&options.chart, common)?;
     let (document, warnings, grid) = load_over(&options.scene, &options.over, common)?;
     let fields = grid.axes().len();
     if picture.is_some() && fields > 1 {

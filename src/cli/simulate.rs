@@ -10,7 +10,8 @@ use interwell::questions::{Distance, Sampling, Simulation};
 use interwell_studies::study::{Keep, ended_remedy, yield_warning};
 
 use super::measured::MeasuredOptions;
-use super::support::{Watch, beside, inputs, load_simulation, number, numbers, settle_limit};
+use super::picture::range_option;
+use super::support::{beside, inputs, load_simulation, number, numbers, settle_limit};
 use super::{ChartOptions, Common, Failure, Output, Outputs, Picture, caption, interrupt, refuse, say};
 
 #[derive(Debug, Args)]
@@ -59,7 +60,6 @@ pub struct Arguments {
           conflicts_with_all = ["measured", "panels", "plot_y"])]
     pub beside: Vec<String>,
 
-    /// A measured motion to compare with.
     #[command(flatten)]
     pub measured: MeasuredOptions,
 
@@ -68,7 +68,7 @@ pub struct Arguments {
 }
 
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
-    let picture = Picture::of_chart(&options.chart, "--plot-time", common)?;
+    let picture = Picture::of_chart(&options.chart, common)?;
     let sampling = match (&options.at, &options.dt) {
         (Some(text), _) => Sampling::At(numbers("--at", text, ',')?),
         (None, Some(text)) => {
@@ -90,7 +90,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let window = picture.and_then(|picture| picture.ranges.x).or_else(|| span(&sampling));
     let longest = until_settled.unwrap_or(model.duration());
     if let Some((from, to)) = window.filter(|(from, to)| *from < 0.0 || *to > longest) {
-        refuse!("--plot-time {from}:{to}: the run lasts from 0 to {longest} s");
+        refuse!("{} {from}:{to}: the run lasts from 0 to {longest} s", range_option());
     }
     let record = options.measured.read(common)?;
     let inset = record.as_ref().and_then(|measured| measured.inset);
@@ -110,7 +110,6 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         .with(Output::SUMMARY, options.summary.as_deref())?
         .with_picture(picture)?
         .with(Output::COMPARISON, options.measured.comparison.as_deref())?;
-    let watch = Watch::start();
     let progress = interrupt::progress();
     let (run, trace) = match picture.filter(|_| others.is_empty()) {
         None => (simulation.kept(&keep, &progress)?, None),
@@ -122,16 +121,15 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let compared = record.as_ref().map(|measured| measured.compare(&simulation)).transpose()?;
     outputs.table(Output::DATA, &run.samples)?;
     outputs.table(Output::EVENTS, &run.events)?;
-    outputs.write(Output::SUMMARY, summary(&run.summary, &document.scene, &watch.origin(1)))?;
+    outputs.write(Output::SUMMARY, summary(&run.summary, &document.scene, &outputs.watch.origin(1)))?;
     let compared = record.as_ref().zip(compared.as_ref());
     if let Some(trace) = trace {
-        let of = (&**model.mechanism(), model.mass());
         outputs.draw(picture, document, |ranges| match compared {
             Some((measured, found)) => {
                 let quantity = measured.record.channels[1].quantity;
                 Ok(measured_chart(&trace, (found, quantity), inset, ranges))
             }
-            None => Ok(run_chart(&trace, &run.summary, of, &panels, ranges)),
+            None => Ok(run_chart(&trace, &run.summary, model, &panels, ranges)),
         })?;
     }
     if let Some(picture) = picture.filter(|_| !others.is_empty()) {

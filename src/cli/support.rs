@@ -142,7 +142,12 @@ pub fn load_simulation(spec: &str, common: &Common) -> Result<Simulation, Failur
 
 /// The simulation of a scene that is drawn beside another one, which no `--set` changes.
 pub fn beside(spec: &str) -> Result<Simulation, Failure> {
-    Ok(Simulation::build(Document::of_argument(spec)?, &interrupt::progress())?)
+    let document = Document::of_argument(spec).map_err(Error::Scene);
+    let built = document.and_then(|document| Simulation::build(document, &interrupt::progress()));
+    built.map_err(|error| match error {
+        Error::Scene(error) => Failure::argument(format!("--beside {error}")),
+        error => error.into(),
+    })
 }
 
 /// Checks a scene and builds its model; prints the warnings of both.
@@ -183,6 +188,11 @@ pub fn finite(option: &str, text: &str, remedy: &str) -> Result<f64, Failure> {
     number(option, text, |value| value.is_finite(), remedy)
 }
 
+/// The finite number that was given to `option`, if any.
+pub fn if_given(option: &str, text: Option<&str>, remedy: &str) -> Result<Option<f64>, Failure> {
+    text.map(|text| finite(option, text, remedy)).transpose()
+}
+
 /// A number of things, such as `1 cell` or `2 cells`.
 pub fn counted(count: u64, name: &str) -> String {
     format!("{count} {name}{}", if count == 1 { "" } else { "s" })
@@ -198,7 +208,7 @@ pub fn range(option: &str, text: &str, form: &str) -> Result<(f64, f64), Failure
 
 /// The time in s of `--until-settled`, if given.
 pub fn settle_limit(text: Option<&str>) -> Result<Option<f64>, Failure> {
-    text.map(|text| finite("--until-settled", text, "not a time; give seconds, such as 300")).transpose()
+    if_given("--until-settled", text, "not a time; give seconds, such as 300")
 }
 
 /// The pool of `--jobs` threads.

@@ -3,11 +3,11 @@
 use clap::Args;
 use interwell::numeric::extent;
 use interwell::output::{can_show_thresholds, threshold_chart};
-use interwell::questions::{Error, Escape, Grid, Onset, ProbableThreshold, Progress, Table, Threshold};
+use interwell::questions::{Escape, Grid, Onset, ProbableThreshold, Table, Threshold};
 use interwell::scene::Document;
 use interwell_studies::study::{Chance, Scan, can_cross};
 
-use super::support::{finite, load_over, mechanism_of_all, outputs, settle_limit};
+use super::support::{if_given, load_over, mechanism_of_all, outputs, settle_limit};
 use super::{ChartOptions, Common, Failure, Output, Picture, ask, whole};
 
 const EXAMPLES: &str = "\
@@ -75,73 +75,45 @@ pub struct Arguments {
     #[arg(long, value_name = "FIELD=FROM:TO:STEP|a,b,c", allow_hyphen_values = true)]
     pub over: Vec<String>,
 
-    /// The picture: over one field of --over a line, over two a line for each value of the one that has few,
-    /// or a map.
     #[command(flatten)]
     pub chart: ChartOptions,
 }
 
-/// What is asked: without a share of the runs of a motion, with one of motions under noise.
-enum Asked {
-    Threshold(Threshold),
-    Probable(ProbableThreshold),
-}
-
-impl Asked {
-    fn new(options: &Arguments) -> Result<Self, Failure> {
-        let number = |option: &str, text: &Option<String>, remedy: &str| {
-            text.as_deref().map(|text| finite(option, text, remedy)).transpose()
-        };
-        let remedy = "give a number above 0, in the unit of the field";
-        let resolution = number("--resolution", &options.resolution, remedy)?;
-        let probability = number("--probability", &options.probability, "give a share, such as 0.5")?;
-        let within = number("--within", &options.within, "give a time in s, such as 100")?;
-        let (field, over) = (options.field.clone(), Vec::new());
-        let Some(probability) = probability else {
-            let of = Onset::named(&options.of).unwrap_or(Onset::Crossing);
-            let until_settled = settle_limit(options.until_settled.as_deref())?;
-            let melnikov = options.melnikov;
-            return Ok(Self::Threshold(Threshold { over, field, of, resolution, until_settled, melnikov }));
-        };
-        let runs = options.runs.unwrap_or(Escape::RUNS);
-        Ok(Self::Probable(ProbableThreshold { over, field, probability, runs, within, resolution }))
-    }
-
-    fn onset(&self) -> Onset {
-        if let Self::Threshold(question) = self { question.of } else { Onset::Crossing }
-    }
-
-    /// The values that are tried.
-    fn scan(&self, document: &Document, grid: &Grid) -> Result<Scan, Error> {
-        match self {
-            Self::Threshold(question) => question.scan(document, grid),
-            Self::Probable(question) => {
-                question.chance(document, grid)?;
-                question.scan(document, grid)
-            }
-        }
-    }
-
-    fn table(&self, document: &Document, grid: &Grid, progress: &Progress) -> Result<Table, Error> {
-        match self {
-            Self::Threshold(question) => question.in_cells(document, grid, progress),
-            Self::Probable(question) => question.in_cells(document, grid, progress),
-        }
-    }
+/// The threshold of a motion, and that of a share of the runs under noise where one is given.
+fn questions(options: &Arguments) -> Result<(Threshold, Option<ProbableThreshold>), Failure> {
+    let remedy = "give a number above 0, in the unit of the field";
+    let resolution = if_given("--resolution", options.resolution.as_deref(), remedy)?;
+    let probability = options.probability.as_deref();
+    let probability = if_given("--probability", probability, "give a share, such as 0.5")?;
+    let within = if_given("--within", options.within.as_deref(), "give a time in s, such as 100")?;
+    let probable = probability.map(|probability| {
+        let (field, runs) = (options.field.clone(), options.runs.unwrap_or(Escape::RUNS));
+        ProbableThreshold { over: Vec::new(), field, probability, runs, within, resolution }
+    });
+    let of = Onset::named(&options.of).unwrap_or(Onset::Crossing);
+    let until_settled = settle_limit(options.until_settled.as_deref())?;
+    let (over, field, melnikov) = (Vec::new(), options.field.clone(), options.melnikov);
+    Ok((Threshold { over, field, of, resolution, until_settled, melnikov }, probable))
 }
 
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
-    let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
+    let picture = Picture::of_chart(&options.chart, common)?;
     let (document, warnings, grid) = load_over(&options.scene, &options.over, common)?;
-    let (asked, Document { scene, name, .. }) = (Asked::new(options)?, &document);
-    let (scan, onset) = (asked.scan(&document, &grid)?, asked.onset());
+    let ((question, probable), Document { scene, name, .. }) = (questions(options)?, &document);
+    let chance = probable.as_ref().map(|probable| probable.chance(&document, &grid)).transpose()?;
+    let (onset, scan) = match &probable {
+        Some(probable) => (Onset::Crossing, probable.scan(&document, &grid)?),
+        None => (question.of, question.scan(&document, &grid)?),
+    };
     if picture.is_some() {
         can_show_thresholds(&grid)?;
     }
     let mechanism = mechanism_of_all(&document, &grid, common, &warnings)?;
     let mut outputs = outputs(&options.scene, &document, common)?.with_picture(picture)?;
-    let unit = if matches!(asked, Asked::Probable(_)) { "runs" } else { "values" };
-    let table = ask(unit, common, |progress| asked.table(&document, &grid, progress))?;
+    let table = match &probable {
+        Some(probable) => ask("runs", common, |progress| probable.in_cells(&document, &grid, progress)),
+        None => ask("values", common, |progress| question.in_cells(&document, &grid, progress)),
+    }?;
     outputs.table(Output::DATA, &table)?;
     let mut fields = grid.axes().iter().map(|axis| &axis.field).chain([&scan.field]);
     let fixed = !fields.any(|field| field.starts_with("stops") || field.starts_with("mechanism"));
@@ -150,9 +122,9 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         None => "there is no barrier between two wells",
         Some(_) => "no barrier lies between the stops",
     });
-    let missing = match &asked {
-        Asked::Probable(question) => too_few(&table, &scan, &question.chance(&document, &grid)?),
-        Asked::Threshold(_) => missing(&table, &scan, onset, &grid, blocked),
+    let missing = match &chance {
+        Some(chance) => too_few(&table, &scan, chance),
+        None => missing(&table, &scan, onset, &grid, blocked),
     };
     let remarks = [missing, undecided(&table), without_melnikov(&table)];
     remarks.iter().flatten().for_each(|words| common.say(&format!("{name}: {words}")));

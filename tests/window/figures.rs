@@ -184,6 +184,8 @@ fn of_the_mechanism_and_its_energy_the_copied_command_makes_the_same_bytes() {
     assert!(line.contains("--panels energy --panels ledger"), "{line}");
     let line = same_bytes(&mut harness, View::Mechanism, "pdf");
     assert!(line.contains("curve paper --at-mm ") && line.contains(" --mechanism-plot "), "{line}");
+    let line = same_bytes(&mut harness, View::Well, "svg");
+    assert!(line.contains("--base-accel-g ") && line.contains(" --well-plot "), "{line}");
     // a force without flexures, and one with magnets, a coil and its load
     for scene in ["nominal-cubic", "magnet", "harvester"] {
         same_bytes(&mut window(scene, WIDE), View::Mechanism, "svg");

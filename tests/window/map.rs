@@ -199,6 +199,17 @@ fn every_preset_has_a_map_or_says_why_not() {
     }
 }
 
+#[test]
+fn a_map_that_cannot_be_made_says_of_which_scene() {
+    let mut session = session("paper", &[]);
+    let [_, amplitude] = axes((0.25, 0.25));
+    // settled beyond the end of the run
+    session.map.choose(Some([axis("run.settle_s", (1.0, 20.0, 1.0)), amplitude]));
+    session.want_map(0.0);
+    let problem = session.map.problem().unwrap();
+    assert!(problem.starts_with("built-in paper: "), "{problem}");
+}
+
 /// Ends and steps of both axes.
 fn ranges(harness: &Harness<'static, Window>) -> [(f64, f64, f64); 2] {
     map(harness.state()).question.axes.clone().map(|axis| (axis.from, axis.to, axis.step))

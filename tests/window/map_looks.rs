@@ -7,7 +7,9 @@ use interwell::app::export::map_command_line;
 use interwell::app::session::map::Map;
 use interwell::app::window::{Command, Window};
 use interwell::app::words::columns::{COLUMNS, title};
-use interwell::output::{Cell as DrawnCell, Cut, Marks, Panel, Projection, Role as Drawn, View, words_of};
+use interwell::output::{
+    Area, Cell as DrawnCell, Cut, Marks, Panel, PlotAxis, Role as Drawn, SurfaceFrame, View, words_of,
+};
 use interwell::scene::{Layout, Stops, SweepAxis};
 use interwell_studies::study::{Cell, RMS_VELOCITY, STANDARD_COLUMNS, SummaryField};
 
@@ -64,13 +66,14 @@ fn a_click_on_the_surface_takes_the_scene_there() {
     click_on(&mut harness, "Surface");
     let rect = harness.get_by_role_and_label(Role::Image, "map as a surface").rect();
     let [left, top, right, bottom] = [rect.left(), rect.top(), rect.right(), rect.bottom()].map(f64::from);
-    let projection = Projection { left, top, right, bottom };
+    let [x, y, z] = [(); 3].map(|()| PlotAxis::given(0.0, 1.0, Vec::new(), ""));
+    let surface = SurfaceFrame { area: Area::new(left, top, right, bottom), x, y, z };
     let most = map(harness.state()).known_cells().map(rms).fold(0.0, f64::max);
     // 2.5 mm and 1.25 g, whose height is its share of the largest velocity: no face hides it
     let (column, row) = (6, 3);
     let speed = rms(map(harness.state()).cell(column, row).unwrap().0);
     assert!(speed > 0.5 * most);
-    let (x, y) = projection.place((0.75, 0.75, speed / most));
+    let (x, y) = surface.point((0.75, 0.75, speed / most));
     click(&mut harness, pos2(x as f32, y as f32 + 1.0));
     assert_eq!((stops_mm(&harness), amplitude_g(&harness)), (2.5, 1.25));
     // words have no height

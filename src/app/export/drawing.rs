@@ -9,20 +9,21 @@ use crate::app::session::explore::STARTS;
 use crate::app::session::map::over;
 use crate::app::session::measured::Overlay as Laid;
 use crate::app::task::progress;
+use crate::dynamics::STANDARD_GRAVITY;
 use crate::mechanics::Mechanism;
 use crate::numeric::extent;
 use crate::output::{
     Caption, Chart, Figure, Overlay, Ranges, RunPanel, SpectrumQuantity, SweepPicture, Theme, View,
     basins_chart, can_show, compared_name, comparison_chart, comparison_title, curve_chart, distance_chart,
     measured_chart, measured_force_chart, mechanism_chart, run_chart, scene_accuracy_chart, section_chart,
-    spectrum_chart, sweep_chart,
+    shown_columns, spectrum_chart, sweep_chart, well_chart,
 };
 use crate::questions::{
     Accuracy, Basins, Carry, Compare, Curve, Distance, EvenRange, Grid, Progress, Scheme, Section,
     SectionOptions, Signal, Simulation, Spectrum, Sweep,
 };
 use crate::scene::{Document, FieldPath, arguments};
-use interwell_studies::study::{Keep, metres, stop_positions};
+use interwell_studies::study::{Keep, default_positions, metres, stop_positions};
 
 use super::figure::{FigureOrder, Subject};
 
@@ -44,6 +45,7 @@ fn figure(order: &FigureOrder, cancel: &AtomicBool) -> Result<Figure> {
         Subject::Run(times, panels) => drawing.run(*times, panels),
         Subject::Curve => drawing.curve(),
         Subject::Mechanism(mm) => drawing.mechanism_at(*mm),
+        Subject::Well(mm, accel_g) => drawing.well(*mm, *accel_g),
         Subject::SideBySide(mm, other) => drawing.side_by_side(*mm, other, &mut caption),
         Subject::Accuracy(stepped) => drawing.accuracy(*stepped),
         Subject::Measured(over) => drawing.measured(over),
@@ -101,9 +103,7 @@ impl Drawing<'_> {
         let simulation = self.simulation()?;
         let (run, trace) = simulation.traced(&Keep::default(), times, &self.progress)?;
         let trace = RunPanel::complete(panels, trace, simulation.model(), self.progress.stop());
-        let (of, ranges) =
-            ((&**simulation.mechanism(), simulation.model().mass()), Ranges { x: times, y: None });
-        Ok(run_chart(&trace, &run.summary, of, panels, ranges))
+        Ok(run_chart(&trace, &run.summary, simulation.model(), panels, Ranges { x: times, y: None }))
     }
 
     fn curve(&self) -> Result<Chart> {
@@ -115,6 +115,13 @@ impl Drawing<'_> {
 
     fn mechanism_at(&self, mm: f64) -> Result<Chart> {
         Ok(mechanism_chart(&[(self.simulation()?.model(), metres(mm))])?)
+    }
+
+    fn well(&self, mm: f64, accel_g: f64) -> Result<Chart> {
+        let simulation = self.simulation()?;
+        let ends = default_positions(simulation.scene(), simulation.mechanism(), 2);
+        let (x, base_accel) = (metres(mm), accel_g * STANDARD_GRAVITY);
+        Ok(well_chart(simulation.model(), x, base_accel, (ends[0], ends[1])))
     }
 
     fn side_by_side(&self, mm: [f64; 2], other: &str, caption: &mut Caption) -> Result<Chart> {
@@ -155,25 +162,14 @@ impl Drawing<'_> {
     fn sweep(&self, subject: &Subject, quantity: &str, view: View) -> Result<Chart> {
         let (scene, carry) = (&self.document.scene, subject.is_walked().then_some(Carry::Both));
         let question = Sweep { carry, ..Sweep::default() };
-        let cells = question.cells(&self.document, self.grid(subject)?, Some(quantity), &self.progress)?;
+        let grid = self.grid(subject)?;
+        let shown = shown_columns(quantity, &view, &grid);
+        let cells = question.cells(&self.document, grid, &shown, &self.progress)?;
         let (sweep, grid) = (&cells.sweep, cells.sweep.grid());
         can_show(grid, quantity, &view, &sweep.empty_table())?;
         let rows = cells.rows(&self.document, &self.progress)?;
-        let overlay = match carry {
-            Some(_) => Overlay::default(),
-            None => Overlay::of(scene, sweep.first_mechanism().ok().as_deref(), grid, &rows),
-        };
-        Ok(sweep_chart(&SweepPicture {
-            rows: &rows,
-            grid,
-            scene,
-            until_settled: None,
-            quantity,
-            overlay,
-            view,
-            ranges: Ranges::default(),
-            draws: "",
-        })?)
+        let overlay = Overlay::of(scene, sweep.first_mechanism().ok().as_deref(), grid, &rows);
+        Ok(sweep_chart(&SweepPicture { overlay, view, ..SweepPicture::of(&rows, grid, scene, quantity) })?)
     }
 
     fn diagram(&self, subject: &Subject) -> Result<Chart> {

@@ -12,6 +12,7 @@ use crate::app::session::explore::{STARTS, WalkQuantity};
 use crate::app::session::map::{LOAD_POWER, NO_FIELDS, ground, over};
 use crate::app::session::measured::{Overlay, file_name};
 use crate::app::task::{Each, Question, as_text};
+use crate::dynamics::STANDARD_GRAVITY;
 use crate::numeric::{elementary, short};
 use crate::output::{
     Argument, Cut, Figure, Format, RMS, RunPanel, Sheet, Sink, View, csv, picture_arguments, words_of,
@@ -32,6 +33,9 @@ pub enum Subject {
     Curve,
     /// The mechanism with the mass at a displacement in mm.
     Mechanism(f64),
+    /// The potential with the mass at a displacement in mm, tipped by the push of the base at an acceleration
+    /// in g.
+    Well(f64, f64),
     /// The mechanisms of this scene and of one given as a link, with the masses at displacements in mm.
     SideBySide([f64; 2], String),
     /// Error over processor time, and the run by a method of fixed step in s, if one suits the scene.
@@ -146,6 +150,11 @@ impl Subject {
         Self::Mechanism(tenths_of_um(x))
     }
 
+    /// The potential with the mass at `x` in m and the base's acceleration in m/s^2.
+    pub fn well(x: f64, base_accel: f64) -> Self {
+        Self::Well(tenths_of_um(x), (base_accel / STANDARD_GRAVITY * 1e4).round() / 1e4)
+    }
+
     /// The mechanism beside that of the pin at this place, with the masses at these displacements in m.
     pub fn side_by_side(session: &Session, place: usize, x: [f64; 2]) -> Result<Self, String> {
         let pinned = session.pins.all().iter().map(|pin| &pin.scene).skip(place).take(1);
@@ -219,6 +228,11 @@ impl Subject {
             Self::Curve => "curve",
             Self::Mechanism(mm) => {
                 options.push(Argument::of("at-mm", mm.to_string()));
+                "curve"
+            }
+            Self::Well(mm, accel_g) => {
+                options.push(Argument::of("at-mm", mm.to_string()));
+                options.push(Argument::of("base-accel-g", accel_g.to_string()));
                 "curve"
             }
             Self::SideBySide([here, there], other) => {
@@ -337,6 +351,7 @@ impl FigureOrder {
         let Place { path, sheet, data, .. } = &self.place;
         let plot = match self.subject {
             Subject::Mechanism(_) | Subject::SideBySide(..) => "mechanism-plot",
+            Subject::Well(..) => "well-plot",
             _ => "plot",
         };
         all.push(Argument::of(plot, path.to_string_lossy()));

@@ -77,7 +77,7 @@ impl Session {
 
     /// A scene with the files of the open one.
     pub(super) fn with_files(&self, scene: Scene) -> SceneWithFiles {
-        SceneWithFiles { scene, files: self.editor.document().files.clone() }
+        SceneWithFiles::of(self.editor.document(), scene)
     }
 
     pub(super) fn ask_settled(&mut self) {

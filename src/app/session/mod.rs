@@ -121,7 +121,7 @@ impl Session {
         let document = editor.document();
         let (mechanism, model) = solve(document, FLEXURE_TOLERANCE)?;
         let scene = editor.scene().clone();
-        let of = SceneWithFiles { scene: scene.clone(), files: document.files.clone() };
+        let of = SceneWithFiles::of(document, scene.clone());
         let prepared = Prepared { of, mechanism: Arc::clone(&mechanism), tolerance: FLEXURE_TOLERANCE };
         let model = SharedModel::new(model, prepared);
         let mut session = Self {

@@ -17,35 +17,45 @@ use crate::scene::{self, Document, Fault, Files, Scene, named_texts, read_record
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(from = "WithTexts", into = "WithTexts")]
 pub struct SceneWithFiles {
+    /// Its name in messages.
+    name: String,
     pub scene: Scene,
     pub files: Files,
 }
 
 #[derive(Serialize, Deserialize)]
 struct WithTexts {
+    name: String,
     #[serde(with = "crate::app::task::as_text")]
     scene: Scene,
     texts: BTreeMap<String, String>,
 }
 
 impl From<SceneWithFiles> for WithTexts {
-    fn from(SceneWithFiles { scene, files }: SceneWithFiles) -> Self {
-        Self { texts: named_texts(&scene, &files), scene }
+    fn from(SceneWithFiles { name, scene, files }: SceneWithFiles) -> Self {
+        Self { name, texts: named_texts(&scene, &files), scene }
     }
 }
 
 impl From<WithTexts> for SceneWithFiles {
-    fn from(WithTexts { mut scene, texts }: WithTexts) -> Self {
+    fn from(WithTexts { name, mut scene, texts }: WithTexts) -> Self {
         let files = Files { folder: None, cached: texts };
         read_records(&mut scene, &files);
-        Self { scene, files }
+        Self { name, scene, files }
     }
 }
 
 impl SceneWithFiles {
+    /// A scene made from that of a document, with its name and its files.
+    pub fn of(document: &Document, scene: Scene) -> Self {
+        Self { name: document.name.clone(), scene, files: document.files.clone() }
+    }
+
     /// The document of the scene, as questions take it.
     pub fn document(&self) -> Document {
-        Document::of_scene(self.scene.clone(), self.files.clone())
+        let mut document = Document::of_scene(self.scene.clone(), self.files.clone());
+        document.name.clone_from(&self.name);
+        document
     }
 }
 

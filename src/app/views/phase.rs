@@ -136,7 +136,7 @@ fn still(model: &Model, axes: (PlotAxis, PlotAxis), points_only: bool) -> Chart 
         }
         named.push(Layer::new(Role::Resting, "at rest", Marks::Points(Vec::new())));
     }
-    let panel = portrait_panel((model.mechanism(), model.mass()), axes, 1e3, (f64::NAN, f64::NAN), named);
+    let panel = portrait_panel(model, axes, 1e3, (f64::NAN, f64::NAN), named);
     Chart::stack(vec![panel], "", Table::new())
 }
 

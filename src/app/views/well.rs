@@ -1,10 +1,8 @@
 //! View of the potential well, with the mass on it.
 //!
-//! In the frame of the base, the force of the mechanism and the push -m a_b act on the mass. The potential of
-//! the push is m a_b x, and the mass moves like a ball on the sum of both potentials. The sum is drawn thick,
-//! the potential of the mechanism alone thin. The vertical range follows the largest push in a few coarse
-//! steps, so that the curve tilts and does not rescale, and it holds while the mechanism changes. Energy is
-//! counted from the bottom of the deepest well, or without a well from the lower stop.
+//! The mass moves like a ball on the potential that the push of the base tips ([`TippedPotential`]), which is
+//! drawn thick, the potential of the mechanism alone thin. The vertical range follows the largest push in a
+//! few coarse steps, so that the curve tilts and does not rescale, and it holds while the mechanism changes.
 
 use std::sync::Arc;
 
@@ -16,7 +14,9 @@ use crate::app::words::numbers::{energy, three};
 use crate::app::words::wells::well_name;
 use crate::dynamics::Model;
 use crate::mechanics::Barrier;
-use crate::output::{Chart, DISPLACEMENT, Layer, Marks, Panel, PlotAxis, Role, axis_name, suited_unit};
+use crate::output::{
+    Chart, DISPLACEMENT, Layer, Marks, PlotAxis, Role, TippedPotential, axis_name, suited_unit, well_panel,
+};
 use interwell_studies::study::Table;
 
 use super::ghosts::{Ghost, PINNED, ghosts};
@@ -28,9 +28,6 @@ use super::ranges::{bottom, room_for_push};
 use super::stops::{BEST_STOPS, WALL, best_stops, stops_ui, travel_limits};
 use super::view::Axis;
 use super::{Span, View, ViewContext};
-
-/// Number of points of a curve.
-const POINTS: usize = 400;
 
 /// Distance in points between two samples of what the curve sweeps over.
 const STEP: f32 = 2.0;
@@ -50,35 +47,18 @@ const MIDDLE: f32 = 2.5;
 /// Half the width in points of an end of the bracket.
 const BRACKET: f32 = 5.0;
 
-/// The potential of a model over displacement, tipped by a push in N, in mm and a unit of energy.
-struct Potential<'a> {
-    model: &'a Model,
-    tilt: f64,
-    per_joule: f64,
+/// The potential without the push, and the unit of its axis.
+struct Level<'a> {
+    potential: TippedPotential<'a>,
     unit: &'static str,
 }
 
-impl Potential<'_> {
-    fn at(&self, mm: f64) -> f64 {
-        let curve = &self.model.mechanism().curve;
-        let (low, high) = curve.domain();
-        let (x, zero) = (mm * 1e-3, bottom(self.model).0);
-        (curve.potential(x.clamp(low, high)) - zero + self.tilt * x) * self.per_joule
-    }
-
+impl Level<'_> {
     /// An energy in J as text, in the unit of the axis if its usual unit is another one.
     fn written(&self, joule: f64) -> String {
         let text = energy(joule);
         let has_unit = text.split_once(' ').is_some_and(|(_, unit)| unit == self.unit);
-        if has_unit { text } else { format!("{} {}", three(joule * self.per_joule), self.unit) }
-    }
-
-    /// Its points where the force is known.
-    fn points(&self, span: Span) -> Vec<(f64, f64)> {
-        let domain = self.model.mechanism().curve.domain();
-        let (low, high) = (span.low.max(domain.0) * 1e3, span.high.min(domain.1) * 1e3);
-        let place = |i: usize| low + (high - low) * i as f64 / POINTS as f64;
-        (0..=POINTS).map(place).map(|mm| (mm, self.at(mm))).collect()
+        if has_unit { text } else { format!("{} {}", three(joule * self.potential.per_joule), self.unit) }
     }
 }
 
@@ -88,15 +68,15 @@ pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let (per_joule, unit) = suited_unit("J", std::iter::once(high - low));
     let (span, state) = (context.span, context.drawn.state(context.session));
     let model = Arc::clone(context.drawn.model(context.session));
-    let potential = |model, tilt| Potential { model, tilt, per_joule, unit };
-    let (level, tipped) = (potential(&model, 0.0), potential(&model, model.mass() * state.base_accel));
-    let points = tipped.points(span);
+    let level = Level { potential: TippedPotential::new(&model, 0.0, per_joule), unit };
+    let tipped = level.potential.at_acceleration(state.base_accel);
+    let points = tipped.points((span.low, span.high));
     // the potential of a pinned motion, where it differs from the present one
     let seen = 0.01 * (high - low) * per_joule;
     let all = ghosts(context);
-    let of_ghosts: Vec<Potential<'_>> = all
+    let of_ghosts: Vec<TippedPotential<'_>> = all
         .iter()
-        .map(|ghost| potential(&ghost.model, ghost.model.mass() * ghost.state.base_accel))
+        .map(|ghost| TippedPotential::new(&ghost.model, ghost.state.base_accel, per_joule))
         .collect();
     let mut layers = Vec::new();
     for (ghost, curve) in all.iter().zip(&of_ghosts) {
@@ -111,16 +91,15 @@ pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let pane = kept_pane_ui(ui, &style, Place::in_line(ui, area, Sense::DRAG, (0.0, 0.0)), key, || {
         let across = PlotAxis::between(span.low * 1e3, span.high * 1e3, DISPLACEMENT);
         let up = PlotAxis::between(low * per_joule, high * per_joule, &axis_name("energy", unit));
-        still(&level, span, (across, up), &other)
+        still(&level.potential, &model, span, (across, up), &other)
     });
     let Some(frame) = pane.frame(0) else { return };
     axes_input(ui, context.memory, View::Well, &pane.response, (area, frame));
     let (left, right) = model.stop_positions();
-    let limit = |stop: Option<f64>| stop.map_or(f64::NAN, |x| x * 1e3);
-    layers.extend(Layer::curve("", points, (limit(left), limit(right)), |mm| tipped.at(mm)));
+    layers.extend(tipped.line(points));
     let painter = ui.painter().with_clip_rect(frame);
     pane.draw(&painter, &style, 0, &layers);
-    let on_curve = |x: f64, curve: &Potential<'_>| {
+    let on_curve = |x: f64, curve: &TippedPotential<'_>| {
         let ahead = 0.1 * f64::from(BALL) / context.span.scale(frame);
         let [at, ahead] =
             [x * 1e3, (x + ahead) * 1e3].map(|mm| pane.place(0, (mm, curve.at(mm))).unwrap_or(frame.min));
@@ -156,17 +135,14 @@ pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
 
 /// The parts that stay the same from frame to frame: axes, the potential without the push, and the legend,
 /// also for the `other` motions and stops.
-fn still(level: &Potential<'_>, span: Span, (across, up): (PlotAxis, PlotAxis), other: &[Role]) -> Chart {
-    let mut panel = Panel::new(across, up);
-    if level.model.is_shaken() {
-        panel.layer(Role::Curve, "potential with the push", Marks::Path(Vec::new()));
-        panel.layer(Role::Reference, "without the push", Marks::Path(level.points(span)));
-    } else {
-        panel.layer(Role::Curve, "potential", Marks::Path(Vec::new()));
-    }
-    if level.model.stop_positions() != (None, None) {
-        panel.layer(Role::Beyond, "beyond the stops", Marks::Path(Vec::new()));
-    }
+fn still(
+    level: &TippedPotential<'_>,
+    model: &Model,
+    span: Span,
+    axes: (PlotAxis, PlotAxis),
+    other: &[Role],
+) -> Chart {
+    let mut panel = well_panel(level, (span.low, span.high), axes, model.is_shaken());
     for role in other {
         let name = if let Role::Pin(place) = role { PINNED[place % PINNED.len()] } else { BEST_STOPS };
         panel.layer(*role, name, Marks::Path(Vec::new()));
@@ -193,7 +169,7 @@ fn landmarks(
     painter: &egui::Painter,
     context: &ViewContext<'_>,
     (pane, rect): (&Pane, Rect),
-    level: &Potential<'_>,
+    level: &Level<'_>,
     taken: &mut Taken,
 ) {
     let (style, model) = (context.style, context.drawn.model(context.session));
@@ -212,7 +188,7 @@ fn landmarks(
     let place = |x: f64, energy: f64| pane.place(0, (x * 1e3, energy)).unwrap_or(rect.min);
     let feet = feet(model, &barrier);
     let heights = feet.map_or([joule; 2], |feet| feet.map(|foot| potential(barrier.x) - potential(foot)));
-    let below_top = |height: f64| place(barrier.x, (joule - height) * level.per_joule);
+    let below_top = |height: f64| place(barrier.x, (joule - height) * level.potential.per_joule);
     let (top, foot) = (below_top(0.0), below_top(joule));
     let mut bracket = Vec::new();
     if foot.y - top.y > 4.0 * BRACKET && foot.y < rect.bottom() {
@@ -229,11 +205,11 @@ fn landmarks(
     }
     let zero = place(barrier.x, 0.0).y;
     taken.lines.push(vec![pos2(rect.left(), zero), pos2(rect.right(), zero)]);
-    let largest = model.mass() * model.largest_base_acceleration();
+    let largest = model.largest_base_acceleration();
     let swept = |x: f32| {
         let x = context.span.world_from_screen(x, rect);
-        let tipped = |tilt: f64| Potential { tilt, ..*level }.at(x * 1e3);
-        [-largest, 0.0, largest].map(|push| place(x, tipped(push))).into()
+        let tipped = |accel: f64| level.potential.at_acceleration(accel).at(x * 1e3);
+        [-largest, 0.0, largest].map(|accel| place(x, tipped(accel))).into()
     };
     let count = (rect.width() / STEP) as usize;
     taken.lines.extend((0..=count).map(|i| swept(rect.left() + STEP * i as f32)));

@@ -42,6 +42,8 @@ pub struct Figures {
     pub(super) problem: Option<String>,
     /// Where the mass was when the dialog was opened, in m, and that of the pinned motion beside it.
     x: [f64; 2],
+    /// The base's acceleration then, in m/s^2.
+    base_accel: f64,
     /// The times in s that the view of distances showed then.
     seen: Option<(f64, f64)>,
     had_focus: bool,
@@ -86,7 +88,8 @@ impl Figures {
         self.seen = round_times((since, session.player.time())).filter(|times| times.0 < times.1);
         let pin = session.pins.all().get(memory.beside_place(session));
         let there = pin.map(|pin| pin.watch.state_at(session.player.time()).x);
-        self.x = [session.player.state().x, there.unwrap_or_default()];
+        let state = session.player.state();
+        (self.x, self.base_accel) = ([state.x, there.unwrap_or_default()], state.base_accel);
         (self.view, self.problem, self.had_focus) = (Some(view), None, false);
     }
 
@@ -121,7 +124,8 @@ impl Figures {
             View::Mechanism => Ok(Subject::mechanism(self.x[0])),
             View::SideBySide => Subject::side_by_side(session, memory.beside_place(session), self.x),
             View::Measured => Subject::measured(session),
-            View::Well | View::ForceCurve => Ok(Subject::Curve),
+            View::Well => Ok(Subject::well(self.x[0], self.base_accel)),
+            View::ForceCurve => Ok(Subject::Curve),
             View::Map => Subject::map(session, memory.map_look.surface, memory.map_look.cuts),
             View::UpAndDown => Subject::walks(session),
             View::Basins => Subject::basins(session),
@@ -164,7 +168,8 @@ impl Figures {
             }
             _ if !panels(view).is_empty() => "The run of the scene from its start.",
             View::Section => "The states of the run of the scene from its start.",
-            View::Well | View::ForceCurve => "Force and potential over displacement.",
+            View::Well => "The potential with the mass and the push as they were when this dialog opened.",
+            View::ForceCurve => "Force and potential over displacement.",
             View::SideBySide => "Both mechanisms with the mass where it was when this dialog opened.",
             View::Mechanism => "The mechanism with the mass where it was when this dialog opened.",
             View::Accuracy => "All runs are computed again; times of the processor differ from run to run.",

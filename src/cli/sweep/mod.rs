@@ -30,7 +30,12 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let Some((mut rows_out, mut all)) = opened else { return prepared.has_all_rows(common) };
     let from = all.cells;
     if let (Rows::Blocks(blocks), Some(_), 1..) = (&rows_out, picture, from) {
-        job.shown = blocks.table(&sweep.empty_table())?;
+        job.shown = blocks.table(&sweep.empty_table().only(&prepared.columns))?;
+        let lacking = prepared.lacking_columns().join(" and ");
+        if !lacking.is_empty() {
+            let lost = "the picture has no dots where motions may be transients";
+            common.say(&format!("warning: {lost}: the rows that were there have no {lacking}"));
+        }
     }
     let result = job.run(sweep, slice, from, "cells", |outputs, table, tally| {
         rows_out.put(outputs, rows(&table.only(&prepared.columns), 0..usize::MAX), tally)
@@ -97,12 +102,8 @@ impl Prepared<'_> {
 
     fn chart(&self, rows: &Table, ranges: Ranges) -> Result<Chart, Failure> {
         let (grid, scene) = (self.sweep.grid(), &self.document.scene);
-        let &SweepOptions { until_settled, carry, ref draws, .. } = self.sweep.options();
-        // The overlay holds for runs from rest only.
-        let overlay = match carry {
-            Some(_) => Overlay::default(),
-            None => Overlay::of(scene, self.mechanism.as_deref(), grid, rows),
-        };
+        let &SweepOptions { until_settled, ref draws, .. } = self.sweep.options();
+        let overlay = Overlay::of(scene, self.mechanism.as_deref(), grid, rows);
         let (quantity, view, draws) = (self.quantity, self.view.clone(), &*draws.about());
         let shown = SweepPicture { rows, grid, scene, until_settled, quantity, overlay, view, ranges, draws };
         Ok(sweep_chart(&shown)?)

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use clap::Args;
 use interwell::mechanics::{BuildError, Mechanism};
-use interwell::output::{Cut, View, can_show, plan};
+use interwell::output::{Cut, View, can_show, plan, shown_columns};
 use interwell::questions::{self, Carry, Error, Grid, SweepCells, Uncertain, assign_uncertain};
 use interwell::scene::{Document, find_name, is_manifest, read_number};
 use interwell_studies::study::{MAX_DRAWS, Shard, Slice, SummaryField, Sweep};
@@ -120,7 +120,7 @@ impl<'a> Prepared<'a> {
     /// Loads the scene, checks the arguments and prints the warnings. An argument overrides a manifest that
     /// is given as the scene.
     pub fn new(options: &'a Arguments, common: &Common) -> Result<Self, Failure> {
-        let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
+        let picture = Picture::of_chart(&options.chart, common)?;
         // an unknown name is reported by `can_show`, with the names that exist
         let quantity = SummaryField::named(&options.quantity).map_or(&*options.quantity, |field| field.name);
         if options.check && !is_manifest(options.scene.as_ref()) {
@@ -145,14 +145,14 @@ impl<'a> Prepared<'a> {
         let carry = options.carry.as_ref().or(swept.carry.as_ref()).and_then(|word| Carry::named(word));
         let columns = if options.columns.is_empty() { swept.columns } else { options.columns.clone() };
         let question = questions::Sweep { over: Vec::new(), columns, until_settled, carry, uncertain };
-        // the quantity of the picture is computed even if its column is not written
-        let shown = picture.map(|_| quantity);
-        let cells = question.cells(&document, grid, shown, &interrupt::progress())?;
+        let view = view(options, &grid)?;
+        // the columns of the picture are computed even if they are not written
+        let shown = picture.map_or_else(Vec::new, |_| shown_columns(quantity, &view, &grid));
+        let cells = question.cells(&document, grid, &shown, &interrupt::progress())?;
         let SweepCells { sweep, chosen, written: columns } = cells;
         let mechanism = first_mechanism(&document, &sweep)?;
         let slice = sweep.slice(shard);
         warn(&document, common, &warnings, mechanism.as_deref());
-        let view = view(options, sweep.grid())?;
         if picture.is_some() {
             can_show(sweep.grid(), quantity, &view, &sweep.empty_table())?;
         }

@@ -3,7 +3,7 @@
 use std::io::{BufReader, Read};
 use std::path::Path;
 
-use interwell::output::{csv_table, manifest_path, plan_differences};
+use interwell::output::{csv_table, manifest_path, plan_differences, shown_columns};
 use interwell::questions::Table;
 use interwell::system::checksum::file_checksum;
 use interwell::system::clock::WallClock;
@@ -89,17 +89,18 @@ impl Prepared<'_> {
                 plan_differences(&plan_with_shard(existing), &plan_with_shard(&head))
             )
         };
-        if resume && !opened.has_rows() && self.is_whole(&head) {
-            opened.leave();
-            return Ok(None);
-        }
         if resume
-            && !force
             && !opened.has_rows()
-            && let Some(existing) = self.existing_head().filter(|existing| *existing != head)
+            && let Some((existing, sha256)) = self.existing()
         {
-            opened.leave();
-            refuse!("{}", is_of_another(out.display().to_string(), &existing, "made"));
+            if existing == head && sha256 == file_checksum(out).ok() {
+                opened.leave();
+                return Ok(None);
+            }
+            if existing != head && !force {
+                opened.leave();
+                refuse!("{}", is_of_another(out.display().to_string(), &existing, "made"));
+            }
         }
         if !opened.has_rows() || (force && !resume) {
             let part = opened.begin(&head.to_string(), header).map_err(refused)?;
@@ -117,9 +118,10 @@ impl Prepared<'_> {
                 format!("{left}: go on with --resume, or start anew with --force")
             }
             Some(existing) if existing != head => is_of_another(part, &existing, "begun"),
-            Some(_) if let Some(column) = self.lacking_column() => format!(
-                "--resume: the rows in {part} have no column {column}, which --plot needs: leave --plot out, \
-                 or start anew with --force and --columns all"
+            Some(_) if self.lacking_columns().contains(&self.quantity) => format!(
+                "--resume: the rows in {part} have no column {}, which --plot needs: leave --plot out, \
+                 or start anew with --force and --columns all",
+                self.quantity
             ),
             Some(_) => {
                 let (part, blocks) = opened.resume(force).map_err(refused)?;
@@ -138,32 +140,20 @@ impl Prepared<'_> {
         Blocks { part, rows, unit, block: Tally::default(), clock: WallClock::start() }
     }
 
-    /// A column that a picture needs and the rows do not have.
-    fn lacking_column(&self) -> Option<String> {
-        self.picture?;
-        let table = self.sweep.empty_table();
-        let needed = table.columns().iter().map(|column| column.name.as_str());
-        let mut needed = std::iter::once(self.quantity).chain(needed);
-        needed.find(|name| !self.columns.iter().any(|column| column == name)).map(str::to_owned)
+    /// The columns that a picture shows and the rows do not have.
+    pub fn lacking_columns(&self) -> Vec<&str> {
+        let shown = |_| shown_columns(self.quantity, &self.view, self.sweep.grid());
+        let shown = self.picture.map_or_else(Vec::new, shown);
+        shown.into_iter().filter(|name| !self.columns.iter().any(|column| column == name)).collect()
     }
 
-    /// The manifest of the file, if both exist.
-    fn manifest(&self) -> Option<Value> {
-        let text = files::bytes(&manifest_path(&self.out)).ok().filter(|_| files::exists(&self.out));
-        text.and_then(|text| serde_json::from_slice::<Value>(&text).ok())
-    }
-
-    /// The plan and the shard of the sweep in the file, from its manifest.
-    fn existing_head(&self) -> Option<Value> {
-        let manifest = self.manifest()?;
-        manifest["plan"].is_object().then(|| json!({ "plan": manifest["plan"], "shard": manifest["shard"] }))
-    }
-
-    /// Whether the file has all rows of the sweep with this head, according to its manifest and checksum.
-    fn is_whole(&self, head: &Value) -> bool {
-        let is_intact =
-            |manifest: Value| manifest["sha256"].as_str() == file_checksum(&self.out).ok().as_deref();
-        self.existing_head().as_ref() == Some(head) && self.manifest().is_some_and(is_intact)
+    /// The plan and the shard of the sweep in the file, and the checksum that its manifest has.
+    fn existing(&self) -> Option<(Value, Option<String>)> {
+        let text = files::bytes(&manifest_path(&self.out)).ok().filter(|_| files::exists(&self.out))?;
+        let manifest: Value =
+            serde_json::from_slice(&text).ok().filter(|all: &Value| all["plan"].is_object())?;
+        let sha256 = manifest["sha256"].as_str().map(str::to_owned);
+        Some((json!({ "plan": manifest["plan"], "shard": manifest["shard"] }), sha256))
     }
 }
 

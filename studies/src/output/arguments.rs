@@ -46,9 +46,10 @@ fn recorded(option: &str) -> Recorded {
         "out" | "jobs" | "quiet" | "plot-data" | "events" | "summary" | "landscape" | "shapes"
         | "contact" | "attractors" | "comparison" | "strict" | "resume" | "force" => Recorded::Nowhere,
         "set" | "tolerance" | "shard" | "check" | "measured" | "shift-s" | "offset-mm" | "time-scale"
-        | "inset" | "plot" | "shapes-plot" | "mechanism-plot" | "contact-plot" | "plot-size"
-        | "plot-width-mm" | "plot-height-mm" | "font-pt" | "dpi" | "plot-x" | "plot-y" | "dark"
-        | "no-title" | "beside" | "panels" | "quantity" | "surface" | "cut" => Recorded::WithPicture,
+        | "inset" | "plot" | "shapes-plot" | "mechanism-plot" | "well-plot" | "base-accel-g"
+        | "contact-plot" | "plot-size" | "plot-width-mm" | "plot-height-mm" | "font-pt" | "dpi"
+        | "plot-x" | "plot-y" | "dark" | "no-title" | "beside" | "panels" | "quantity" | "surface"
+        | "cut" => Recorded::WithPicture,
         _ => Recorded::WithRows,
     }
 }
@@ -63,9 +64,8 @@ pub fn picture_arguments(command: &str, given: impl IntoIterator<Item = Argument
     let words = kept.flat_map(|mut argument| {
         let ending = argument.value.as_deref().and_then(|value| Path::new(value).extension());
         let ending = ending.map(|ending| ending.to_string_lossy().to_ascii_lowercase());
-        if let (Some(name @ ("plot" | "contact-plot" | "shapes-plot" | "mechanism-plot")), Some(ending)) =
-            (argument.option.as_deref(), ending)
-        {
+        let name = argument.option.as_deref().filter(|name| *name == "plot" || name.ends_with("-plot"));
+        if let (Some(name), Some(ending)) = (name, ending) {
             argument.value = Some(format!("{}.{ending}", name.replace('-', "_")));
         }
         argument.words().collect::<Vec<_>>()

@@ -98,25 +98,25 @@ impl Sweep {
     pub fn run(&self, simulation: &Simulation, progress: &Progress) -> Result<Table, Error> {
         let simulation = self.nominal(simulation, progress)?;
         let document = simulation.document();
-        let cells = self.cells(document, simulation.grid(&self.over)?, None, progress)?;
+        let cells = self.cells(document, simulation.grid(&self.over)?, &[], progress)?;
         Ok(cells.rows(document, progress)?.only(&cells.written))
     }
 
     /// The cells of a grid, not yet run; see [`Section::cells`](super::Section::cells). The document has the
-    /// [values](Self::nominal) of the uncertain inputs, and `shown` is a column that a picture needs.
+    /// [values](Self::nominal) of the uncertain inputs, and `shown` are columns that a picture needs.
     #[doc(hidden)]
     pub fn cells(
         &self,
         document: &Document,
         grid: Grid,
-        shown: Option<&str>,
+        shown: &[&str],
         progress: &Progress,
     ) -> Result<SweepCells, Error> {
         let columns = column_names(&self.columns, &grid, self.carry)?;
         let draws = draws(&self.uncertain, document, &grid, self.carry)?;
         let (written, until_settled) = (draws.columns(&columns), self.until_settled);
         let chosen = columns[grid.columns().len() + usize::from(self.carry.is_some())..].to_vec();
-        let shown = shown.filter(|name| !columns.iter().any(|column| column == name));
+        let shown = shown.iter().copied().filter(|name| !columns.iter().any(|column| column == name));
         let fields = columns.iter().map(String::as_str).chain(shown).filter_map(SummaryField::find).collect();
         let options = SweepOptions { columns: fields, until_settled, carry: self.carry, draws };
         let sweep = study::Sweep::new(&document.scene, &document.files, grid).with(options);

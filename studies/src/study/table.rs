@@ -215,18 +215,18 @@ impl Table {
         Self { columns: self.columns.iter().filter(|column| column.name != name).cloned().collect() }
     }
 
-    /// Adds the rows of `more`, which has the same columns, below.
+    /// Adds the rows of `more`, which has all columns and may have others, below.
     pub fn append(&mut self, more: &Self) {
         if self.columns.is_empty() {
             self.columns.clone_from(&more.columns);
             return;
         }
-        for (column, more) in self.columns.iter_mut().zip(&more.columns) {
-            match (&mut column.values, &more.values) {
-                (Values::Numbers(values), Values::Numbers(more)) => values.extend_from_slice(more),
-                (Values::Counts(values), Values::Counts(more)) => values.extend_from_slice(more),
-                (Values::Words(values), Values::Words(more)) => values.extend_from_slice(more),
-                (Values::Names(values), Values::Names(more)) => values.extend_from_slice(more),
+        for column in &mut self.columns {
+            match (&mut column.values, more.column(&column.name).map(|more| &more.values)) {
+                (Values::Numbers(values), Some(Values::Numbers(more))) => values.extend_from_slice(more),
+                (Values::Counts(values), Some(Values::Counts(more))) => values.extend_from_slice(more),
+                (Values::Words(values), Some(Values::Words(more))) => values.extend_from_slice(more),
+                (Values::Names(values), Some(Values::Names(more))) => values.extend_from_slice(more),
                 _ => debug_assert!(false, "tables of one study have the same columns"),
             }
         }

@@ -318,6 +318,29 @@ fn a_picture_of_rows_that_were_there_is_the_same() {
     assert_eq!(fs::read(a).unwrap(), fs::read(b).unwrap());
 }
 
+/// Dots on a map need columns that are not written by default; rows that were there are drawn without them.
+#[test]
+fn a_map_of_rows_that_were_there_says_that_it_has_no_dots() {
+    let line = "sweep paper --set run.duration_s=2 --set run.settle_s=1 \
+        --over stops.travel_limit_mm=1:7:0.0625 --over excitation.amplitude_g=0.5:1.5:0.01";
+    let sweep = Unfinished::new(line, 400);
+    let data = sweep.path("d.csv");
+    let drawn = |mut command: assert_cmd::Command| {
+        let said = command.arg("--plot-data").arg(&data).assert().success().get_output().stderr.clone();
+        let rows = fs::read_to_string(&data).unwrap();
+        (String::from_utf8(said).unwrap(), rows.lines().filter(|row| row.starts_with("transient,")).count())
+    };
+    let mut resumed = sweep.again("--resume --plot");
+    resumed.arg(sweep.path("a.svg"));
+    let (said, dots) = drawn(resumed);
+    assert!(said.contains("has no dots") && said.contains("no settled and steady"), "{said}");
+    assert_eq!(dots, 0);
+    let mut whole = headless(line);
+    whole.args(["--out", "/dev/null", "--plot"]).arg(sweep.path("b.svg"));
+    let (said, dots) = drawn(whole);
+    assert!(!said.contains("dots") && dots > 0, "{said} {dots}");
+}
+
 #[test]
 fn a_manifest_is_run_again_and_compared() {
     let folder = tempfile::tempdir().unwrap();

@@ -54,7 +54,17 @@ fn the_distance_of_two_runs_is_drawn_and_the_rows_stay_those_of_the_first() {
     let four = "--beside paper".to_owned() + &" --beside paper".repeat(3);
     refused(headless(&format!("simulate paper {four} --plot {}", plot.display())), &["--beside", "three"]);
     refused(headless("simulate paper --beside paper"), &["--plot"]);
-    refused(headless(&format!("simulate paper --beside nowhere --plot {}", plot.display())), &["nowhere"]);
+    let unknown = "--beside nowhere: no such file";
+    refused(headless(&format!("simulate paper --beside nowhere --plot {}", plot.display())), &[unknown]);
+    let wrong = folder.path().join("wrong.ron");
+    std::fs::write(&wrong, "(mass_g: 0, mechanism: Linear(n_per_m: 4), run: (duration_s: 1))").unwrap();
+    let name = format!("--beside {}:1:2: mass_g = 0", wrong.display());
+    refused(
+        headless(&format!("curve paper --beside {} --mechanism-plot {}", wrong.display(), plot.display())),
+        &[&name],
+    );
+    let three = "curve paper --at-mm 1,2,3 --beside magnet --out /dev/null --mechanism-plot";
+    refused(headless(&format!("{three} {}", plot.display())), &["--at-mm 1,2,3: ", "--beside magnet", "two"]);
 }
 
 #[test]

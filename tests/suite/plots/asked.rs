@@ -166,6 +166,14 @@ fn a_run_is_drawn_over_the_times_that_were_asked_for() {
     for bad in ["3:5", "-1:2"] {
         refused(with_plot(&format!("{line} --plot-time {bad}"), &path), &["--plot-time", bad, "4 s"]);
     }
+    // the option is named as it was given
+    for option in ["--plot-x", "--plot-time"] {
+        refused(with_plot(&format!("{line} {option} a:b"), &path), &[&format!("{option} a:b: `a`")]);
+        refused(
+            with_plot(&format!("{line} {option}=3:5"), &path),
+            &[&format!("{option} 3:5: the run lasts")],
+        );
+    }
     // A run that ends before its window shows what there is.
     let early = "simulate --set stops=None --set start=At(x_mm:7,v_m_per_s:900) --plot-time 1:2";
     says(early, &["ended early"]);

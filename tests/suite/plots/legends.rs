@@ -23,8 +23,7 @@ fn no_two_entries_of_a_legend_look_alike_in_any_set_of_panels() {
         for _ in 0..3 {
             let mut panels = RunPanel::ALL.to_vec();
             panels.retain(|_| random.next_u32() % 3 > 0);
-            let of = (model.mechanism().as_ref(), model.mass());
-            let chart = run_chart(&trace, &simulation.summary, of, &panels, Ranges::default());
+            let chart = run_chart(&trace, &simulation.summary, &model, &panels, Ranges::default());
             let layers: Vec<_> = chart.panels().flat_map(|panel| &panel.layers).collect();
             for theme in [Theme::LIGHT, Theme::DARK] {
                 let look = |role: Role| -> Look { theme.look(role) };
@@ -51,8 +50,7 @@ fn a_state_once_a_period_lies_over_the_mass_at_rest() {
     let model = preset("paper", &["run.duration_s=2", "run.settle_s=None", "excitation.amplitude_g=0.1"]);
     let keep = Keep { times: Vec::new(), events: false, until_settled: None };
     let (simulation, trace) = simulate_with_trace(&model, &keep, None, None);
-    let of = (model.mechanism().as_ref(), model.mass());
-    let chart = run_chart(&trace, &simulation.summary, of, &[RunPanel::Portrait], Ranges::default());
+    let chart = run_chart(&trace, &simulation.summary, &model, &[RunPanel::Portrait], Ranges::default());
     let layers: Vec<&str> =
         chart.panels().flat_map(|panel| &panel.layers).map(|layer| &*layer.name).collect();
     let place = |name: &str| layers.iter().position(|layer| *layer == name).unwrap();

@@ -174,6 +174,8 @@ fn no_text_lies_on_another_in_a_picture_of_one_motion_or_of_a_record() {
         "curve harvester > --mechanism-plot",
         "curve magnet > --mechanism-plot",
         "curve paper --at-mm 1,-2 --beside harvester > --mechanism-plot",
+        "curve paper --at-mm -1.5 --base-accel-g 0.8 > --well-plot",
+        "curve bouncing-ball > --well-plot",
         &format!("curve paper --set {hertz} > --contact-plot"),
         &format!("curve paper --measured {pull}"),
         &format!("identify {pull} --of force"),

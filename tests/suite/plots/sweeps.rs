@@ -1,6 +1,9 @@
 //! Pictures of sweeps: rest, missing values and categories, in all of them by the same words.
 
-use interwell::output::{Cut, Marks, NoPicture, Overlay, Ranges, SweepPicture, View, sweep_chart};
+use interwell::output::{
+    Caption, Cut, Marks, NoPicture, Overlay, Role, Shape, SweepPicture, Theme, View, shown_columns,
+    sweep_chart,
+};
 use interwell::scene::Scene;
 use interwell_studies::study::{Grid, Table};
 
@@ -17,17 +20,7 @@ fn has(texts: &[String], words: &str) -> bool {
 
 /// The picture of the RMS velocity of a sweep of a scene.
 fn picture<'a>(rows: &'a Table, grid: &'a Grid, scene: &'a Scene, view: View) -> SweepPicture<'a> {
-    SweepPicture {
-        rows,
-        grid,
-        scene,
-        until_settled: None,
-        quantity: "rms_velocity_m_per_s",
-        overlay: Overlay::default(),
-        view,
-        ranges: Ranges::default(),
-        draws: "",
-    }
+    SweepPicture { view, ..SweepPicture::of(rows, grid, scene, "rms_velocity_m_per_s") }
 }
 
 #[test]
@@ -131,4 +124,36 @@ fn a_cut_and_rows_of_another_sweep_are_faults() {
     let fields = "travel_limit_mm and amplitude_g".to_owned();
     assert_eq!(fault(&of_both, "mass_g"), Some(NoPicture::NoSuchCut("mass_g".to_owned(), fields)));
     assert_eq!(fault(&of_limit, "amplitude_g"), Some(NoPicture::NoSuchColumn("amplitude_g".to_owned())));
+}
+
+#[test]
+fn a_map_has_dots_where_motions_may_be_transients_and_lines_that_end_inside_its_frame() {
+    let document = changed("paper", &[]);
+    let over = ["stops.travel_limit_mm=1:3:1", "excitation.amplitude_g=0:2:1"];
+    let grid = Grid::new(document.axes(&over).unwrap()).unwrap();
+    assert_eq!(shown_columns("period", &View::Top, &grid), ["period", "settled", "steady"]);
+    let rows: Vec<(f64, f64)> = (0..9).map(|i| (f64::from(i / 3 + 1), f64::from(i % 3))).collect();
+    let table = Table::new().each("travel_limit_mm", &rows, |row| row.0);
+    let table =
+        table.each("amplitude_g", &rows, |row| row.1).each("rms_velocity_m_per_s", &rows, |row| row.1);
+    let table = table.each("regime", &rows, |row| if row.1 == 0.0 { "rest" } else { "interwell" });
+    let table = table.each("settled", &rows, |row| if *row == (2.0, 1.0) { "false" } else { "true" });
+    let table = table.each("steady", &rows, |_| "true").each("outcome", &rows, |_| "done");
+    let overlay = Overlay::of(&document.scene, None, &grid, &table);
+    let picture = SweepPicture { overlay, ..picture(&table, &grid, &document.scene, View::Top) };
+    let chart = sweep_chart(&picture).unwrap();
+    let dots = chart.panels().flat_map(|panel| &panel.layers).find(|layer| layer.role == Role::Transient);
+    assert_eq!(dots.unwrap().marks, Marks::Cloud(vec![(2.0, 1.0)]));
+    let figure = chart.figure(&Caption::default(), &Theme::LIGHT);
+    let (frame, look) = (figure.frames[0].area, Theme::LIGHT.look(Role::FirstCrossing));
+    let of_line = |shape: &Shape| match shape {
+        Shape::Line(points, width, ink) if (*width, *ink) == (look.width, look.ink) => points.clone(),
+        _ => Vec::new(),
+    };
+    // those of the legend stand above the frame
+    let points = figure.shapes.iter().flat_map(of_line).filter(|at| at.1 > frame.top);
+    let across: Vec<f64> = points.map(|at| at.0).collect();
+    let half = 0.5 * look.width;
+    assert!(across.len() > 1, "{across:?}");
+    assert!(across.iter().all(|x| (frame.left + half..=frame.right - half).contains(x)), "{across:?}");
 }

@@ -29,7 +29,7 @@ pub struct Judged {
 
 impl Judged {
     pub(super) fn new(document: &LessonDocument, number: usize, judged: &Document) -> Self {
-        let of = |of: &Document| SceneWithFiles { scene: of.scene.clone(), files: of.files.clone() };
+        let of = |of: &Document| SceneWithFiles::of(of, of.scene.clone());
         let (lesson, begin) = (document.lesson.clone(), of(document.begin(number)));
         Self { lesson, number, begin, scene: of(judged), mechanism: None }
     }

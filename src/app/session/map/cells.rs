@@ -6,7 +6,7 @@ use std::time::Duration;
 use crate::app::words::fields::in_words;
 use crate::mechanics::Mechanism;
 use crate::numeric::short;
-use crate::output::{Chart, Cut, NoPicture, Overlay, Ranges, SweepPicture, View, csv, sweep_chart};
+use crate::output::{Chart, Cut, NoPicture, Overlay, SweepPicture, View, csv, shown_columns, sweep_chart};
 use crate::questions::{Grid, SweepCells, Table};
 use crate::scene::{FieldPath, Scene};
 use interwell_studies::study::{Cell, Edges, Levels, STRIDES, SummaryField};
@@ -198,19 +198,10 @@ impl Map {
     /// The picture of the known cells, as `sweep --plot` draws it. The map also shows known cells in place of
     /// unknown ones, the cuts do not.
     pub fn chart(&self, quantity: &SummaryField, view: &View) -> Result<Chart, NoPicture> {
-        let more = [quantity.name, "settled", "steady"];
+        let more = shown_columns(quantity.name, view, self.grid());
         let drawn = |rows: &Table, view: View| {
-            sweep_chart(&SweepPicture {
-                rows,
-                grid: self.grid(),
-                scene: &self.question.scene,
-                until_settled: None,
-                quantity: quantity.name,
-                overlay: self.overlay.clone(),
-                view,
-                ranges: Ranges::default(),
-                draws: "",
-            })
+            let picture = SweepPicture::of(rows, self.grid(), &self.question.scene, quantity.name);
+            sweep_chart(&SweepPicture { overlay: self.overlay.clone(), view, ..picture })
         };
         let mut chart = drawn(&self.table(true, &more), view.clone())?;
         if matches!(view, View::Cuts(_)) && !self.is_whole() {

@@ -54,7 +54,7 @@ impl MapQuestion {
         document.check()?;
         let grid = Grid::new(document.axes(&self.axes.each_ref().map(over))?)?;
         let ledger = self.ledger.map(|field| field.name);
-        Sweep::default().cells(&document, grid, ledger, &Progress::none())
+        Sweep::default().cells(&document, grid, ledger.as_slice(), &Progress::none())
     }
 }
 

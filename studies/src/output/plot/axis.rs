@@ -167,12 +167,15 @@ impl PlotAxis {
         (self.low..=self.high).contains(&value)
     }
 
-    /// The axis over the given range, or `self` if there is none.
+    /// The axis over the given range of values, which are not logarithms, or `self` if there is none.
     #[must_use]
     pub fn or_given(self, range: Option<(f64, f64)>) -> Self {
-        match range {
-            Some((low, high)) => Self::linear(low, high, USUAL, &self.name),
-            None => self,
+        match (range, self.scale) {
+            (None, _) => self,
+            (Some((low, high)), Scale::Decades) => {
+                Self::powers(elementary::log10(low), elementary::log10(high), &self.name)
+            }
+            (Some((low, high)), _) => Self::linear(low, high, USUAL, &self.name),
         }
     }
 

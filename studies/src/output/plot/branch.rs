@@ -8,7 +8,7 @@ use super::figure::Point;
 use super::role::Role;
 use super::swept::swept_axis;
 use crate::numeric::short;
-use crate::study::{Branch, BranchEvent, Locus, LocusEvent, branches_table, loci_table};
+use crate::study::{Branch, BranchEvent, Locus, LocusEvent, Orbit, branches_table, loci_table};
 
 /// The kinds of events in the order of their markers.
 const EVENTS: [BranchEvent; 4] =
@@ -21,43 +21,37 @@ pub fn branch_chart(branches: &[Branch], phase_deg: f64, ranges: Ranges) -> Char
     let field = table.columns()[1].name.as_str();
     let rows =
         || branches.iter().flat_map(|branch| branch.orbits.iter().zip(&branch.values).zip(&branch.events));
-    let points: Vec<Point> = rows().map(|((orbit, value), _)| (*value, orbit.state.x * 1e3)).collect();
-    let stable: Vec<bool> = rows().map(|((orbit, _), _)| orbit.is_stable()).collect();
-    let firsts = branches.iter().scan(0, |before, branch| {
-        *before += branch.orbits.len();
-        Some(*before)
-    });
-    let firsts: Vec<usize> = firsts.collect();
-    let up = PlotAxis::around(points.iter().map(|point| point.1), 0.08, "displacement at the strobe (mm)");
+    let point = |orbit: &Orbit, value: f64| (value, orbit.state.x * 1e3);
+    let heights = rows().map(|((orbit, value), _)| point(orbit, *value).1);
+    let up = PlotAxis::around(heights, 0.08, "displacement at the strobe (mm)");
     let mut panel = Panel::new(swept_axis(&table, field, ranges.x), up.or_given(ranges.y));
     // a stable or unstable stretch ends at the point where the next one begins
     for (is_stable, role, name) in [(true, Role::Curve, "stable"), (false, Role::UnstableMotion, "unstable")]
     {
-        let mut line = Vec::new();
-        for (i, point) in points.iter().enumerate() {
-            if firsts.contains(&i) {
-                line.push((f64::NAN, f64::NAN));
+        let mut line: Vec<Point> = Vec::new();
+        for branch in branches {
+            let mut was_of_kind = false;
+            for (orbit, value) in branch.orbits.iter().zip(&branch.values) {
+                let is_of_kind = orbit.is_stable() == is_stable;
+                line.extend((is_of_kind || was_of_kind).then(|| point(orbit, *value)));
+                line.extend((!is_of_kind).then_some((f64::NAN, f64::NAN)));
+                was_of_kind = is_of_kind;
             }
-            if stable[i] == is_stable || (i > 0 && stable[i - 1] == is_stable && !firsts.contains(&i)) {
-                line.push(*point);
-            }
-            if stable[i] != is_stable {
-                line.push((f64::NAN, f64::NAN));
-            }
+            line.push((f64::NAN, f64::NAN));
         }
-        if stable.contains(&is_stable) {
+        if line.iter().any(|point| point.0.is_finite()) {
             panel.layer(role, name, Marks::Path(line));
         }
     }
     for (place, event) in EVENTS.into_iter().enumerate() {
-        let marked = rows().zip(&points).filter(|row| *row.0.1 == Some(event));
-        let marked = marked.map(|row| *row.1).collect();
+        let marked = rows().filter(|(_, found)| **found == Some(event));
+        let marked = marked.map(|((orbit, value), _)| point(orbit, *value)).collect();
         panel.layer_if_any(Role::Event(place), event.name(), Marks::Points(marked));
     }
     let mut drawn = Drawn::new([field, "x_m"], &["stable", "event"]);
-    for (((orbit, value), event), stable) in rows().zip(&stable).filter(|row| panel.x.contains(*row.0.0.1)) {
-        let words = [if *stable { "true" } else { "false" }, event.map_or("", |event| event.name())];
-        drawn.put("branch", &[*value, orbit.state.x], &words);
+    for ((orbit, value), event) in rows().filter(|row| panel.x.contains(*row.0.1)) {
+        let stable = if orbit.is_stable() { "true" } else { "false" };
+        drawn.put("branch", &[*value, orbit.state.x], &[stable, event.map_or("", BranchEvent::name)]);
     }
     let mut periods: Vec<u32> =
         branches.iter().flat_map(|branch| Some(branch.orbits.first()?.period)).collect();
@@ -68,7 +62,7 @@ pub fn branch_chart(branches: &[Branch], phase_deg: f64, ranges: Ranges) -> Char
         [branch] => format!("; the branch ends {}", branch.end.name()),
         _ => format!("; {} branches", branches.len()),
     };
-    let (count, periods, phase) = (points.len(), periods.join(", "), short(phase_deg));
+    let (count, periods, phase) = (rows().count(), periods.join(", "), short(phase_deg));
     let about =
         format!("{count} periodic motions of period {periods}, at the drive's phase {phase}\u{b0}{end}");
     Chart::stack(vec![panel], about, drawn.table())

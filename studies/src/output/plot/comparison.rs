@@ -36,11 +36,13 @@ const ROOM: f64 = 1.45;
 /// A frequency within this factor of an end of the search counts as that end.
 const NEAR: f64 = 1.001;
 
-/// Which value of a panel is best.
+/// Which values of a panel are good.
 #[derive(Clone, Copy, PartialEq)]
-enum Best {
-    Least,
-    Most,
+enum Good {
+    Small,
+    Large,
+    /// Wide bands of frequencies, on a logarithmic axis.
+    Wide,
 }
 
 /// A value of a scene: the ends of its bar and the text at it.
@@ -63,29 +65,31 @@ struct Shown {
     title: &'static str,
     mark: Mark,
     unit: String,
-    best: Best,
+    good: Good,
     entries: Vec<Entry>,
-    /// Whether the entries are bands of frequencies, on a logarithmic axis.
-    is_band: bool,
 }
 
 impl Shown {
-    /// The number by which entries are compared.
+    fn is_band(&self) -> bool {
+        self.good == Good::Wide
+    }
+
+    /// The number by which entries are compared, the largest of which is the best.
     fn merit(&self, entry: &Entry) -> f64 {
-        if self.is_band { entry.to / entry.from } else { entry.to }
+        match self.good {
+            Good::Small => -entry.to,
+            Good::Large => entry.to,
+            Good::Wide => entry.to / entry.from,
+        }
     }
 
     /// The index of the best entry. Returns `None` unless at least two have a value and one is the best
     /// alone.
     fn best(&self) -> Option<usize> {
-        let merits: Vec<f64> = self.entries.iter().map(|entry| self.merit(entry)).collect();
-        let known = || merits.iter().enumerate().filter(|merit| merit.1.is_finite());
-        let by = |a: &(usize, &f64), b: &(usize, &f64)| a.1.total_cmp(b.1);
-        let (place, merit) = match self.best {
-            Best::Least => known().min_by(by),
-            Best::Most => known().max_by(by),
-        }?;
-        (merits.iter().filter(|value| *value == merit).count() == 1 && known().count() > 1).then_some(place)
+        let merits = self.entries.iter().map(|entry| self.merit(entry)).enumerate();
+        let known: Vec<(usize, f64)> = merits.filter(|(_, merit)| merit.is_finite()).collect();
+        let (place, most) = known.iter().copied().max_by(|a, b| a.1.total_cmp(&b.1))?;
+        (known.len() > 1 && known.iter().filter(|(_, merit)| *merit == most).count() == 1).then_some(place)
     }
 }
 
@@ -149,7 +153,7 @@ fn names(rated: &[Rated]) -> Vec<String> {
 
 /// The quantities that are above 0 for at least one of the scenes.
 fn shown(rated: &[Rated], frequency_hz: f64) -> Vec<Shown> {
-    let panel = |title, unit: &str, best, scale: f64, of: &dyn Fn(&Rated) -> Option<f64>| {
+    let panel = |title, unit: &str, good, scale: f64, of: &dyn Fn(&Rated) -> Option<f64>| {
         let entry = |scene: &Rated| {
             let to = of(scene).map_or(f64::NAN, |value| value * scale);
             let words = match to {
@@ -161,7 +165,7 @@ fn shown(rated: &[Rated], frequency_hz: f64) -> Vec<Shown> {
             Entry { from: 0.0, to, words }
         };
         let entries = rated.iter().map(entry).collect();
-        Shown { title, mark: Mark::None, unit: unit.to_owned(), best, entries, is_band: false }
+        Shown { title, mark: Mark::None, unit: unit.to_owned(), good, entries }
     };
     let speed = |scene: &Rated| scene.summary.rms_velocity;
     // without impacts the impact speed is 0
@@ -176,13 +180,13 @@ fn shown(rated: &[Rated], frequency_hz: f64) -> Vec<Shown> {
     };
     let sensitivity = |scene: &Rated| scene.sensitivity.as_ref().map(|change| change.0);
     let all = [
-        Shown { mark: Mark::Release, ..panel("crosses from", "g", Best::Least, 1.0, &Rated::crossing_g) },
-        Shown { mark: Mark::Regime, ..panel("RMS velocity", speed_name, Best::Most, per_speed, &speed) },
-        panel("power", watt, Best::Most, per_watt, &power),
-        panel("reach", "mm", Best::Least, 1e3, &|scene| scene.summary.max_abs_x),
-        panel("fastest impact", impact_name, Best::Least, per_impact, &impact),
+        Shown { mark: Mark::Release, ..panel("crosses from", "g", Good::Small, 1.0, &Rated::crossing_g) },
+        Shown { mark: Mark::Regime, ..panel("RMS velocity", speed_name, Good::Large, per_speed, &speed) },
+        panel("power", watt, Good::Large, per_watt, &power),
+        panel("reach", "mm", Good::Small, 1e3, &|scene| scene.summary.max_abs_x),
+        panel("fastest impact", impact_name, Good::Small, per_impact, &impact),
         bands(rated, frequency_hz),
-        panel("sensitivity", "% for 1 % of a size", Best::Least, 100.0, &sensitivity),
+        panel("sensitivity", "% for 1 % of a size", Good::Small, 100.0, &sensitivity),
     ];
     all.into_iter().filter(|panel| panel.entries.iter().any(|entry| entry.to > 0.0)).collect()
 }
@@ -203,17 +207,17 @@ fn bands(rated: &[Rated], frequency_hz: f64) -> Shown {
         }
     };
     let (title, unit, entries) = ("crosses at", "Hz".to_owned(), rated.iter().map(entry).collect());
-    Shown { title, mark: Mark::None, unit, best: Best::Most, entries, is_band: true }
+    Shown { title, mark: Mark::None, unit, good: Good::Wide, entries }
 }
 
 fn panel(rated: &[Rated], frequency_hz: f64, shown: &Shown, up: &PlotAxis) -> Panel {
-    let better = match (shown.best, shown.is_band) {
-        (_, true) => "wide",
-        (Best::Least, _) => "small",
-        (Best::Most, _) => "large",
+    let good = match shown.good {
+        Good::Small => "small",
+        Good::Large => "large",
+        Good::Wide => "wide",
     };
-    let label = format!("{}, {better} is good", shown.unit);
-    let across = match shown.is_band {
+    let label = format!("{}, {good} is good", shown.unit);
+    let across = match shown.is_band() {
         true => {
             let ends = [frequency_hz / SEARCHED_SPAN, frequency_hz * SEARCHED_SPAN].map(elementary::log10);
             // with room for the words beyond the widest band
@@ -225,7 +229,7 @@ fn panel(rated: &[Rated], frequency_hz: f64, shown: &Shown, up: &PlotAxis) -> Pa
             PlotAxis::between(0.0, if longest > 0.0 { ROOM * longest } else { 1.0 }, &label)
         }
     };
-    let scaled = |value: f64| if shown.is_band { elementary::log10(value) } else { value };
+    let scaled = |value: f64| if shown.is_band() { elementary::log10(value) } else { value };
     let (low, high) = (across.low, across.high);
     let best = shown.best();
     let lines = up.ticks.iter().map(|tick| tick.1.chars().count().div_ceil(LETTERS)).max();
@@ -236,7 +240,7 @@ fn panel(rated: &[Rated], frequency_hz: f64, shown: &Shown, up: &PlotAxis) -> Pa
         let entries = shown.entries.iter().enumerate().filter(|(scene, entry)| chosen(*scene, entry));
         let ends = |entry: &Entry| match entry.to == f64::INFINITY {
             true => [low, high],
-            false => [if shown.is_band { scaled(entry.from) } else { 0.0 }, scaled(entry.to)],
+            false => [if shown.is_band() { scaled(entry.from) } else { 0.0 }, scaled(entry.to)],
         };
         entries.map(|(scene, entry)| [place(rated, scene), ends(entry)[0], ends(entry)[1]]).collect()
     };
@@ -255,7 +259,7 @@ fn panel(rated: &[Rated], frequency_hz: f64, shown: &Shown, up: &PlotAxis) -> Pa
         ((end, place(rated, scene)), entry.words.clone())
     });
     panel.draw(Role::Motion, Marks::Words(words.collect()));
-    if shown.is_band {
+    if shown.is_band() {
         let drive = Marks::Verticals(vec![elementary::log10(frequency_hz)]);
         panel.layer(Role::Drive, "frequency of the drive", drive);
     }

@@ -118,7 +118,7 @@ fn drawn(table: &Table, mechanism: &Mechanism, stops: (f64, f64), inside: impl F
     drawn.table()
 }
 
-fn subtitle(landscape: &Landscape) -> String {
+pub(super) fn subtitle(landscape: &Landscape) -> String {
     let Some(barrier) = landscape.barrier else {
         return if landscape.equilibria.is_empty() { "no equilibrium" } else { "one well" }.to_owned();
     };

@@ -290,11 +290,22 @@ impl Figure {
         }
     }
 
-    /// Adds a line as it looks: its dash, and the outline under it.
+    /// Adds a line as it looks: its dash, and the outline under it. A line with an outline keeps half of its
+    /// width from the edges, so that its round ends do not stand out.
     pub fn styled(&mut self, points: &[Point], look: &Look, within: Area) {
-        if let Some(halo) = look.halo {
-            self.line(points, look.width + 4.0, halo, within);
-        }
+        let Some(halo) = look.halo else { return self.plain(points, look, within) };
+        let (width, Area { left, top, right, bottom }) = (look.width + 4.0, within);
+        let half = 0.5 * width;
+        let inwards =
+            |(x, y): Point| (x.max(left + half).min(right - half), y.max(top + half).min(bottom - half));
+        let parts = within.parts(points).into_iter().map(|part| part.into_iter().map(inwards).collect());
+        let parts: Vec<Vec<Point>> = parts.collect();
+        parts.iter().for_each(|part| self.line(part, width, halo, within));
+        parts.iter().for_each(|part| self.plain(part, look, within));
+    }
+
+    /// Adds a line with its dash.
+    fn plain(&mut self, points: &[Point], look: &Look, within: Area) {
         match look.dash {
             Some(dash) => self.dashed(points, look.width, look.ink, dash, within),
             None => self.line(points, look.width, look.ink, within),

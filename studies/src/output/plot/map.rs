@@ -8,12 +8,24 @@ use super::figure::Point;
 use super::quantity::Quantity;
 use super::role::Role;
 use super::sweep::distinct;
-use super::swept::{Cut, Overlay, SweepPicture, ascending, cells, drawn, label, marks};
+use super::swept::{Cut, Overlay, SweepPicture, View, ascending, cells, drawn, label, marks};
 use crate::numeric::short;
-use crate::study::{Table, first_crossing_edge, label_and_unit, line_meets};
+use crate::study::{Grid, Table, first_crossing_edge, label_and_unit, line_meets};
 
 /// Largest number of columns or rows of a map in which cells are marked by dots.
 const MAX_DOTS: usize = 110;
+
+/// The columns from which the dots are.
+const OF_DOTS: [&str; 2] = ["settled", "steady"];
+
+/// The columns besides those of the fields that the picture of a sweep of this grid takes from its rows, the
+/// quantity first. Without the others it has no dots.
+#[doc(hidden)]
+pub fn shown_columns<'a>(quantity: &'a str, view: &View, grid: &Grid) -> Vec<&'a str> {
+    let lengths: Vec<usize> = grid.axes().iter().map(|axis| axis.values.len()).collect();
+    let has_dots = *view != View::Surface && matches!(lengths[..], [a, b] if a.max(b) <= MAX_DOTS);
+    [quantity].into_iter().chain(OF_DOTS.into_iter().filter(|_| has_dots)).collect()
+}
 
 /// Height of a horizontal cut, and width of a vertical one, relative to the map.
 const CUT: f64 = 0.5;
@@ -74,7 +86,7 @@ pub(super) fn cells_panel(
 /// these columns, or if there are too many cells for dots.
 fn transients(rows: &Table, (x, y): (&str, &str), cells: &Cells) -> Vec<Point> {
     let names = [x, y].map(|name| rows.numbers(name).unwrap_or_default());
-    let words = ["settled", "steady", "regime"].map(|name| rows.words(name));
+    let words = [OF_DOTS[0], OF_DOTS[1], "regime"].map(|name| rows.words(name));
     let lengths = [cells.across.values.len(), cells.up.values.len()];
     if words.iter().any(|words| words.is_empty()) || lengths.iter().any(|length| *length > MAX_DOTS) {
         return Vec::new();
@@ -115,9 +127,12 @@ pub(super) fn map(picture: &SweepPicture, (x, y): (&str, &str), cuts: &[Cut]) ->
     let lines = Lines::new(picture, (x, y), &cells);
     let transients = transients(rows, (x, y), &cells);
     let mut panel = cells_panel(picture, (x, y), cells, quantity.bar());
+    let mut drawn = drawn(picture, &[(x, ranges.x), (y, ranges.y)]);
+    for (a, b) in transients.iter().filter(|at| panel.contains(**at)) {
+        drawn.put("transient", &[*a, *b], &[]);
+    }
     panel.layer_if_any(Role::Transient, "not settled yet", Marks::Cloud(transients));
     lines.draw(&mut panel);
-    let mut drawn = drawn(picture, &[(x, ranges.x), (y, ranges.y)]);
     lines.record(&mut drawn);
     let (mut below, mut beside) = (Vec::new(), Vec::new());
     for Cut { column, value } in cuts {

@@ -51,6 +51,7 @@ mod sweep;
 mod swept;
 mod thinned;
 mod threshold;
+mod well;
 
 use std::path::Path;
 
@@ -71,6 +72,7 @@ pub use figure::{Area, Figure, Shape, Text};
 pub use font::{HACK, INTER, width as text_width};
 pub use frame::Frame;
 pub use ledger::{LedgerTerm, ledger_bars, ledger_decimals, ledger_number, share_of_work};
+pub use map::shown_columns;
 pub use mark::Caption;
 pub use mechanism::mechanism_chart;
 pub use names::{
@@ -81,7 +83,6 @@ pub use over_time::OverTime;
 pub use page::Room;
 pub use png::PaintError;
 pub use portrait::portrait_panel;
-pub use projection::Projection;
 pub use quantity::{RMS, quantities, suited_unit, words_of};
 pub use record::{identified_chart, measured_chart, measured_force_chart};
 pub use role::{Look, Role};
@@ -96,6 +97,7 @@ pub use surface::SurfaceFrame;
 pub use sweep::{MAX_PICTURE_CELLS, NoPicture, can_show, sweep_about, sweep_chart};
 pub use swept::{Cut, Overlay, SweepPicture, View};
 pub use threshold::{can_show_thresholds, threshold_chart};
+pub use well::{TippedPotential, well_chart, well_panel};
 
 words! {
     /// A kind of file that holds a picture.

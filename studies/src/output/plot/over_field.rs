@@ -38,11 +38,7 @@ pub fn escape_chart(
     let places = rows.numbers(x).unwrap_or_default();
     // of a rate without an escape only the upper end is above 0
     let drawn = rate.iter().chain(low).chain(high).copied();
-    let label = "escape rate (1/s)";
-    let up = match ranges.y.filter(|range| range.0 > 0.0) {
-        Some((low, high)) => PlotAxis::powers(elementary::log10(low), elementary::log10(high), label),
-        None => PlotAxis::decades(drawn, label),
-    };
+    let up = PlotAxis::decades(drawn, "escape rate (1/s)").or_given(ranges.y.filter(|range| range.0 > 0.0));
     let mut panel = Panel::new(swept_axis(rows, x, ranges.x), up);
     let order = ascending(places, |row| rate[row] > 0.0);
     let log = |values: &[f64], row: usize| (places[row], elementary::log10(values[row]));

@@ -5,17 +5,18 @@ use super::axis::PlotAxis;
 use super::chart::{Layer, Marks, Panel};
 use super::figure::Point;
 use super::role::Role;
+use crate::dynamics::Model;
 use crate::mechanics::Mechanism;
 use crate::numeric::bisect;
 
 /// Points of each branch.
 const POINTS: usize = 400;
 
-/// A phase portrait of a mass in kg over these axes, of displacement in mm and of velocity, of which
-/// `per_speed` units are a m/s: its stops in mm, the separatrix, the layers of a motion, and the equilibria.
+/// A phase portrait of a model over these axes, of displacement in mm and of velocity, of which `per_speed`
+/// units are a m/s: its stops in mm, the separatrix, the layers of a motion, and the equilibria.
 #[doc(hidden)]
 pub fn portrait_panel(
-    (mechanism, mass): (&Mechanism, f64),
+    model: &Model,
     (x, y): (PlotAxis, PlotAxis),
     per_speed: f64,
     stops: (f64, f64),
@@ -23,13 +24,13 @@ pub fn portrait_panel(
 ) -> Panel {
     let mut panel = Panel::new(x, y);
     panel.upright_stops(stops);
-    for part in separatrix(mechanism, mass, (panel.x.low * 1e-3, panel.x.high * 1e-3)) {
+    for part in separatrix(model.mechanism(), model.mass(), (panel.x.low * 1e-3, panel.x.high * 1e-3)) {
         let part = part.into_iter().map(|(x, v)| (x * 1e3, v * per_speed));
         let part: Vec<_> = part.filter(|point| panel.x.contains(point.0)).collect();
         panel.layer(Role::Separatrix, "separatrix", Marks::Path(part));
     }
     panel.layers.extend(motion);
-    panel.equilibria(&mechanism.landscape, |_| 0.0);
+    panel.equilibria(&model.mechanism().landscape, |_| 0.0);
     panel
 }
 

@@ -3,6 +3,7 @@
 //! The view is turned by 37.5 degrees and seen from 30 degrees above, with the least values of both fields in
 //! front. Faces are in the order from back to front, which for a height over a grid is exact.
 
+use super::figure::{Area, Point};
 use crate::numeric::elementary;
 
 /// Turn and elevation of the view in degrees, and height of the box over the length of its sides.
@@ -19,29 +20,12 @@ pub type BoxPlace = (f64, f64, f64);
 /// A line in the box.
 pub type BoxLine = (BoxPlace, BoxPlace);
 
-/// A rectangle that a box in projection fills.
-#[doc(hidden)]
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Projection {
-    /// Left edge.
-    pub left: f64,
-    /// Upper edge.
-    pub top: f64,
-    /// Right edge.
-    pub right: f64,
-    /// Lower edge.
-    pub bottom: f64,
-}
-
-impl Projection {
-    /// Where a place in the box stands in the rectangle: to the right, down.
-    pub fn place(&self, at: BoxPlace) -> (f64, f64) {
-        let Self { left, top, right, bottom } = *self;
-        let (least, most) = (flat((0.0, 1.0, 0.0)).0, flat((1.0, 0.0, 0.0)).0);
-        let highest = flat((1.0, 1.0, 1.0)).1;
-        let (across, up) = flat(at);
-        (left + (across - least) / (most - least) * (right - left), bottom - up / highest * (bottom - top))
-    }
+/// Where a place in the box stands on the canvas, if the box fills this area.
+pub fn placed(Area { left, top, right, bottom }: Area, at: BoxPlace) -> Point {
+    let (least, most) = (flat((0.0, 1.0, 0.0)).0, flat((1.0, 0.0, 0.0)).0);
+    let highest = flat((1.0, 1.0, 1.0)).1;
+    let (across, up) = flat(at);
+    (left + (across - least) / (most - least) * (right - left), bottom - up / highest * (bottom - top))
 }
 
 /// Where a place in the box stands, before it is fitted: to the right, upward.
@@ -137,9 +121,9 @@ mod tests {
 
     #[test]
     fn a_box_fills_its_rectangle() {
-        let projection = Projection { left: 10.0, top: 20.0, right: 110.0, bottom: 80.0 };
+        let area = Area::new(10.0, 20.0, 110.0, 80.0);
         let close = |at: BoxPlace, x: Option<f64>, y: Option<f64>| {
-            let point = projection.place(at);
+            let point = placed(area, at);
             x.is_none_or(|x| (point.0 - x).abs() < 1e-12) && y.is_none_or(|y| (point.1 - y).abs() < 1e-12)
         };
         assert!(close((0.0, 1.0, 0.3), Some(10.0), None) && close((1.0, 0.0, 0.7), Some(110.0), None));

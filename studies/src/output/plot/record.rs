@@ -28,8 +28,8 @@ struct Series {
     series: &'static str,
     points: Vec<Point>,
     role: Role,
-    /// Whether it is drawn as markers.
-    is_marks: bool,
+    /// How they are drawn.
+    marks: fn(Vec<Point>) -> Marks,
 }
 
 impl Series {
@@ -86,8 +86,8 @@ pub fn identified_chart(
         x.into_iter().enumerate().map(|(i, x)| (x, [0, 1, 2].map(|k| all[k][i]))).collect()
     };
     let first = found.summary.first().copied();
-    let line = |role, name, series, points| Series { name, series, points, role, is_marks: false };
-    let marks = |role, name, series, points| Series { name, series, points, role, is_marks: true };
+    let line = |role, name, series, points| Series { name, series, points, role, marks: Marks::Path };
+    let markers = |role, name, series, points| Series { name, series, points, role, marks: Marks::Points };
     let (over, lower) = match of {
         "force" => (
             vec![line(Role::Curve, "identified curve", "identified", pairs(&found.rows, scale))],
@@ -109,8 +109,8 @@ pub fn identified_chart(
             let rows = intervals(column(&found.rows, "t_s"), "restitution");
             (
                 vec![
-                    marks(Role::Impact, "impact", "impact", impacts),
-                    marks(Role::Rebound, "end of a rebound", "rebound", rebounds),
+                    markers(Role::Impact, "impact", "impact", impacts),
+                    markers(Role::Rebound, "end of a rebound", "rebound", rebounds),
                 ],
                 Lower::Intervals(["restitution", "restitution", "of one impact"], rows, first),
             )
@@ -143,7 +143,8 @@ pub fn measured_force_chart(found: &ForceComparison, curve: &Table, ranges: Rang
     let (low, high) = extent(found.positions.iter().copied());
     let near = pairs(curve, scale).into_iter().filter(|point| (low * 1e3..=high * 1e3).contains(&point.0));
     let name = "computed";
-    let computed = Series { name, series: name, points: near.collect(), role: Role::Curve, is_marks: false };
+    let computed =
+        Series { name, series: name, points: near.collect(), role: Role::Curve, marks: Marks::Path };
     let picture = RecordPicture {
         across: DISPLACEMENT,
         up,
@@ -255,9 +256,7 @@ impl RecordPicture {
             upper.layer(Role::Measured, "measured", marks);
         }
         for series in &self.over {
-            let points = series.points.clone();
-            let marks = if series.is_marks { Marks::Points(points) } else { Marks::Path(points) };
-            upper.layer(series.role, series.name, marks);
+            upper.layer(series.role, series.name, (series.marks)(series.points.clone()));
         }
         let below = PlotAxis::around(lower, 0.12, &label);
         let mut lower = Panel { height: LOWER, ..Panel::new(across, below) };

@@ -15,7 +15,6 @@ use super::portrait::portrait_panel;
 use super::quantity::suited_unit;
 use super::role::Role;
 use crate::dynamics::{Model, Outcome, STANDARD_GRAVITY, Summary};
-use crate::mechanics::Mechanism;
 use crate::numeric::{extent, short};
 use crate::study::{Table, Trace, words};
 
@@ -50,13 +49,13 @@ impl RunPanel {
     }
 }
 
-/// The picture of a run from its trace and its summary, of a mass in kg, with these panels. The trace says
-/// which times it shows; `ranges` may give the axis of the displacement, in mm.
+/// The picture of a run of a model from its trace and its summary, with these panels. The trace says which
+/// times it shows; `ranges` may give the axis of the displacement, in mm.
 #[doc(hidden)]
 pub fn run_chart(
     trace: &Trace,
     summary: &Summary,
-    (mechanism, mass): (&Mechanism, f64),
+    model: &Model,
     panels: &[RunPanel],
     ranges: Ranges,
 ) -> Chart {
@@ -66,11 +65,10 @@ pub fn run_chart(
     let ordered: Vec<RunPanel> = if whole { usual.collect() } else { panels.to_vec() };
     let panels = ordered.as_slice();
     let column = |name: &str| trace.path.numbers(name).unwrap_or_default();
-    let stable = mechanism.landscape.equilibria.iter().filter(|equilibrium| equilibrium.stable);
+    let stable = model.mechanism().landscape.equilibria.iter().filter(|equilibrium| equilibrium.stable);
     let seen = Seen {
         trace,
-        mechanism,
-        mass,
+        model,
         t: column("t_s"),
         x: column("x_m"),
         v: column("v_m_per_s"),
@@ -103,8 +101,7 @@ pub fn run_chart(
 /// The data of the picture of a run, in SI.
 struct Seen<'a> {
     trace: &'a Trace,
-    mechanism: &'a Mechanism,
-    mass: f64,
+    model: &'a Model,
     t: &'a [f64],
     x: &'a [f64],
     v: &'a [f64],
@@ -218,7 +215,7 @@ impl Seen<'_> {
     /// Potential energy in J, counted from the bottom of the deeper well or, without wells, from its least
     /// value.
     fn potential(&self, x: f64) -> f64 {
-        let curve = &self.mechanism.curve;
+        let curve = &self.model.mechanism().curve;
         let of = |places: &[f64]| places.iter().map(|x| curve.potential(*x)).fold(f64::INFINITY, f64::min);
         curve.potential(x) - if self.wells.is_empty() { of(self.x) } else { of(&self.wells) }
     }
@@ -226,12 +223,13 @@ impl Seen<'_> {
     /// Potential energy, and the sum with the kinetic one, over time.
     fn energy(&self) -> Panel {
         let shown = self.rows(self.trace.shown_from);
+        let mass = self.model.mass();
         let of = |i: usize, with: f64| {
-            (self.t[i], self.potential(self.x[i]) + with * 0.5 * self.mass * self.v[i] * self.v[i])
+            (self.t[i], self.potential(self.x[i]) + with * 0.5 * mass * self.v[i] * self.v[i])
         };
         let [potential, total] =
             [0.0, 1.0].map(|with| shown.clone().map(|i| of(i, with)).collect::<Vec<_>>());
-        let barrier = self.mechanism.landscape.barrier.map(|barrier| self.potential(barrier.x));
+        let barrier = self.model.mechanism().landscape.barrier.map(|barrier| self.potential(barrier.x));
         let values = || total.iter().map(|point| point.1).chain(barrier).chain([0.0]);
         let (scale, unit) = suited_unit("J", values());
         let up = PlotAxis::around(
@@ -282,8 +280,8 @@ impl Seen<'_> {
         if !strobes.is_empty() {
             motion.push(Layer::new(Role::Strobe, "once a period", Marks::Points(strobes)));
         }
-        let (of, axes) = ((self.mechanism, self.mass), (self.displacement(x), self.velocity(v)));
-        let panel = portrait_panel(of, axes, self.speed.0, self.stops_mm(), motion);
+        let axes = (self.displacement(x), self.velocity(v));
+        let panel = portrait_panel(self.model, axes, self.speed.0, self.stops_mm(), motion);
         let heading = match short(trace.portrait_from) {
             from if trace.shown_to < trace.end => {
                 format!("phase portrait, {from} to {} s", short(trace.shown_to))
@@ -312,7 +310,7 @@ impl Seen<'_> {
             let mut row = vec![t[i], value(0, x), value(1, v), value(2, accel)];
             row.extend(has_power.then_some(power[i]));
             if has_energy {
-                row.extend([self.potential(x[i]), 0.5 * self.mass * v[i] * v[i]]);
+                row.extend([self.potential(x[i]), 0.5 * self.model.mass() * v[i] * v[i]]);
             }
             drawn.put("run", &row, &[]);
         }

@@ -36,19 +36,14 @@ pub fn spectrum_chart(spectrum: &Spectrum, quantity: SpectrumQuantity, ranges: R
     let column = |name: &str| spectrum.table.numbers(name).unwrap_or_default();
     let (frequencies, values) = (column("frequency_hz"), column(quantity.name()));
     let (scale, label) = scale_and_label(spectrum.signal, quantity, values);
-    let label = &label;
     let decades = if quantity == SpectrumQuantity::Density { 2.0 * DECADES } else { DECADES };
     let across = PlotAxis::between(0.0, shown_to(spectrum, frequencies, column("psd")), FREQUENCY);
     let across = across.or_given(ranges.x);
     let seen = frequencies.iter().zip(values).filter(|line| across.contains(*line.0));
     let seen = seen.map(|pair| pair.1 * scale).filter(|value| *value > 0.0);
     let (least, greatest) = extent(seen);
-    let up = match ranges.y {
-        Some((low, high)) => PlotAxis::powers(elementary::log10(low), elementary::log10(high), label),
-        None => {
-            PlotAxis::decades([least.max(greatest * elementary::powf(10.0, -decades)), greatest * 1.5], label)
-        }
-    };
+    let lowest = least.max(greatest * elementary::powf(10.0, -decades));
+    let up = PlotAxis::decades([lowest, greatest * 1.5], &label).or_given(ranges.y);
     let mut panel = Panel::new(across, up);
     let marked: Vec<f64> = spectrum.forcing_hz.iter().copied().take(MAX_MARKED).collect();
     let names: Vec<String> = marked.iter().map(|hz| short(*hz)).collect();

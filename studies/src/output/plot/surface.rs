@@ -4,7 +4,7 @@ use super::axis::PlotAxis;
 use super::cells::{Cell, Cells};
 use super::figure::{Align, Area, Figure, Point, Text, distance};
 use super::font;
-use super::projection::{AXIS_EDGES, BACK_EDGES, BoxPlace, Face, Projection, SIDES, faces, wall_lines};
+use super::projection::{AXIS_EDGES, BACK_EDGES, BoxPlace, Face, SIDES, faces, placed, wall_lines};
 use super::style::{self, Ink, Theme, viridis};
 
 /// Largest number of cells that are drawn as faces.
@@ -29,8 +29,7 @@ pub struct SurfaceFrame {
 impl SurfaceFrame {
     /// Position on the canvas of a point in the box, with coordinates from 0 to 1.
     fn place(&self, at: BoxPlace) -> Point {
-        let Area { left, top, right, bottom } = self.area;
-        Projection { left, top, right, bottom }.place(at)
+        placed(self.area, at)
     }
 
     /// Position on the canvas of values of the three axes.

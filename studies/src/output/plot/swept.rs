@@ -24,8 +24,11 @@ pub struct Overlay {
 
 impl Overlay {
     /// The lines over the rows of a sweep of this scene, if runs begin at rest and all cells have the same
-    /// mechanism.
+    /// mechanism; none over those of a walk.
     pub fn of(scene: &Scene, mechanism: Option<&Mechanism>, grid: &Grid, rows: &Table) -> Self {
+        if rows.column(DIRECTION).is_some() {
+            return Self::default();
+        }
         Self {
             release: mechanism.and_then(|mechanism| release_line(scene, mechanism, grid)),
             first_crossing: first_crossing(grid, rows),
@@ -75,6 +78,14 @@ pub struct SweepPicture<'a> {
     pub ranges: Ranges,
     /// What the bands are, in one sentence; empty if there are none.
     pub draws: &'a str,
+}
+
+impl<'a> SweepPicture<'a> {
+    /// The quantity of these rows from above, without lines over a map, over all values of the fields.
+    pub fn of(rows: &'a Table, grid: &'a Grid, scene: &'a Scene, quantity: &'a str) -> Self {
+        let (overlay, view, ranges) = Default::default();
+        Self { rows, grid, scene, until_settled: None, quantity, overlay, view, ranges, draws: "" }
+    }
 }
 
 /// The cells with the quantity and their words, if their fields lie in `ranges`.

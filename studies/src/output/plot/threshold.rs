@@ -7,7 +7,7 @@ use super::figure::Point;
 use super::map::map;
 use super::role::Role;
 use super::sweep::{NoPicture, each_line, few_lines};
-use super::swept::{Overlay, SweepPicture, View, ascending, label, swept_axis};
+use super::swept::{SweepPicture, ascending, label, swept_axis};
 use crate::numeric::short;
 use crate::scene::{Scene, column_names};
 use crate::study::{Grid, Onset, Table, Values};
@@ -48,10 +48,7 @@ pub fn threshold_chart(
         ([x], _) => lines(rows, x, None, &least, ranges),
         ([_, _], Some((x, each))) => lines(rows, x, Some(each), &least, ranges),
         (columns, _) => {
-            let (quantity, overlay, view) = (least.as_str(), Overlay::default(), View::Top);
-            let (until_settled, draws) = (None, "");
-            let shown =
-                SweepPicture { rows, grid, scene, until_settled, quantity, overlay, view, ranges, draws };
+            let shown = SweepPicture { ranges, ..SweepPicture::of(rows, grid, scene, &least) };
             map(&shown, (&columns[0], &columns[1]), &[])
         }
     };
