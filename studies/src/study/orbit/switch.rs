@@ -109,8 +109,7 @@ fn starts<'a>(
 /// The point of an event, at a phase of the drive away from impacts.
 fn cleared<'a>(base: Corrector<'a>, at: Vector4<f64>) -> Option<(Corrector<'a>, Point)> {
     let point = base.evaluate(&at)?;
-    let Some(later) = base.clear_phase(&point, &[]) else { return Some((base, point)) };
-    let phase = (base.phase + later).rem_euclid(1.0);
+    let Some(phase) = base.clear_phase(&point, &[]) else { return Some((base, point)) };
     let state = base.at_phase(&point.orbit, point.value, phase)?.state;
     let moved = Corrector { phase, ..base };
     let point = moved.correct(moved.at(state, point.value), &Vector4::w())?;

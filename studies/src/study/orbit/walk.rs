@@ -374,8 +374,7 @@ impl<'a> Walk<'a> {
     /// periods after a strobe, comes near to the present one.
     fn keep_clear(&mut self, also: &[f64]) {
         let (point, along) = &self.at;
-        let Some(later) = self.corrector.clear_phase(point, also) else { return };
-        let phase = (self.corrector.phase + later).rem_euclid(1.0);
+        let Some(phase) = self.corrector.clear_phase(point, also) else { return };
         let Some(orbit) = self.corrector.at_phase(&point.orbit, point.value, phase) else { return };
         let upwards = Vector4::w() * along.w.signum();
         let corrector = Corrector { phase, ..self.corrector };

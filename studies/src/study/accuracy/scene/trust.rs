@@ -5,9 +5,9 @@ use std::sync::atomic::AtomicBool;
 
 use serde::{Deserialize, Serialize};
 
-use crate::dynamics::{Model, Outcome, Regime, Request, Run, Sample};
+use crate::dynamics::{Model, Outcome, Regime, Request, Run};
 use crate::numeric::elementary;
-use crate::study::accuracy::methods::Statistics;
+use crate::study::accuracy::methods::{Statistics, path};
 use crate::study::accuracy::precision::median;
 
 /// A path is trusted until its error exceeds this share of the travel, which is too small to see in a plot.
@@ -49,17 +49,17 @@ pub(super) struct Beside {
 }
 
 impl Beside {
-    /// `samples` beside `better`, both sampled at the same times as far as each of them came.
-    pub fn new(model: &Model, samples: &[Sample], better: &[Sample]) -> Self {
+    /// A path beside a better one, both at the same times as far as each of them came.
+    pub fn new(model: &Model, path: &[(f64, f64)], better: &[(f64, f64)]) -> Self {
         let mut found = Self::default();
         let (mut low, mut high, mut worst) = (f64::INFINITY, f64::NEG_INFINITY, 0.0_f64);
-        let last = samples.len().min(better.len());
+        let last = path.len().min(better.len());
         let from_end = (last as f64 * (1.0 - END)) as usize;
-        for (i, (sample, better)) in samples.iter().zip(better).enumerate() {
-            let apart = (sample.x - better.x).abs();
+        for (i, ((_, x), (t, better))) in path.iter().zip(better).enumerate() {
+            let apart = (x - better).abs();
             worst = worst.max(apart);
-            (low, high) = (low.min(better.x), high.max(better.x));
-            found.times.push(better.t);
+            (low, high) = (low.min(*better), high.max(*better));
+            found.times.push(*t);
             found.worst.push(worst);
             if i >= from_end {
                 found.at_end = found.at_end.max(apart);
@@ -174,12 +174,12 @@ pub fn trust(model: &Model, cancel: &AtomicBool) -> Option<Trust> {
     let request = Request { sample_times: &times, cancel: Some(cancel), ..Request::default() };
     let run = finished(model.run(&request))?;
     let (finer, better) = more_accurate(model, model.tolerance(), &request)?;
-    let beside = Beside::new(model, &run.samples, &better.samples);
+    let beside = Beside::new(model, &path(&run), &path(&better));
     let course = match beside.parted() {
         None => Course::Kept,
         Some(until) => {
             let (_, best) = more_accurate(model, finer, &request)?;
-            let next = Beside::new(model, &better.samples, &best.samples).parted();
+            let next = Beside::new(model, &path(&better), &path(&best)).parted();
             parted(model, &beside, &better, until, next)
         }
     };
@@ -279,7 +279,7 @@ pub fn tolerances(model: &Model, cancel: &AtomicBool) -> Option<Tolerances> {
         let trial = model.with_tolerance(tolerance);
         let run = finished(trial.run(&request))?;
         let cpu_s = median(|| trial.run(&bare).summary.cpu_s);
-        let beside = Beside::new(model, &run.samples, &exact.samples);
+        let beside = Beside::new(model, &path(&run), &path(&exact));
         (found.span, found.travel) = (beside.span(), beside.travel);
         found.runs.push(AtTolerance {
             tolerance,
