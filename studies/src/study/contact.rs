@@ -3,9 +3,9 @@
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
-use super::Table;
 use super::identify::median;
-use crate::dynamics::{EventKind, Model, Outcome, Request, Summary};
+use super::{Table, finished};
+use crate::dynamics::{EventKind, Model, Request, Summary};
 use crate::mechanics::Hertz;
 use crate::numeric::round::{ONE_TWO_FIVE, round_up};
 use crate::numeric::{bisect, elementary, short};
@@ -76,10 +76,7 @@ pub struct Strikes {
 /// The first impacts of flights in one run: those after a crossing, a release or an impact on the other stop,
 /// without the rebounds that follow. `None` without an impact, or if cancelled.
 pub fn strikes(model: &Model, cancel: &AtomicBool) -> Option<Strikes> {
-    let run = model.run(&Request { events: true, cancel: Some(cancel), ..Request::default() });
-    if matches!(run.summary.outcome, Outcome::Cancelled { .. }) {
-        return None;
-    }
+    let run = finished(model.run(&Request { events: true, cancel: Some(cancel), ..Request::default() }))?;
     let mut last = None;
     let mut first: Vec<(f64, f64)> = Vec::new();
     for event in &run.events {

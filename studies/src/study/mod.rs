@@ -70,6 +70,8 @@ mod watch;
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use crate::dynamics::{Outcome, Run};
+
 pub use alternatives::{Alternative, Rated, alternatives};
 pub(crate) use alternatives::{SEARCHED_SPAN, comparison_parts, comparison_table};
 pub(crate) use amplitudes::stops_that_cross;
@@ -162,6 +164,11 @@ impl Task<'_> {
         self.check_cancelled()?;
         found
     }
+}
+
+/// A run unless it was cancelled.
+fn finished(run: Run) -> Option<Run> {
+    (!matches!(run.summary.outcome, Outcome::Cancelled { .. })).then_some(run)
 }
 
 /// The result of a part of a study that can be cancelled.

@@ -4,7 +4,7 @@
 use std::cell::RefCell;
 use std::sync::atomic::AtomicBool;
 
-use super::Task;
+use super::{Task, finished};
 use crate::dynamics::{Model, Outcome, Phase, Request, Run, Sample, Summary};
 use crate::system::threads::{Pool, Queue, UnderWay, share_from};
 
@@ -59,8 +59,7 @@ pub(super) fn settled_within(model: &Model, until: Option<f64>, cancel: &AtomicB
     let duration = ramp.map_or(model.duration(), |end| end.max(model.duration()));
     let model = model.with_duration(duration, model.settle());
     let run = model.run(&Request { ledger: true, cancel: Some(cancel), until_settled, ..Request::default() });
-    let cancelled = matches!(run.summary.outcome, Outcome::Cancelled { .. });
-    (!cancelled).then_some(run.summary)
+    finished(run).map(|run| run.summary)
 }
 
 /// Whether a run of `model` does not end within its first `seconds`.

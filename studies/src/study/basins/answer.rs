@@ -267,16 +267,17 @@ impl Basins {
         match key {
             Key::Cycle(_) => settle = f64::from(settled) * period,
             Key::Kind(kind) => match &self.rounds.kinds[kind as usize] {
-                Kind::Orbit(orbit) => {
+                (Kind::Orbit(orbit), _) => {
                     let first = self.rounds.orbit_of.iter().position(|number| number == orbit)?;
                     start = self.rounds.captures[first].state;
                 }
-                Kind::Rest(side) => {
+                (Kind::Rest(side), _) => {
                     let stops = self.model.stop_positions();
                     let stop = if *side == Side::Left { stops.0 } else { stops.1 };
                     start = MapState { x: stop.unwrap_or(start.x), v: 0.0, electrical };
                 }
-                Kind::Judged(_, summary) => {
+                (Kind::Judged(_), summary) => {
+                    let summary = summary.as_ref()?;
                     return Some((**summary, vec![(summary.final_x, summary.final_v)]));
                 }
             },

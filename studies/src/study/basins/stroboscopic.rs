@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use crate::dynamics::{Arrival, MapState, Model, Outcome, Pursued, Pursuit, Request, Sample, Summary};
 use crate::study::orbit::Units;
-use crate::study::{Cancelled, ExponentOptions, Result, average_exponents};
+use crate::study::{Cancelled, ExponentOptions, Result, average_exponents, finished};
 use crate::system::threads::{Pool, UnderWay, share};
 
 /// A displacement, a velocity and the state of a circuit (0 without one) in units of the scene's scales.
@@ -95,12 +95,8 @@ impl Stroboscope<'_> {
             let model = self.model.with_start(starts[number]).with_duration(last, last);
             let kept = &times[skipped.min(times.len())..];
             let request = Request { sample_times: kept, cancel: Some(self.cancel), ..Request::default() };
-            let run = model.run(&request);
-            match run.summary.outcome {
-                Outcome::Done => Ok(Some(run.samples)),
-                Outcome::Cancelled { .. } => Err(Cancelled),
-                _ => Ok(None),
-            }
+            let run = finished(model.run(&request)).ok_or(Cancelled)?;
+            Ok((run.summary.outcome == Outcome::Done).then_some(run.samples))
         };
         let all: Option<Vec<_>> = self.pool.map(starts.len(), || (), path)?.into_iter().collect();
         let state = |&Sample { x, v, electrical, .. }: &Sample| MapState { x, v, electrical };

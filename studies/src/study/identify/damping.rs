@@ -227,10 +227,7 @@ fn table(rows: &[Decay], amplitude: &str) -> Table {
         .each("from_s", rows, |row| row.span.0)
         .each("to_s", rows, |row| row.span.1)
         .each(amplitude, rows, |row| row.amplitude);
-    let ratios = ["damping_ratio", "damping_ratio_low", "damping_ratio_high"];
-    let frequencies = ["frequency_hz", "frequency_low_hz", "frequency_high_hz"];
-    let decays = ["decay_per_s", "decay_low_per_s", "decay_high_per_s"];
-    let table = with_interval(table, ratios, rows, |row| row.ratio);
-    let table = with_interval(table, frequencies, rows, |row| row.frequency);
-    with_interval(table, decays, rows, |row| row.rate)
+    let table = with_interval(table, "damping_ratio", rows, |row| row.ratio);
+    let table = with_interval(table, "frequency_hz", rows, |row| row.frequency);
+    with_interval(table, "decay_per_s", rows, |row| row.rate)
 }

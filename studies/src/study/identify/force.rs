@@ -103,7 +103,7 @@ pub fn force(x: &[f64], force: &[f64], points: Option<usize>) -> Result<Identifi
         }
     };
     let rows = Table::new().each("x_m", &curve.positions, |x| *x);
-    let rows = with_interval(rows, ["force_n", "force_low_n", "force_high_n"], &curve.mean, |(force, _)| {
+    let rows = with_interval(rows, "force_n", &curve.mean, |(force, _)| {
         Identity::new("force_n", force.value, force.half())
     })
     .with("force_rising_n", forces(&rising, 0))

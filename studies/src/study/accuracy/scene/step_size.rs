@@ -4,10 +4,11 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use serde::{Deserialize, Serialize};
 
-use super::trust::{Beside, finished, times};
+use super::trust::{Beside, times};
 use crate::dynamics::{Event, EventKind, Model, Request, Side};
 use crate::study::accuracy::methods::{MethodRun, Scheme, Statistics, fixed_step, path};
 use crate::study::accuracy::precision::{MEASURED_FOR, median};
+use crate::study::finished;
 
 /// Tolerance of the true run, unless that of the scene is tighter.
 pub const TRUE_TOLERANCE: f64 = 1e-9;

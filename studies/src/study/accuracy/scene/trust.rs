@@ -9,6 +9,7 @@ use crate::dynamics::{Model, Outcome, Regime, Request, Run};
 use crate::numeric::elementary;
 use crate::study::accuracy::methods::{Statistics, path};
 use crate::study::accuracy::precision::median;
+use crate::study::finished;
 
 /// A path is trusted until its error exceeds this share of the travel, which is too small to see in a plot.
 pub const TRUSTED_SHARE: f64 = 0.01;
@@ -203,10 +204,6 @@ fn more_accurate(model: &Model, tolerance: f64, request: &Request) -> Option<(f6
         model.with_tolerance(finer).run(request)
     };
     finished(run).map(|run| (finer, run))
-}
-
-pub(super) fn finished(run: Run) -> Option<Run> {
-    (!matches!(run.summary.outcome, Outcome::Cancelled { .. })).then_some(run)
 }
 
 /// The course of two runs that part at `until` in s; with both tolerances tightened they part at `next`, if
