@@ -98,7 +98,6 @@ pub fn simulate_with_trace(
     let times = ascending(picture_samples.iter().chain(&keep.times).copied().collect());
     let run = model.run(&Request { sample_times: &times, events: true, ledger: true, ..request });
     let (left, right) = model.stop_positions();
-    let stops = (left.unwrap_or(f64::NAN), right.unwrap_or(f64::NAN));
     let end = run.summary.outcome.ended_at().unwrap_or(span.1);
     let mut shown = in_order(&picture_samples, &run.samples);
     if end < span.1 && !matches!(run.summary.outcome, Outcome::Cancelled { .. }) {
@@ -107,7 +106,7 @@ pub fn simulate_with_trace(
         (picture_samples, strobes) = sampled(close, end);
         shown = model.run(&Request { sample_times: &picture_samples, ..request }).samples;
     }
-    let path = path(model, &shown, &run.events, stops);
+    let path = path(model, &shown, &run.events);
     let rows = path.numbers("t_s").unwrap_or_default();
     let (mut portrait_from, shown_to) = close;
     let until = rows.partition_point(|t| *t <= shown_to);
@@ -135,7 +134,7 @@ pub fn simulate_with_trace(
         shown_from,
         shown_to,
         is_section: window.is_some(),
-        stops,
+        stops: (left.unwrap_or(f64::NAN), right.unwrap_or(f64::NAN)),
         end,
         ledger: LiveLedger::default(),
     };
@@ -185,12 +184,12 @@ fn picture_times(model: &Model, close: (f64, f64), duration: f64) -> Vec<f64> {
 }
 
 /// Samples and impacts in order of time. A sample at the time of an impact is the state after it.
-fn path(model: &Model, samples: &[Sample], events: &[Event], stops: (f64, f64)) -> Table {
+fn path(model: &Model, samples: &[Sample], events: &[Event]) -> Table {
     let mut rows: Vec<[f64; 5]> = Vec::with_capacity(samples.len());
     let mut jumps = events.iter().filter(|event| event.kind == EventKind::Impact).peekable();
     for sample in samples {
         while let Some(jump) = jumps.next_if(|jump| jump.t <= sample.t) {
-            let x = if jump.side == Side::Left { stops.0 } else { stops.1 };
+            let x = model.stop(jump.side).map_or(f64::NAN, |stop| stop.x);
             rows.push([jump.t, x, jump.v_in, f64::NAN, f64::NAN]);
             rows.push([jump.t, x, jump.v_out, f64::NAN, f64::NAN]);
         }

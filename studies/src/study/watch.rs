@@ -299,9 +299,8 @@ impl Watch {
     }
 
     fn corner(&mut self, event: &Event, changed: Option<f64>) {
-        let (left, right) = self.live.model().stop_positions();
-        let stop = if event.side == Side::Left { left } else { right };
-        let Some(x) = changed.or(stop) else { return };
+        let stop = self.live.model().stop(event.side);
+        let Some(x) = changed.or(stop.map(|stop| stop.x)) else { return };
         let base_accel = self.live.base_acceleration(event.t);
         // Events have no electrical state; NaN becomes a missing value in a table.
         let electrical = if self.live.model().has_electrical_state() { f64::NAN } else { 0.0 };

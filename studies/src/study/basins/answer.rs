@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::Basins;
 use super::rounds::{Fate, Kind, Way};
 use super::stroboscopic::final_state;
-use crate::dynamics::{MapState, Model, Outcome, Place, Regime, Request, Side, Summary};
+use crate::dynamics::{MapState, Model, Outcome, Place, Regime, Request, Summary};
 use crate::numeric::decimals;
 use crate::study::{State, Table, Task};
 
@@ -272,9 +272,8 @@ impl Basins {
                     start = self.rounds.captures[first].state;
                 }
                 (Kind::Rest(side), _) => {
-                    let stops = self.model.stop_positions();
-                    let stop = if *side == Side::Left { stops.0 } else { stops.1 };
-                    start = MapState { x: stop.unwrap_or(start.x), v: 0.0, electrical };
+                    let x = self.model.stop(*side).map_or(start.x, |stop| stop.x);
+                    start = MapState { x, v: 0.0, electrical };
                 }
                 (Kind::Judged(_), summary) => {
                     let summary = summary.as_ref()?;

@@ -55,11 +55,7 @@ impl Tangent {
             None if model.excitation().is_constant() => StroboscopicMap::over(model, model.natural_time()),
             None => return Err(NoExponents::NoPeriod),
         };
-        let stops = model.stops();
-        let kept = |side: Side| {
-            let pair = stops.and_then(|pair| if side == Side::Left { pair.left } else { pair.right });
-            2.0 * elementary::ln(pair.map_or(1.0, |stop| stop.restitution))
-        };
+        let kept = |side: Side| 2.0 * elementary::ln(model.stop(side).map_or(1.0, |stop| stop.restitution));
         let struck = model.compliant().is_none().then(|| [Side::Left, Side::Right].map(kept));
         let damped = model.contraction(map.period());
         Ok(Self { units: Units::of(model, 1.0), map, damped, struck })

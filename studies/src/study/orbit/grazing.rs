@@ -207,13 +207,6 @@ impl Touch {
         self.fly(&maps, point.orbit.state, (0.0, (phase - corrector.phase).rem_euclid(1.0)))
     }
 
-    /// Position in m and restitution of the stop.
-    fn stop(&self, maps: &Maps) -> Option<(f64, f64)> {
-        let pair = maps.with.model().stops()?;
-        let stop = if self.side == Side::Left { pair.left } else { pair.right }?;
-        Some((stop.x, stop.restitution))
-    }
-
     /// A span of time in parts, each with a flag whether it has stops.
     fn parts(&self, maps: &Maps, (from, to): (f64, f64)) -> Vec<(bool, (f64, f64))> {
         const ROUNDING: f64 = 1e-9;
@@ -249,16 +242,16 @@ impl Touch {
 
     /// The state that leaves the grazing, and the state that must be reached after the flight.
     fn ends(&self, maps: &Maps, at: &Vector4<f64>, beside: Beside) -> Option<[MapState; 2]> {
-        let (stop, restitution) = self.stop(maps)?;
+        let stop = maps.with.model().stop(self.side)?;
         let units = &maps.corrector.units;
         let toward = if self.side == Side::Left { -at.y } else { at.y };
         let electrical = at.z * units.electrical;
         let state = |x: f64, v: f64| MapState { x, v, electrical };
         Some(match beside {
-            Beside::Missing => [state(stop - toward * units.length, 0.0); 2],
+            Beside::Missing => [state(stop.x - toward * units.length, 0.0); 2],
             Beside::Touching => {
                 let speed = toward * units.speed;
-                [state(stop, -restitution * speed), state(stop, speed)]
+                [state(stop.x, -stop.restitution * speed), state(stop.x, speed)]
             }
         })
     }
@@ -299,7 +292,7 @@ impl Touch {
         if corrector.mirrored && flights % 2.0 != 0.0 {
             (side, x) = (side.other(), -x);
         }
-        let gap = (x - self.stop(maps)?.0).abs();
+        let gap = (x - maps.with.model().stop(self.side)?.x).abs();
         let t = maps.with.first_strobe() + time * maps.with.period();
         misses.retain(|miss| apart(time_of(corrector, &maps.with, miss.t), time, flight) > AT_ONCE);
         misses.push(Miss { t, side, gap });

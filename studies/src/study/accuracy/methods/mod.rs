@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 pub use dormand_prince::dormand_prince;
 pub use fixed::fixed_step;
 
-use crate::dynamics::{Event, EventKind, Model, Request, Run, Side, StopAt, Summary};
+use crate::dynamics::{Event, EventKind, Model, Request, Run, Side, Summary};
 use crate::numeric::elementary;
 use crate::system::clock::ThreadClock;
 
@@ -126,17 +126,13 @@ struct Problem<'a> {
 
 impl<'a> Problem<'a> {
     pub fn new(model: &'a Model) -> Self {
-        let stops = model.stops();
         let at =
-            |stop: Option<StopAt>, open: f64| stop.map_or((open, 1.0), |stop| (stop.x, stop.restitution));
+            |side: Side, open: f64| model.stop(side).map_or((open, 1.0), |stop| (stop.x, stop.restitution));
         let (x, v) = model.start();
         let curve = &model.mechanism().curve;
         Self {
             model,
-            stops: [
-                at(stops.and_then(|pair| pair.left), f64::NEG_INFINITY),
-                at(stops.and_then(|pair| pair.right), f64::INFINITY),
-            ],
+            stops: [at(Side::Left, f64::NEG_INFINITY), at(Side::Right, f64::INFINITY)],
             start: TimedState { t: 0.0, x, v },
             domain: curve.domain(),
             single: match curve.pieces() {

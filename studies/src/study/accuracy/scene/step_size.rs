@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use serde::{Deserialize, Serialize};
 
 use super::trust::{Beside, times};
-use crate::dynamics::{Event, EventKind, Model, Request, Side};
+use crate::dynamics::{Event, EventKind, Model, Request};
 use crate::study::accuracy::methods::{MethodRun, Scheme, Statistics, fixed_step, path};
 use crate::study::accuracy::precision::{MEASURED_FOR, median};
 use crate::study::finished;
@@ -149,12 +149,9 @@ fn step_times(end: f64, step: f64) -> Vec<f64> {
 
 /// The path with its corners at impacts, which a picture with few points would cut off.
 fn with_impacts(model: &Model, mut path: Vec<(f64, f64)>, impacts: &[Event]) -> Vec<(f64, f64)> {
-    let (left, right) = model.stop_positions();
     let end = path.last().map_or(0.0, |last| last.0);
-    let corner = |impact: &Event| {
-        let x = if impact.side == Side::Left { left } else { right };
-        x.filter(|_| impact.t <= end).map(|x| (impact.t, x))
-    };
+    let corner =
+        |impact: &Event| model.stop(impact.side).filter(|_| impact.t <= end).map(|stop| (impact.t, stop.x));
     path.extend(impacts.iter().filter_map(corner));
     path.sort_by(|a, b| a.0.total_cmp(&b.0));
     path
