@@ -189,15 +189,7 @@ pub fn stress_warning(flexures: &Flexures, states: &[State]) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mechanics::flexure::CentreLine;
-    use crate::mechanics::{ForceCurve, Landscape};
     use crate::scene::{Document, Files};
-    use crate::study::Values;
-
-    fn cubic() -> Mechanism {
-        let curve = ForceCurve::polynomial(&[0.0, -40.0, 0.0, 8e5]);
-        Mechanism { landscape: Landscape::default(), ..Mechanism::new(curve) }
-    }
 
     #[test]
     fn positions_have_exact_ends_and_middle() {
@@ -216,15 +208,6 @@ mod tests {
     }
 
     #[test]
-    fn rows_keep_the_order_of_the_positions() {
-        let table = curve(&cubic(), vec![3e-3, 0.0, -3e-3]).unwrap();
-        assert_eq!(table.numbers("x_m").unwrap(), [3e-3, 0.0, -3e-3]);
-        assert_eq!(table.numbers("potential_j").unwrap()[1], 0.0);
-        assert_eq!(table.numbers("stiffness_n_per_m").unwrap()[1], -40.0);
-        assert!(curve(&cubic(), vec![f64::NAN]).is_err());
-    }
-
-    #[test]
     fn a_corner_mixes_the_two_half_swings() {
         let smooth = Equilibrium { x: 0.0, stable: true, stiffness_left: 4.0, stiffness_right: 4.0 };
         let frequency = small_amplitude_frequency(1.0, &smooth).unwrap();
@@ -234,7 +217,6 @@ mod tests {
     }
 
     fn state(x: f64, max_stress: f64) -> State {
-        let line = |flexure| CentreLine { flexure, points: vec![[0.0, 0.0, -0.0], [1.0, 2.0, x]] };
         State {
             x,
             force: 0.0,
@@ -243,21 +225,8 @@ mod tests {
             axial: 5.0,
             bump: 1e-3,
             max_stress,
-            lines: vec![line("parallel"), line("buckling")],
+            lines: Vec::new(),
         }
-    }
-
-    #[test]
-    fn lines_follow_point_after_point() {
-        let table = shapes(&[state(1e-3, 0.0), state(-1e-3, 0.0)]);
-        let names: Vec<&str> = table.columns().iter().map(|column| column.name.as_str()).collect();
-        assert_eq!(names, ["x_m", "flexure", "s_m", "px_m", "py_m"]);
-        let words = ["parallel", "parallel", "buckling", "buckling"];
-        assert_eq!(table.column("flexure").unwrap().values, Values::Words([words, words].concat()));
-        assert_eq!(table.numbers("x_m").unwrap()[3..5], [1e-3, -1e-3]);
-        assert_eq!(table.numbers("px_m").unwrap()[..2], [0.0, 2.0]);
-        assert!(table.numbers("py_m").unwrap()[0].is_sign_positive());
-        assert_eq!(shapes(&[]).rows(), 0);
     }
 
     #[test]
