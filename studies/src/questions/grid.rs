@@ -134,7 +134,7 @@ impl Section {
         if let Some(carry) = self.options.carry {
             return Err(Error::argument("carry", carry.name(), "walks a field: name one by over"));
         }
-        let (document, run) = (simulation.document(), self.options.run_of(simulation.model()));
+        let (document, run) = (simulation.document(), self.options.model(simulation.model().clone()));
         check_until(self.options.until_settled, document, &run)?;
         let found = section(simulation.model(), simulation.scene(), &self.options, progress.stop());
         let found = found.map_err(|fault| Error::faults_of(document, vec![fault]))?;

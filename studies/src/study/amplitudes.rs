@@ -6,13 +6,13 @@ use serde::{Deserialize, Serialize};
 
 use super::bisection::multiple;
 use super::settled::followed;
-use super::thresholds::{Answers, Search};
+use super::thresholds::{Answers, Search, from_rest};
 use super::{Cancelled, Family, Found, Onset, Task, Verdict};
 use crate::dynamics::{Model, Request, STANDARD_GRAVITY};
 use crate::mechanics::{Landscape, Mechanism};
 use crate::numeric::elementary;
 use crate::numeric::round::{ONE_TWO_FIVE, decade, round_down};
-use crate::scene::{Files, Scene, Start, Stops};
+use crate::scene::{Files, Scene, Stops};
 use crate::system::threads::Pool;
 
 /// The place value of the third significant digit.
@@ -87,7 +87,7 @@ pub(super) fn crossing(
     values.iter_mut().for_each(|value| *value = multiple(*value, third_digit(*value)));
     values.dedup();
     let searched_to = values.last().copied().unwrap_or(push);
-    let trial = Scene { start: Start::Rest, excitation: drive.sine(), ..scene.clone() };
+    let trial = Scene { excitation: drive.sine(), ..from_rest(scene) };
     let files = Files::default(); // an amplitude changes no mechanism
     let family = Family::new(&trial, &files, mechanism, "excitation.amplitude_g");
     let search = Search { family, onset: Onset::Crossing, until_settled, task, pool, ahead: 1 };
@@ -173,7 +173,7 @@ pub fn stops_that_cross(
     };
     let well_mm = well.x.abs() * 1e3;
     let step = round_down(well_mm / MIN_STEPS, &ONE_TWO_FIVE);
-    let mut trial = Scene { start: Start::Rest, ..scene.clone() };
+    let mut trial = from_rest(scene);
     for i in (1..=(well_mm / step).floor() as u32).rev() {
         let travel_limit_mm = multiple(f64::from(i) * step, step);
         trial.stops = Stops::Rigid { travel_limit_mm, restitution };

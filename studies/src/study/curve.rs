@@ -5,7 +5,7 @@ use super::{Table, Task};
 use crate::mechanics::flexure::{FlexureError, Flexures, State};
 use crate::mechanics::{Equilibrium, Mechanism};
 use crate::numeric::round::decade;
-use crate::numeric::{Decimal, elementary, short};
+use crate::numeric::{Decimal, elementary, extent, short};
 use crate::scene::Scene;
 
 /// Default number of positions of a force curve.
@@ -172,11 +172,10 @@ pub fn shapes(states: &[State]) -> Table {
 /// the range of |x|, the largest stress and the limit.
 pub fn stress_warning(flexures: &Flexures, states: &[State]) -> Option<String> {
     let limit = flexures.geometry().yield_stress;
-    let farthest = states.iter().fold(0.0_f64, |largest, state| largest.max(state.x.abs()));
+    let (_, farthest) = extent(states.iter().map(|state| state.x.abs()));
     let above: Vec<&State> = states.iter().filter(|state| state.max_stress > limit).collect();
     let worst = above.iter().max_by(|a, b| a.max_stress.total_cmp(&b.max_stress))?;
-    let from = above.iter().fold(f64::INFINITY, |least, state| least.min(state.x.abs()));
-    let to = above.iter().fold(0.0_f64, |largest, state| largest.max(state.x.abs()));
+    let (from, to) = extent(above.iter().map(|state| state.x.abs()));
     let end = if to < farthest { format!("to {} mm", short(to * 1e3)) } else { "on".to_owned() };
     let [begin, place] = [from, worst.x].map(|metres| short(metres * 1e3));
     let [limit, largest] = [limit, worst.max_stress].map(|pascal| short(pascal / 1e9));

@@ -113,7 +113,7 @@ pub(crate) use melnikov::{suits_melnikov, with_melnikov};
 pub(crate) use models::ModelUse;
 pub use orbit::{
     Branch, BranchEnd, BranchEvent, BranchOptions, FieldRange, Locus, LocusEnd, LocusEvent, NoOrbit, Orbit,
-    branch, branches_table, loci, loci_table, orbit, orbit_near, orbit_table, switched,
+    branch, branches_table, loci, loci_table, orbit, orbit_near, switched,
 };
 pub use section::{IMPACTS, MAX_SECTION, SectionAt, SectionOptions, Sections, section};
 pub(crate) use settled::followed_until;

@@ -180,13 +180,6 @@ impl Default for SectionOptions {
     }
 }
 
-impl SectionOptions {
-    /// The model as it is run.
-    pub fn run_of(&self, model: &Model) -> Model {
-        self.model(model.clone())
-    }
-}
-
 /// The section of a run of `model`, the model of `scene`, and the summary of the run. The table of states has
 /// the column [`IMPACTS`]. A fault if the drive does not repeat, or if the settled window has no period or
 /// too many.
@@ -196,7 +189,7 @@ pub fn section(
     options: &SectionOptions,
     cancel: &AtomicBool,
 ) -> Result<(Table, Summary), Fault> {
-    let model = options.run_of(model);
+    let model = options.model(model.clone());
     if let Some(fault) = options.fault(&model, scene) {
         return Err(fault);
     }

@@ -50,10 +50,9 @@ pub fn switched(
                         starts(family, &all, (number, place), range, options, task.cancel)
                     {
                         let model = family.model(first.0.value).map_err(|_| NoOrbit::NotConverged)?;
-                        let branch = Branch::empty(&all[number].field);
-                        let mut walk = Walk::new(corrector, branch, range, &model, first, *options);
-                        walk.branch.end = walk.run_out(task)?;
-                        all.push(walk.branch);
+                        let field = &all[number].field;
+                        let walk = Walk::new(corrector, field, range, &model, first, *options);
+                        all.push(walk.run_out(task)?);
                     }
                 }
             }

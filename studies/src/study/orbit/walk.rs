@@ -53,7 +53,7 @@ struct Stretch {
 pub(super) struct Walk<'a> {
     /// Its phase of the drive is kept away from impacts, at which a state has no derivative by the field.
     corrector: Corrector<'a>,
-    pub branch: Branch,
+    branch: Branch,
     /// The range, and its ends in its unit.
     range: [f64; 2],
     ends: [f64; 2],
@@ -70,10 +70,10 @@ pub(super) struct Walk<'a> {
 }
 
 impl<'a> Walk<'a> {
-    /// A continuation over a range from the orbit of `model` at its first value.
+    /// A continuation of a branch over a field, within a range, from a point at which the model is `model`.
     pub fn new(
         corrector: Corrector<'a>,
-        branch: Branch,
+        field: &str,
         (from, to): (f64, f64),
         model: &Model,
         first: Directed,
@@ -84,6 +84,14 @@ impl<'a> Walk<'a> {
         let room = match model.stop_positions() {
             (Some(left), Some(right)) => length.min(0.5 * (right - left)),
             _ => length,
+        };
+        let branch = Branch {
+            field: field.to_owned(),
+            values: Vec::new(),
+            orbits: Vec::new(),
+            events: Vec::new(),
+            end: BranchEnd::Points,
+            unlocated: Vec::new(),
         };
         let mut walk = Self {
             branch,
@@ -101,7 +109,13 @@ impl<'a> Walk<'a> {
         walk
     }
 
-    pub fn run_out(&mut self, task: &Task) -> Result<BranchEnd, NoOrbit> {
+    /// Walks until the branch ends, and returns it with its end.
+    pub fn run_out(mut self, task: &Task) -> Result<Branch, NoOrbit> {
+        self.branch.end = self.end(task)?;
+        Ok(self.branch)
+    }
+
+    fn end(&mut self, task: &Task) -> Result<BranchEnd, NoOrbit> {
         let mut step = FIRST.min(self.options.step);
         while self.branch.values.len() < self.options.count {
             task.check_cancelled()?;

@@ -37,10 +37,8 @@ pub(super) fn times(model: &Model) -> Vec<f64> {
 /// How two runs differ.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Beside {
-    /// Times in s that both runs reached.
-    times: Vec<f64>,
-    /// The largest difference of the displacement in m up to each of these times.
-    worst: Vec<f64>,
+    /// Times in s that both runs reached, each with the largest difference of the displacement in m so far.
+    worst: Vec<(f64, f64)>,
     /// The largest difference in m in the last part of the time.
     at_end: f64,
     /// Travel in m, peak to peak, of the run that the other is compared with.
@@ -60,8 +58,7 @@ impl Beside {
             let apart = (x - better).abs();
             worst = worst.max(apart);
             (low, high) = (low.min(*better), high.max(*better));
-            found.times.push(*t);
-            found.worst.push(worst);
+            found.worst.push((*t, worst));
             if i >= from_end {
                 found.at_end = found.at_end.max(apart);
             }
@@ -73,18 +70,18 @@ impl Beside {
 
     /// The time in s up to which both runs came.
     pub fn span(&self) -> f64 {
-        self.times.last().copied().unwrap_or(0.0)
+        self.worst.last().map_or(0.0, |last| last.0)
     }
 
     /// The largest difference in m.
     pub fn error(&self) -> f64 {
-        self.worst.last().copied().unwrap_or(0.0)
+        self.worst.last().map_or(0.0, |last| last.1)
     }
 
     /// The time in s at which the difference has first reached `level` in m; `None` if it never does.
     pub fn reaches(&self, level: f64) -> Option<f64> {
-        let first = self.worst.partition_point(|worst| *worst < level);
-        self.times.get(first).copied()
+        let first = self.worst.partition_point(|(_, worst)| *worst < level);
+        self.worst.get(first).map(|(t, _)| *t)
     }
 
     /// Time in s up to which the run is trusted; `None` if that is all of the time compared.
