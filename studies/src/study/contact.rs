@@ -16,12 +16,9 @@ use crate::system::threads;
 const SPEEDS: usize = 401;
 
 /// A single impact on the model's compliant stop over the impact speed, in even steps up to twice the speed
-/// scale, rounded up to 1, 2 or 5 times a power of ten; `None` if the stops are not compliant.
-///
-/// Columns
-/// `speed_m_per_s,restitution,rigid_restitution,contact_time_s,depth_m,peak_force_n,peak_pressure_pa`; the
-/// restitution of a rigid stop is the constant `rigid`, and values are missing without a contact time (at
-/// speed 0) or a known material. All are closed forms: see [`Hertz`].
+/// scale, rounded up to 1, 2 or 5 times a power of ten; `None` if the stops are not compliant. `rigid` is the
+/// restitution of a rigid stop beside it. Values are missing without a contact time (at speed 0) or a known
+/// material. All are closed forms: see [`Hertz`].
 pub fn contact(model: &Model, rigid: f64) -> Option<Table> {
     let stop = model.compliant()?;
     let top = round_up(2.0 * model.scales().speed, &ONE_TWO_FIVE);

@@ -133,9 +133,7 @@ pub fn states(mechanism: &Mechanism, positions: &[f64], task: &Task) -> Result<V
     positions.iter().map(state).collect()
 }
 
-/// The table of [`curve`] at the positions of `states`, with `axial_n,bump_m,max_stress_pa`: the axial force
-/// of all buckling flexures, the height of their buckled shape, and the largest bending stress of any
-/// flexure.
+/// The table of [`curve`] at the positions of `states`, with `axial_n,bump_m,max_stress_pa`.
 pub fn full_curve(mechanism: &Mechanism, states: &[State]) -> Table {
     let positions: Vec<f64> = states.iter().map(|state| state.x).collect();
     let table = rows(mechanism, &positions);
@@ -143,13 +141,12 @@ pub fn full_curve(mechanism: &Mechanism, states: &[State]) -> Table {
     table.each("max_stress_pa", states, |state| state.max_stress)
 }
 
-/// The table `x_m,flexure,s_m,px_m,py_m`: the centre lines of each state, point by point; `flexure` is
-/// `parallel` or `buckling`, each of which represents its group.
+/// The table `x_m,flexure,s_m,px_m,py_m`: the centre lines of each state, point by point.
 ///
 /// px and py are coordinates in the frame, for a shuttle without width: the parallel flexures are clamped at
 /// (0, 0) and reach the shuttle at (L_p - u, x), u being their shortening; the buckling ones are clamped at
-/// (L_p + L_b - preload, 0) and reach the same point of the shuttle. So px runs along the flexures and py
-/// with x. s is the length along a flexure from its clamp in the frame.
+/// (L_p + L_b - preload, 0) and reach the same point of the shuttle. s is the length along a flexure from its
+/// clamp in the frame.
 pub fn shapes(states: &[State]) -> Table {
     let mut rows = Vec::new();
     for state in states {

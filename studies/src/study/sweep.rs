@@ -142,13 +142,10 @@ pub struct SweepOptions {
     pub columns: Vec<&'static SummaryField>,
     /// Each run continues until its motion repeats, at most up to this time in s.
     pub until_settled: Option<f64>,
-    /// The last field is walked: each cell begins in the state of the cell before at the last whole forcing
-    /// period of its run. Only the first cell begins at the start of its scene. A column `direction` follows
-    /// those of the fields, and the rows are in the order of the walk.
+    /// The last field is walked, as [`Sweep`](crate::questions::Sweep) says; the rows are in the order of the
+    /// walk.
     pub carry: Option<Carry>,
-    /// Draws of uncertain fields, which are run in each cell besides the cell itself; without `carry`. Each
-    /// column of numbers is followed by the band of the draws, `_low` and `_high`, each of words by the share
-    /// of the draws with the same word, `_share`; `draws` is the last column.
+    /// Draws of uncertain fields, which are run in each cell besides the cell itself; without `carry`.
     pub draws: Draws,
 }
 

@@ -91,9 +91,8 @@ impl From<Cancelled> for NoThresholds {
     }
 }
 
-/// The thresholds of every cell of `grid`: the swept fields, then `of,value,low,high,undecided,windows`. A
-/// value is missing if it was not found or the mechanism is not solved. Ticks for each value of the scan in
-/// each cell. All cells are checked before the first run.
+/// The thresholds of every cell of `grid`, with the columns of [`Threshold`](crate::questions::Threshold).
+/// Ticks for each value of the scan in each cell. All cells are checked before the first run.
 pub fn threshold_table(
     scene: &Scene,
     files: &Files,

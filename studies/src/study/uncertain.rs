@@ -20,10 +20,8 @@ const ENDS: [usize; 2] = [1, 39];
 
 const COUNT: &str = "draws";
 
-/// The draws of uncertain fields, from independent normal distributions about the value of each field.
-///
-/// A distribution is truncated to the range of its field, as if a draw outside were drawn again. The k-th
-/// draw is at the same probabilities in every cell, so that bands are smooth along the axes of a grid.
+/// The draws of uncertain fields, from independent normal distributions about the value of each field, which
+/// are truncated to its range. The k-th draw is at the same probabilities in every cell.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Draws {
     fields: Vec<DrawnField>,

@@ -1,9 +1,8 @@
 //! Live run that keeps its recent path.
 //!
 //! The path is sampled for display: 80 times per period, and at every event, so that impacts are drawn as
-//! corners and rests as straight lines. While ledgers are switched on, the energy ledger is stored at the end
-//! of every forcing period. The oldest data are dropped. The models of the motion are stored as well
-//! ([`models`](super::models)).
+//! corners and rests as straight lines. The oldest data are dropped. The models of the motion are stored as
+//! well ([`models`](super::models)).
 
 use std::collections::VecDeque;
 use std::ops::Range;

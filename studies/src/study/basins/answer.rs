@@ -84,11 +84,7 @@ impl Attractor {
     }
 }
 
-/// Results of a map of basins so far.
-///
-/// Starts that reach no attractor, or whose run ends early, have no number, and are counted.
-///
-/// [`BasinsAnswer`](crate::questions::BasinsAnswer) has it, with both of its tables.
+/// Results of a map of basins so far; [`BasinsAnswer`](crate::questions::BasinsAnswer) has both of its tables.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Answer {
     /// The attractors in the order of their numbers, which begin at 1.
@@ -98,8 +94,7 @@ pub struct Answer {
     pub rows: Vec<Option<(u32, u32)>>,
     /// Number of starts outside the limits of displacement.
     pub outside: u64,
-    /// Whether the answer of each row is sure, see [`Basins`](crate::questions::Basins); empty if it was not
-    /// checked.
+    /// Whether the answer of each row is [sure](crate::questions::Basins); empty if it was not checked.
     pub sure: Vec<bool>,
     /// Number of starts whose run ended early.
     pub lost: u64,

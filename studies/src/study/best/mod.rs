@@ -108,9 +108,7 @@ pub const MOST_FIELDS: usize = 4;
 /// Numbers of intervals of the scan for one to four fields.
 pub const INTERVALS: [usize; MOST_FIELDS] = [256, 32, 12, 8];
 
-/// A design and its results.
-///
-/// The values of the fields are in their units and in the order of the question's fields.
+/// A design and its results; the values of the fields are in their units and in the order of the question.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Optimum {
     /// The fields' values.

@@ -4,10 +4,9 @@
 //! of the runs can be repeated alone with that seed, the runs do not depend on threads, and all cells of a
 //! grid have the same random numbers, whose scatter then hardly shows in the differences between cells.
 //!
-//! A run begins in the start of the scene and ends with its escape, or at the time `within`. Waiting times
-//! that are cut short count: the estimate of the rate is the number of escapes over the time observed
-//! ([`Rate`]). It assumes exponential waiting times, which hold once the time to escape is much longer than
-//! the time in which the motion forgets its start.
+//! A run begins in the start of the scene and ends with its escape, or at the time `within`. The estimate of
+//! the rate ([`Rate`]) assumes exponential waiting times, which hold once the time to escape is much longer
+//! than the time in which the motion forgets its start.
 
 mod kramers;
 mod probability;
@@ -64,10 +63,8 @@ struct Waited {
 /// The waiting times of a cell, and its rate by Kramers; `None` if the mechanism was not solved.
 type Escapes = Option<(Vec<Waited>, Result<f64, NoKramers>)>;
 
-/// Escapes in every cell of `grid`: the swept fields, then the columns
-/// `runs,escaped,ended_early,observed_s`, the rate, the mean and the median of the waiting times, each with
-/// its interval, `kramers_rate_per_s` and `kramers_fails`. Ticks for each run. All cells are checked before
-/// the first run.
+/// Escapes in every cell of `grid`, with the columns of [`Escape`](crate::questions::Escape). Ticks for each
+/// run. All cells are checked before the first run.
 pub fn escape_table(
     scene: &Scene,
     files: &Files,

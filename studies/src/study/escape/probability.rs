@@ -28,12 +28,9 @@ pub struct Chance {
 /// end of the range, and `None` if the mechanism was not solved.
 type Firsts = Option<Vec<f64>>;
 
-/// The thresholds in probability of every cell of `grid`: the swept fields, then
-/// `of,probability,value,low,high,runs,crossed`. All runs begin at rest. The thresholds of the runs are
-/// multiples of the resolution of `scan`, of whose values only the first and the last are used.
-///
-/// The bisection assumes that a run which crosses at a value crosses at all higher ones. Where that is not
-/// so, it finds one of the values of the range at which the answer changes. Ticks for each run.
+/// The thresholds in probability of every cell of `grid`, with the columns of
+/// [`ProbableThreshold`](crate::questions::ProbableThreshold). Those of the runs are multiples of the
+/// resolution of `scan`, of whose values only the first and the last are used. Ticks for each run.
 pub fn probable_threshold_table(
     scene: &Scene,
     files: &Files,

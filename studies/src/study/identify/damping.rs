@@ -33,10 +33,7 @@ const CLEAR: f64 = 1.5;
 /// line through the times of the turning points, with an offset between maxima and minima. Intervals are
 /// 95 %, from the scatter of the turning points about envelope and line.
 ///
-/// The fit begins after the last flat top of a clipped record, otherwise at the largest oscillation. Rows:
-/// `turns,from_s,to_s,amplitude,damping_ratio,damping_ratio_low,damping_ratio_high,frequency_hz,
-/// frequency_low_hz,frequency_high_hz,decay_per_s,decay_low_per_s,decay_high_per_s`, each for about eight
-/// turning points in order of time; the name of the amplitude column ends with the unit of the channel.
+/// The fit begins after the last flat top of a clipped record, otherwise at the largest oscillation.
 pub fn damping(times: &[f64], channel: &Channel) -> Result<Identified, Unidentified> {
     let flat = clipped(&channel.values);
     let begin = flat.map_or(0, |flat| flat.last + 1);

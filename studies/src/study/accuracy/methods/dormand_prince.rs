@@ -128,9 +128,9 @@ impl Step {
 
 /// Runs `model` with the local error `tolerance` allowed relative to the scene's length and speed.
 ///
-/// A pressed rebound slower than 1e-6 of the scene's speed is a rest, its release found by a scan in 200ths of
-/// the forcing period (or of the duration) and bisection. Ends early where the force curve ends, and after 2e7
-/// attempts.
+/// A pressed rebound slower than 1e-6 of the scene's speed is a rest, its release found by a scan in 200ths
+/// of the forcing period (or of the duration) and bisection. Ends early where the force curve ends, and after
+/// 2e7 attempts.
 pub fn dormand_prince(model: &Model, tolerance: f64, request: &Request) -> MethodRun {
     let problem = Problem::new(model);
     let mut march = March {

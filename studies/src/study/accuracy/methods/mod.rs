@@ -75,7 +75,7 @@ fn is_cancelled(request: &Request) -> bool {
 /// The result of a run by one of these methods.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct MethodRun {
-    /// Time in s and displacement in m at the requested times up to the end, on a straight line between steps.
+    /// Time in s and displacement in m at the requested times up to the end, on straight lines between steps.
     pub path: Vec<(f64, f64)>,
     /// Impacts in order of time, where they were asked for.
     pub impacts: Vec<Event>,

@@ -16,12 +16,8 @@ pub use words::{duration, length_mm, moment, small_length, step_name};
 use super::OWN;
 use crate::study::Table;
 
-/// Runs at tolerances and in fixed steps, a row each, in this order. SI; a cell without a value is empty.
-///
-/// `error_m` is the largest error of the displacement, `trusted_s` the time up to which the path is off by
-/// less than a hundredth of the travel (empty if it is for all the time compared), `compared_s` the time
-/// compared. `late_s` is the median delay of arrivals at a stop, `latest_s` the largest, over `arrivals` of
-/// them in a row.
+/// Runs at tolerances and in fixed steps, a row each, in this order, with the columns of
+/// [`Accuracy`](crate::questions::Accuracy).
 pub fn scene_table(tolerances: &Tolerances, stepped: &[StepSize]) -> Table {
     let runs = &tolerances.runs;
     let mut table = Table::new()

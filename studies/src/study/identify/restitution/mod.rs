@@ -31,8 +31,6 @@ pub(super) const ENOUGH: usize = 8;
 /// and degrees. Clipped samples are left out. If the stops differ by more than their intervals, the interval
 /// of the common number contains both; if the impacts on a stop do, the interval is widened accordingly
 /// (Birge 1932).
-///
-/// Rows, one an impact: `t_s,side`, then `v_in`, `v_out` in m/s and `restitution` with `_low` and `_high`.
 pub fn restitution(
     times: &[f64],
     x: &[f64],
@@ -244,10 +242,8 @@ fn fitted(motion: &Motion, contacts: &[Contact], singles: &[Single]) -> Table {
 }
 
 /// Restitution of the impacts at these `times` in s of a body that bounces on one stop under a constant
-/// acceleration: then each flight is as much shorter than the one before, and the times follow
-/// c + a e^k, which is fitted by least squares.
-///
-/// Rows, one for each impact between two flights: `t_s,restitution,restitution_low,restitution_high`.
+/// acceleration: then each flight is as much shorter than the one before, and the times follow c + a e^k,
+/// which is fitted by least squares. One row for each impact between two flights.
 pub fn restitution_of_times(times: &[f64]) -> Result<Identified, Unidentified> {
     let none = |why| Unidentified::NoBounces(times.len(), why);
     let law = geometric(times).ok_or_else(|| none("give more, or such as lie between bounces alone"))?;
