@@ -82,10 +82,10 @@ pub(super) type Built = Result<Arc<Mechanism>, BuildError>;
 
 /// A scene, the grid over it, and the mechanisms that its cells share.
 #[derive(Debug)]
-pub(super) struct Cells {
-    base: Scene,
-    grid: Grid,
-    files: Files,
+pub struct Cells {
+    pub(super) base: Scene,
+    pub(super) grid: Grid,
+    pub(super) files: Files,
     draws: Draws,
     mechanisms: Vec<Mutex<Option<Built>>>,
     /// Mechanisms built so far.
@@ -109,12 +109,18 @@ const MAX_KEPT_MECHANISMS: u64 = 4096;
 const MECHANISM_BYTES: u64 = 50_000;
 
 impl Cells {
+    /// The cells of `grid` over `base`, before any mechanism is built.
     pub fn new(base: &Scene, files: &Files, grid: Grid) -> Self {
         // fields without influence on a run are dropped, so that they are not copied for each cell
         let base = Scene { notes: String::new(), sweep: Vec::new(), app: None, ..base.clone() };
         let (files, draws, built) = (files.clone(), Draws::default(), AtomicU64::new(0));
         let mechanisms = places(grid.mechanisms());
         Self { base, files, grid, draws, mechanisms, built }
+    }
+
+    /// The columns of the swept fields, a row for each cell.
+    pub(super) fn table(&self) -> Table {
+        self.grid.table(|| 0..self.grid.cells())
     }
 
     /// Number of different mechanisms in a cell of the grid.
@@ -150,7 +156,7 @@ impl Cells {
 
     /// Checks all cells; wrong are those in which `faults` finds any, or whose mechanism is wrong. A
     /// mechanism that is not solved is no fault.
-    pub fn check(
+    pub(super) fn check(
         &self,
         pool: &Pool,
         task: &Task,
@@ -170,7 +176,7 @@ impl Cells {
 
     /// The answers for `parts` parts of each cell, from the scene of the cell, its mechanism or why it has
     /// none, and the number of the part.
-    pub fn map<R: Send>(
+    pub(super) fn map<R: Send>(
         &self,
         parts: usize,
         pool: &Pool,

@@ -98,7 +98,7 @@ pub(crate) use fields::InJson;
 pub use fields::{RMS_VELOCITY, Read, SUMMARY_FIELDS, SummaryField};
 pub use grid::{Grid, GridError, Levels, MAX_CELLS, STRIDES};
 pub(crate) use grid_study::Row;
-pub use grid_study::{GridStudy, Question};
+pub use grid_study::{Cells, GridStudy, Question};
 pub use identify::{
     FORCE_POINTS, Identified, Identity, Unidentified, damping, force, restitution, restitution_of_times,
 };

@@ -16,7 +16,7 @@ use super::bisection::{Trial, between, next_between};
 use super::grid_study::{Built, Cells};
 use super::settled::{followed, runs_from};
 use super::walk::excitation_fault;
-use super::{Cancelled, CellFaults, Family, Grid, NoModel, Table, Task};
+use super::{Cancelled, CellFaults, Family, NoModel, Table, Task};
 use crate::dynamics::{Model, Outcome, Regime, Run, Summary};
 use crate::mechanics::Mechanism;
 use crate::scene::{Fault, Files, Scene, Start};
@@ -91,41 +91,38 @@ impl From<Cancelled> for NoThresholds {
     }
 }
 
-/// The thresholds of every cell of `grid`, with the columns of [`Threshold`](crate::questions::Threshold).
+/// The thresholds of every cell, with the columns of [`Threshold`](crate::questions::Threshold).
 /// Ticks for each value of the scan in each cell. All cells are checked before the first run.
 pub fn threshold_table(
-    scene: &Scene,
-    files: &Files,
-    grid: &Grid,
+    cells: &Cells,
     scan: &Scan,
     onset: Onset,
     pool: &Pool,
     task: &Task,
 ) -> Result<Table, NoThresholds> {
-    let cells = Cells::new(scene, files, grid.clone());
     cells.check(pool, task, |scene, mechanism| {
         let trial = from_rest(scene);
-        faults(&trial, mechanism, files, scan, |model| {
+        faults(&trial, mechanism, &cells.files, scan, |model| {
             let suits = onset != Onset::Interwell || model.repeats();
             (!suits).then(|| excitation_fault(&trial, NO_PERIOD.to_owned()))
         })
     })?;
     // with several cells, each runs on one thread
-    let ahead = if grid.cells() == 1 { pool.count() } else { 1 };
+    let ahead = if cells.grid.cells() == 1 { pool.count() } else { 1 };
     let of_cell = |scene: &Scene, built: Built, _: u64| {
         let Ok(mechanism) = built else {
             scan.values.iter().for_each(|_| (task.tick)());
             return Ok(Found { undecided: true, ..Found::default() });
         };
         let trial = from_rest(scene);
-        let family = Family::new(&trial, files, &mechanism, &scan.field);
+        let family = Family::new(&trial, &cells.files, &mechanism, &scan.field);
         let until_settled = scan.until_settled;
         let search = Search { family, onset, until_settled, task, pool: Some(pool), ahead };
         search.found(scene, &mechanism, scan)
     };
     let found = cells.map(1, pool, task, of_cell)?;
-    Ok(grid
-        .table(|| 0..grid.cells())
+    Ok(cells
+        .table()
         .each("of", &found, |_| onset.name())
         .each("value", &found, |found| found.value)
         .each("low", &found, |found| found.low)

@@ -84,7 +84,7 @@ impl Attractor {
     }
 }
 
-/// Results of a map of basins so far; [`BasinsAnswer`](crate::questions::BasinsAnswer) has both of its tables.
+/// Results of a map of basins so far; [`BasinsAnswer`](crate::questions::BasinsAnswer) has both its tables.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Answer {
     /// The attractors in the order of their numbers, which begin at 1.

@@ -17,11 +17,11 @@ use std::sync::atomic::AtomicBool;
 use super::grid_study::{Built, Cells};
 use super::thresholds::NoThresholds;
 use super::walk::{choice_fault, excitation_fault};
-use super::{Cancelled, Grid, Table, Task};
+use super::{Cancelled, Table, Task};
 use crate::dynamics::{Model, Outcome, Request};
 use crate::mechanics::Mechanism;
 use crate::numeric::{Rate, Waiting, median};
-use crate::scene::{Excitation, Fault, Files, Scene, Start};
+use crate::scene::{Excitation, Fault, Scene, Start};
 use crate::system::threads::Pool;
 pub use kramers::{NoKramers, depopulation, kramers_rate};
 pub use probability::{Chance, probable_threshold_table};
@@ -63,17 +63,14 @@ struct Waited {
 /// The waiting times of a cell, and its rate by Kramers; `None` if the mechanism was not solved.
 type Escapes = Option<(Vec<Waited>, Result<f64, NoKramers>)>;
 
-/// Escapes in every cell of `grid`, with the columns of [`Escape`](crate::questions::Escape). Ticks for each
+/// Escapes in every cell, with the columns of [`Escape`](crate::questions::Escape). Ticks for each
 /// run. All cells are checked before the first run.
 pub fn escape_table(
-    scene: &Scene,
-    files: &Files,
-    grid: &Grid,
+    cells: &Cells,
     options: &EscapeOptions,
     pool: &Pool,
     task: &Task,
 ) -> Result<Table, NoThresholds> {
-    let cells = Cells::new(scene, files, grid.clone());
     let fault = |scene: &Scene, mechanism: &Arc<Mechanism>| {
         let prepared = prepared(scene, 0, options.within);
         match Model::build(&prepared, Arc::clone(mechanism)) {
@@ -104,7 +101,7 @@ pub fn escape_table(
     let of_cell = |cell: &[Option<Waited>]| cell.iter().copied().collect::<Option<Vec<Waited>>>();
     let found: Vec<Escapes> =
         waited.chunks(runs).map(of_cell).zip(rates).map(|(waited, rate)| waited.zip(rate)).collect();
-    Ok(with_columns(grid.table(|| 0..grid.cells()), options, &found))
+    Ok(with_columns(cells.table(), options, &found))
 }
 
 fn with_columns(table: Table, options: &EscapeOptions, found: &[Escapes]) -> Table {

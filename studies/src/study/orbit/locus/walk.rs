@@ -105,15 +105,9 @@ impl Walk<'_> {
             let crossings = (0..2).filter_map(|place| {
                 let [low, high] = ends[place];
                 let (from, to) = (at[3 + place], to[3 + place]);
-                let end = if to < low {
-                    low
-                } else if to > high {
-                    high
-                } else {
-                    return None;
-                };
+                let end = to.clamp(low, high);
                 // the first point may lie at an end, and the locus continue inside
-                (to != from).then(|| (3 + place, end, (end - from) / (to - from)))
+                (end != to && to != from).then(|| (3 + place, end, (end - from) / (to - from)))
             });
             crossings.min_by(|a, b| a.2.total_cmp(&b.2))
         };
