@@ -237,27 +237,3 @@ impl Table {
         self.columns.first().map_or(0, |column| column.values.len())
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_name_gives_its_unit() {
-        for (name, unit) in [
-            ("t_s", "s"),
-            ("v_m_per_s", "m/s"),
-            ("base_accel_m_per_s2", "m/s\u{b2}"),
-            ("stiffness_n_per_m", "N/m"),
-            ("travel_limit_mm", "mm"),
-            ("yield_gpa", "GPa"),
-            ("max_stress_pa", "Pa"),
-            ("amplitude_g", "g"),
-            ("max_abs_x_m", "m"),
-            ("restitution", ""),
-            ("crossings", ""),
-        ] {
-            assert_eq!(label_and_unit(name).1, unit, "{name}");
-        }
-    }
-}
