@@ -269,9 +269,9 @@ impl Watch {
             !(struck(event.kind) || event.kind == EventKind::Rest)
                 || before.is_none_or(|before| !struck(before.kind) || before.side != event.side)
         };
-        let split = |time: f64| self.events.partition_point(|event| event.t <= time);
         let found = if later {
-            (split(t)..self.events.len()).find(begins_sequence)
+            let after = self.events.partition_point(|event| event.t <= t);
+            (after..self.events.len()).find(begins_sequence)
         } else {
             let before = self.events.partition_point(|event| event.t < t);
             (0..before).rev().find(begins_sequence)

@@ -146,20 +146,15 @@ impl<'a> Walk<'a> {
                 let grazes = stretch.events.iter().any(|event| event.0 == BranchEvent::Grazing);
                 let is_last = stretch.is_last;
                 let goes_on = self.go_along(stretch);
-                if self.meets {
-                    return Ok(BranchEnd::Closed);
-                }
-                if joins.is_some() {
-                    return Ok(BranchEnd::Joined);
-                }
-                if is_last {
-                    return Ok(BranchEnd::Range);
-                }
-                if !goes_on {
-                    return Ok(BranchEnd::Grazing);
-                }
-                if self.is_closed(step) {
-                    return Ok(BranchEnd::Closed);
+                let ends = [
+                    (self.meets, BranchEnd::Closed),
+                    (joins.is_some(), BranchEnd::Joined),
+                    (is_last, BranchEnd::Range),
+                    (!goes_on, BranchEnd::Grazing),
+                    (self.is_closed(step), BranchEnd::Closed),
+                ];
+                if let Some((_, end)) = ends.into_iter().find(|(is_end, _)| *is_end) {
+                    return Ok(end);
                 }
                 step = if grazes && !self.compliant {
                     PAST_A_GRAZING[0].min(self.options.step)
