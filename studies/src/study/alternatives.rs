@@ -51,8 +51,7 @@ const FREQUENCY: &str = "excitation.frequency_hz";
 pub struct Rated {
     /// The scene.
     pub name: String,
-    /// Smallest amplitude in g that releases the mass from the stop on which it rests; `None` if it rests on
-    /// no stop.
+    /// Smallest amplitude in g that releases the mass from its stop; `None` if it rests on none.
     pub release_g: Option<f64>,
     /// Smallest amplitude in g whose settled motion from rest crosses; `None` if there is no barrier.
     pub crossing: Option<Found>,

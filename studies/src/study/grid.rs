@@ -1,5 +1,4 @@
-//! Cells of a sweep: the product of its axes, of which the first changes slowest; and their order in a map,
-//! from coarse to fine.
+//! Cells of a sweep: the product of its axes, the first the slowest; their order from coarse to fine.
 
 use super::Table;
 use crate::scene::{Axis, Scene, column_names};

@@ -199,6 +199,5 @@ pub fn section(
     Ok((options.table(&Grid::of_one(), &[row]), summary))
 }
 
-/// Sections of the cells of a grid: columns of the swept fields and of the direction of a walk, then those of
-/// one [`section`].
+/// Sections of the cells of a grid: the swept fields, the direction of a walk, then one [`section`].
 pub type Sections = GridStudy<SectionOptions>;

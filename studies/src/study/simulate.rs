@@ -127,8 +127,7 @@ pub fn events_table(events: &[Event]) -> Table {
         .each("v_out_m_per_s", events, |event| event.v_out)
 }
 
-/// Ratio of the time scale of the motion to the duration of a contact above which a contact with a compliant
-/// stop is short.
+/// Ratio of the time scale of the motion to a contact with a compliant stop above which the contact is short.
 const SHORT: f64 = 100.0;
 
 /// A clause on how to make a run of `model` with this outcome last longer or be more accurate; `None` if the

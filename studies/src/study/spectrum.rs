@@ -43,8 +43,7 @@ pub struct SpectrumOptions {
     /// Samples per second, raised until a forcing period has a whole number of them; by default at least 128
     /// per shortest period of excitation and mechanism, and at least 4096 in total.
     pub rate_hz: Option<f64>,
-    /// The run continues until the motion repeats, at most up to this time in s; the spectrum is that of the
-    /// last window.
+    /// The run continues until the motion repeats, at most up to this time in s; the last window counts.
     pub until_settled: Option<f64>,
 }
 
@@ -181,8 +180,7 @@ struct Plan {
 }
 
 impl Plan {
-    /// The plan of a window of `periods` forcing periods, in which the motion repeats after `repeats` of
-    /// them.
+    /// The plan of a window of `periods` forcing periods; the motion repeats after `repeats` of them.
     fn new(
         model: &Model,
         (from, to): (f64, f64),

@@ -110,8 +110,7 @@ pub fn label_and_unit(name: &str) -> (String, &'static str) {
 }
 
 impl Column {
-    /// The unit as plain text, from the end of the name, such as `mm`; empty for a pure number, a count or a
-    /// word.
+    /// The unit as plain text, from the end of the name, such as `mm`; empty where there is none.
     pub fn unit(&self) -> &'static str {
         label_and_unit(&self.name).1
     }

@@ -47,13 +47,11 @@ pub struct Found {
     pub low: Option<f64>,
     /// The smallest tried value, from it on, that is known to have the motion.
     pub high: Option<f64>,
-    /// Whether the answer at the value or just below it is unknown; without a value, that at the end of the
-    /// scan.
+    /// Whether the answer at the value or just below it is unknown; without a value, at the end of the scan.
     pub undecided: bool,
     /// Number of changes of the answer above it, within the scan.
     pub windows: u64,
-    /// The value above which the whole scan has the motion; `None` if the last value of the scan does not
-    /// have it.
+    /// The value above which the whole scan has the motion; `None` if its last value does not have it.
     pub without_gap: Option<f64>,
 }
 
@@ -193,8 +191,7 @@ impl Answers {
         self.scan.iter().position(|(_, verdict)| verdict.is_some_and(|verdict| verdict.does))
     }
 
-    /// The two values of the scan between which the answer changes first; `None` until all values below are
-    /// known.
+    /// The two values of the scan between which the answer changes first; `None` until all below are known.
     fn first_change(&mut self) -> Option<(f64, f64)> {
         let does = |answer: &Answer| answer.1.map(|verdict| verdict.does);
         self.below += self.scan[self.below..].iter().take_while(|answer| does(answer) == Some(false)).count();

@@ -22,13 +22,11 @@ pub struct Trace {
     pub impacts: Table,
     /// `from_s,to_s,side` of every span at rest on a stop.
     pub rests: Table,
-    /// `t_s,x_m,v_m_per_s` once per forcing period, at the phase of time 0, over the times of the phase
-    /// portrait.
+    /// `t_s,x_m,v_m_per_s` once per forcing period, at the phase of time 0, over the phase portrait.
     pub strobes: Table,
     /// First time in s of the phase portrait: that of the last forcing periods, or of a requested window.
     pub portrait_from: f64,
-    /// First time in s of the motion over time: 0, or that of the last forcing periods of a long run, or of a
-    /// requested window.
+    /// First time in s of the motion over time: 0, that of the last periods, or of a requested window.
     pub shown_from: f64,
     /// Last time in s of both.
     pub shown_to: f64,
@@ -51,8 +49,7 @@ impl Trace {
     }
 }
 
-/// Smallest and largest number of samples over the whole run: several per pixel column, and a bound on
-/// memory.
+/// Smallest and largest number of samples over a run: several per pixel column, and a bound on memory.
 const OVERVIEW: (f64, f64) = (8_000.0, 400_000.0);
 
 /// Samples per period of the drive or of small oscillations, whichever is shorter.
@@ -71,12 +68,10 @@ const MAX_STROBES: u32 = 300;
 /// Samples of a phase portrait.
 const PORTRAIT: f64 = 24_000.0;
 
-/// Largest number of rows in a phase portrait; more of them, as from a million impacts, would cover it
-/// completely.
+/// Largest number of rows in a phase portrait; more, as from a million impacts, would cover it completely.
 const MAX_PORTRAIT_ROWS: usize = 60_000;
 
-/// Runs `model` and returns what `keep` requests and the data of a picture. A `window` in s restricts the
-/// picture to these times.
+/// Runs `model` and returns what `keep` requests and the data of a picture of a `window` in s, or of all.
 pub fn simulate_with_trace(
     model: &Model,
     keep: &Keep,

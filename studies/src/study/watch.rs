@@ -81,8 +81,7 @@ impl Watch {
         self.ledgers.len()
     }
 
-    /// Continues to the time `to` in s. False if the run ended earlier, or if many impacts in a short time
-    /// need further calls.
+    /// Continues to the time `to` in s. False if the run ended before, or many impacts need further calls.
     pub fn advance(&mut self, to: f64) -> bool {
         let from = self.live.time();
         let step = self.step.max((to - from) / MAX_SAMPLES_PER_CALL);
@@ -130,8 +129,7 @@ impl Watch {
         self.jump(|live, passage| live.place(x, v, passage));
     }
 
-    /// Changes the state or the model at the present time. The state before the change is stored, so that the
-    /// path shows the jump.
+    /// Changes the state or the model now, and keeps the state before, so that the path shows the jump.
     fn jump(&mut self, change: impl FnOnce(&mut Live, &mut LiveOutput)) {
         if self.samples.back().is_none_or(|last| last.t < self.now.t) {
             self.samples.push_back(self.now);
@@ -258,8 +256,7 @@ impl Watch {
         }
     }
 
-    /// The next event after a time in s, or the last one before it: a release, a crossing, or the first
-    /// impact after a flight.
+    /// The next event after a time in s, or the last one before it; of a chatter the first impact alone.
     pub fn neighbour(&self, t: f64, later: bool) -> Option<Event> {
         // a chattering sequence counts as one event, at its first impact
         let begins_sequence = |i: &usize| {

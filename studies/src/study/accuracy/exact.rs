@@ -75,8 +75,7 @@ pub fn rest_time(first: DoubleDouble, restitution: f64) -> DoubleDouble {
     first * (dd(1.0) + dd(restitution)) / (dd(1.0) - dd(restitution))
 }
 
-/// An orbit of the unit double well that is released at rest at `x0` in m, 1 < x0, x0 not the separatrix's
-/// sqrt 2.
+/// An orbit of the unit double well that is released at rest at `x0` in m, above 1 and not sqrt 2.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct UnitWell {
     /// Where it is released.
@@ -148,8 +147,7 @@ impl Corner {
             .expect("two pieces have one break")
     }
 
-    /// Time in s from the corner with speed `v` in m/s to the right and back to the corner: y'' = -at - outer
-    /// y from y = 0.
+    /// Time in s from the corner with speed `v` in m/s to the right and back to it: y'' = -at - outer y.
     pub fn time_beyond(self, v: f64) -> f64 {
         let w = self.outer.sqrt();
         2.0 * (FRAC_PI_2 - elementary::atan(self.at / self.outer * w / v)) / w
@@ -161,8 +159,7 @@ impl Corner {
         PI + 2.0 * elementary::asin(self.at / v) + self.time_beyond((v * v - self.at * self.at).sqrt())
     }
 
-    /// The largest force in N on that orbit, at its right turn: outer y = force - at, v^2 = at^2 + 2 at y +
-    /// outer y^2.
+    /// The largest force in N on that orbit, at its right turn: v^2 = at^2 + 2 at y + outer y^2.
     pub fn largest_force(self, v: f64) -> f64 {
         (self.at * self.at + self.outer * (v * v - self.at * self.at)).sqrt()
     }
@@ -180,8 +177,7 @@ pub struct Oscillator {
 /// A base acceleration with a closed form. SI; time is that of the run.
 #[derive(Debug, Clone, Copy)]
 pub enum Forcing {
-    /// (amplitude + growth t) sin(2 pi (frequency t + phase)); growth in m/s^3, frequency in Hz, phase
-    /// in turns.
+    /// (amplitude + growth t) sin(2 pi (frequency t + phase)).
     Tone {
         /// Amplitude at time 0 in m/s^2.
         amplitude: f64,
@@ -331,8 +327,7 @@ impl Coupled {
     }
 }
 
-/// The exponential of `rates` times `t`, by scaling and squaring of its Taylor series; each squaring may cost
-/// a bit.
+/// The exponential of `rates` times `t`, by scaling and squaring of its series; a squaring may cost a bit.
 fn exponential<const N: usize>(rates: Matrix<N>, t: DoubleDouble) -> Matrix<N> {
     let sizes = rates.map(|row| row.iter().map(|rate| (*rate * t).abs().to_f64()).sum::<f64>());
     let largest = sizes.into_iter().fold(0.0, f64::max);

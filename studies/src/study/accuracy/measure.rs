@@ -70,8 +70,7 @@ impl Check {
         if let Self::Error { error, .. } = self { Some(digits(error)) } else { None }
     }
 
-    /// The error as a share of the error allowed; a fact comes before all numbers if it fails, after them if
-    /// it holds.
+    /// The error as a share of that allowed; a fact comes before all numbers if it fails, else after them.
     fn share(self) -> f64 {
         match self {
             Self::Fact(false) => f64::INFINITY,

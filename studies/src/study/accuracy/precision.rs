@@ -73,8 +73,7 @@ pub struct Point {
 }
 
 impl Problem {
-    /// Tolerances 1e-3 to 1e-14 for the program's method and Dormand-Prince, steps of 1/60 s down to 5 us for
-    /// the others.
+    /// Tolerances 1e-3 to 1e-14 for the adaptive methods, steps of 1/60 s down to 5 us for the others.
     pub(super) fn measure(&self, task: &Task) -> Result<Vec<Point>, Stopped> {
         let model = Setup::preset(self.preset, self.changes)?.model()?;
         let request = Request { events: true, cancel: Some(task.cancel), ..Request::default() };
@@ -131,8 +130,7 @@ impl Problem {
     }
 }
 
-/// Time in s from an impact to the nearest of `impacts`, ascending in time, on the same stop; infinite
-/// without any.
+/// Time in s from an impact to the nearest of `impacts`, ascending, on the same stop; infinite without any.
 fn nearest(impacts: &[Event], impact: &Event) -> f64 {
     let after = impacts.partition_point(|event| event.t < impact.t);
     let same = |event: &&Event| event.side == impact.side;

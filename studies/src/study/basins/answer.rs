@@ -1,5 +1,4 @@
-//! Result of a map of basins: the attractors, numbered in the order of the first start that goes to each, and
-//! the rows.
+//! Result of a map of basins: attractors, in the order of the first start of each, and rows.
 
 use serde::{Deserialize, Serialize};
 
@@ -222,8 +221,7 @@ impl Basins {
         Some(Answer { attractors, rows, sure: Vec::new(), outside, lost, spent, undecided })
     }
 
-    /// The sequence of releases from `release` on, and the fate that ends it: one that is not a release, or a
-    /// release of the sequence.
+    /// The sequence of releases from `release` on, and the fate that ends it: none of them, or one once more.
     pub(super) fn chain(&self, release: u32) -> (Vec<(u32, Way)>, Fate) {
         let (mut passed, mut at, mut way) = (Vec::new(), release, Way::default());
         loop {
@@ -284,8 +282,7 @@ impl Basins {
     }
 }
 
-/// The states of a settled motion after each of `count` forcing periods, beginning with the one farthest to
-/// the right.
+/// The states of a settled motion once a forcing period, beginning with the one farthest to the right.
 fn states(model: &Model, state: MapState, count: u32, period: f64) -> Vec<State> {
     let times: Vec<f64> = (0..count).map(|number| f64::from(number) * period).collect();
     let request = Request { sample_times: &times, ..Request::default() };

@@ -60,8 +60,7 @@ impl Item {
         whole.since(self.after.map_or(Way::default(), |(_, before)| before))
     }
 
-    /// The pursuit of the motion, which begins with this state of the circuit, with at most `max_work` units
-    /// of work.
+    /// The pursuit of the motion from this state of the circuit, with at most `max_work` units of work.
     pub fn pursuit<'a>(
         &self,
         starts: &Starts,
@@ -90,8 +89,7 @@ pub(super) const MAX_ROUND: usize = 8192;
 /// Largest number of searches for regions around motions of one kind.
 const MAX_SEARCHES: usize = 4;
 
-/// Number of motions of one verdict that may fail to be confirmed by their exponents, before others are no
-/// longer tested.
+/// Motions of one verdict that their exponents may fail to confirm before others are no longer tested.
 const MAX_UNCONFIRMED: usize = 4;
 
 /// Distance below which two proposals count as one, as a share of the scales.
@@ -303,8 +301,7 @@ impl Rounds {
         Ok(())
     }
 
-    /// Searches for a region around the irregular motion that an item reaches and that passes through
-    /// `state`.
+    /// Searches for a region around the irregular motion through `state` that an item reaches.
     fn surround(&mut self, scope: &Stroboscope, item: Item, state: MapState) -> Result<()> {
         let fate = item.after.map_or(self.fates[item.row], |after| self.releases[after.0 as usize].next);
         let Fate::Kind(kind, _) = fate else { return Ok(()) };

@@ -6,8 +6,7 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 use crate::numeric::{Decimal, extent};
 use crate::study::{Levels, even_positions};
 
-/// Largest number of starts of one map: minutes on one core if the mass comes to rest on stops, many hours
-/// otherwise.
+/// Largest number of starts of one map: minutes on one core if the mass comes to rest on stops, else hours.
 pub const MAX_STARTS: u64 = 10_000_000;
 
 /// Largest displacement in mm and velocity in m/s, as in a scene.
@@ -145,8 +144,7 @@ impl Starts {
         self.product.then_some((&self.x_mm, &self.v))
     }
 
-    /// The order of the runs, from coarse to fine; random starts are run in the order in which they were
-    /// drawn.
+    /// The order of the runs, from coarse to fine; random starts are run as they were drawn.
     pub(super) fn levels(&self) -> Levels {
         match self.product {
             true => Levels::of_lengths(vec![self.x_mm.len(), self.v.len()]),

@@ -1,5 +1,4 @@
-//! The stroboscopic map of a model, computed by runs of whole forcing periods, and the budget of work of a
-//! map of basins.
+//! The stroboscopic map of a model, by runs of whole periods, and the budget of work of a map of basins.
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
@@ -103,8 +102,7 @@ impl Stroboscope<'_> {
         Ok(all.map(|paths| paths.iter().flatten().map(state).collect()))
     }
 
-    /// Whether the Lyapunov exponent of the motion through a state shows that it is irregular; false if too
-    /// little work is left.
+    /// Whether the motion through a state is irregular by its Lyapunov exponent; false without work left.
     pub fn is_irregular(&self, state: MapState) -> bool {
         if !self.effort.has_room_for(WITH_DERIVATIVES * u64::from(ExponentOptions::PERIODS)) {
             return false;
@@ -145,8 +143,7 @@ pub(super) fn final_state(summary: &Summary) -> MapState {
     MapState { x: summary.final_x, v: summary.final_v, electrical: summary.final_electrical }
 }
 
-/// Units of work for the orbits and regions of a map: enough for some ellipses of an orbit of 12 periods that
-/// passes a kink.
+/// Units of work for orbits and regions: some ellipses of an orbit of 12 periods that passes a kink.
 const MAP_WORK: u64 = 20_000_000_000;
 
 /// Units of work per start: four times those of the prototype over 1000 forcing periods.

@@ -14,8 +14,7 @@ use crate::scene::TOLERANCES;
 use crate::study::{Result, Task};
 use crate::system::threads::Pool;
 
-/// Factor on the tolerance for the second run of a start; its inverse if the product exceeds the largest
-/// tolerance.
+/// Factor on the tolerance for the second run of a start, or its inverse if that is beyond the largest one.
 const FACTOR: f64 = 10.0;
 
 impl Basins {

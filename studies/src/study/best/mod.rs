@@ -70,8 +70,7 @@ pub struct Environment {
     pub files: Files,
 }
 
-/// A field that varies about its value: within a tolerance to both sides of it ([`best`]), or with a standard
-/// deviation (`Draws`).
+/// A field that varies about its value: within a tolerance ([`best`]) or with a deviation (`Draws`).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Variation {
     /// Dotted path of the field.
@@ -124,8 +123,7 @@ pub struct Optimum {
 pub struct Tried {
     /// The fields' values.
     pub at: Vec<f64>,
-    /// The mean of the maximised result; `None` if a run ended early, a result is missing, or the design is
-    /// no valid scene.
+    /// The mean of the maximised result; `None` if a run ended early or without it, or for no valid scene.
     pub value: Option<f64>,
     /// Whether no constraint is known to be violated.
     pub keeps: bool,
@@ -177,8 +175,7 @@ pub enum NoBest {
     Invalid(Vec<Fault>),
     /// No design has the maximised result and those of the constraints.
     NoValue,
-    /// No design meets the constraints; the nearest one, and its results in the environment with the largest
-    /// violation.
+    /// No design meets the constraints; the nearest one, and its results in the worst environment.
     NoneMeets {
         /// The fields' values.
         nearest: Vec<f64>,

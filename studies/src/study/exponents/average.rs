@@ -8,8 +8,7 @@ use super::{Estimate, Exponents, NoExponents};
 use crate::dynamics::{Jacobian, MapState, Model};
 use crate::numeric::{CompensatedSum, elementary};
 
-/// Number of forcing periods before the average, in which a perturbation turns into the direction of fastest
-/// growth.
+/// Forcing periods before the average, in which a perturbation turns into the direction of fastest growth.
 const ALIGNMENT: u32 = 20;
 
 /// The exponents of the motion through `state`, such as `(x, v)` without a circuit, at a

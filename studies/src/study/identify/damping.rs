@@ -48,8 +48,7 @@ pub fn damping(times: &[f64], channel: &Channel) -> Result<Identified, Unidentif
     let swing = |k: usize| (values[all[k + 1].at] - values[all[k].at]).abs();
     let swings = all.len().saturating_sub(1);
     let largest = (0..swings).rev().max_by(|a, b| swing(*a).total_cmp(&swing(*b))).unwrap_or(0);
-    // an oscillation near the range of the noise may be missed, and its neighbours would appear as one long
-    // oscillation
+    // a swing near the range of the noise may be missed, and its neighbours appear as a long one
     let clear = (largest..swings).take_while(|k| swing(*k) > CLEAR * back).count();
     let turns = &all[largest.min(all.len())..(largest + clear + 1).min(all.len())];
     if turns.len() < MIN_TURNS {
@@ -209,8 +208,7 @@ fn natural(frequency: Identity, damping: Identity) -> Identity {
     Identity { name: "natural_frequency_hz", value, interval: (value - low, value + high) }
 }
 
-/// Whether the numbers of the rows differ from that of the whole record by more than their intervals and more
-/// than a negligible amount.
+/// Whether rows differ from the whole record by more than their intervals and a negligible amount.
 fn differ(rows: impl ExactSizeIterator<Item = Identity>, whole: f64) -> bool {
     let chance = 1 + rows.len() / 5;
     let apart = |row: &Identity| (row.value - whole).abs() > NEGLIGIBLE * whole.abs();

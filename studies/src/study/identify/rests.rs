@@ -199,8 +199,7 @@ impl Near {
         Known { value: value / unit, error: error / unit, freedom }
     }
 
-    /// Integral of the force in J: by Gauss's rule with two points on each side of the kink, exact for
-    /// cubics.
+    /// Integral of the force in J: by Gauss's rule with two points on each side of the kink.
     fn work(&self, from: f64, to: f64) -> Known {
         let inner = self.kink.filter(|kink| (*kink - from) * (*kink - to) < 0.0);
         let ends: Vec<f64> = [Some(from), inner, Some(to)].into_iter().flatten().collect();

@@ -80,8 +80,7 @@ const STEPS: usize = 8;
 /// Rounding error of a scaled and shifted time, in units of the last place.
 const ROUNDINGS: f64 = 4.0;
 
-/// Range of the measured samples within the run, their times in the run, and the computed samples at these
-/// times.
+/// Range of the measured samples within the run, their times in it, and the computed samples then.
 type Aligned = (Range<usize>, Vec<f64>, Vec<Sample>);
 
 /// Compares a measured motion with the run of `model`, the model of `scene`.

@@ -6,8 +6,7 @@ use crate::scene::{Excitation, Quantity, Scene};
 use crate::study::Table;
 use crate::study::identify::{Turn, noise, reach, turns};
 
-/// Distance from a stop within which a turning point counts as an impact, as a share of the distance of the
-/// stops.
+/// Distance from a stop below which a turning point is an impact, as a share of the distance of the stops.
 const AT_STOP: f64 = 0.1;
 
 /// A row: quantity, unit, measured, computed.
@@ -156,8 +155,7 @@ fn rebounds(model: &Model, times: &[f64], measured: &[f64], computed: &[f64]) ->
     rows
 }
 
-/// Pairs of heights of the rebounds nearest in time, if closer than half the shortest interval of measured
-/// ones.
+/// Pairs of heights of the rebounds nearest in time, if nearer than half the shortest measured interval.
 fn paired(measured: &[Rebound], computed: &[Rebound]) -> Vec<(f64, f64)> {
     let apart = measured.windows(2).map(|pair| pair[1].t - pair[0].t).fold(f64::INFINITY, f64::min);
     let partner = |rebound: &Rebound| {

@@ -98,8 +98,7 @@ pub(super) struct Point {
 }
 
 impl Point {
-    /// Whether the mass rests during the motion, which then no longer depends on its initial displacement and
-    /// velocity.
+    /// Whether the mass rests during the motion, which then no longer depends on its start.
     pub fn forgets(&self) -> bool {
         self.orbit.passage.rested
     }
@@ -156,8 +155,7 @@ fn bordered<const N: usize>(rows: &[SVector<f64, N>], last: &SVector<f64, N>) ->
     SMatrix::from_fn(|i, j| rows.get(i).unwrap_or(last)[j])
 }
 
-/// The tangent of the curve of solutions of equations with these derivatives, with a positive component along
-/// `along`.
+/// The tangent of the curve of solutions of equations with these derivatives, in the direction of `along`.
 pub(super) fn tangent<const N: usize>(
     slopes: &[SVector<f64, N>],
     along: &SVector<f64, N>,

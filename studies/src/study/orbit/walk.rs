@@ -17,18 +17,15 @@ const SHORTEST: f64 = 1e-9;
 /// Step below which a change of the orbit is accepted although its event was not located.
 const UNLOCATED: f64 = 1e-6;
 
-/// Cosine of the largest angle between the tangents at both ends of a step, and between the step and a
-/// tangent.
+/// Cosine of the largest angle between the tangents at both ends of a step, and between step and tangent.
 const STRAIGHT: f64 = 0.9;
 
-/// Largest change in a step of the displacement of an orbit with a rest, as a share of the room between the
-/// stops.
+/// Largest change in a step of the displacement of an orbit with a rest, as a share of the room.
 const CHANGE: f64 = 0.1;
 
 /// Distances from a grazing at which the branch is continued, in the order of trial.
 const PAST_A_GRAZING: [f64; 6] = [1e-4, 3e-4, 1e-3, 3e-3, 3e-5, 1e-5];
-/// Smallest distance from a grazing of an orbit that misses the stop; nearer to it derivatives are lost in
-/// rounding.
+/// Smallest distance from a grazing of an orbit that misses the stop, for the derivatives to be exact.
 const MIN_MISSING: f64 = 1e-6;
 /// The same of an orbit that touches the stop.
 const MIN_TOUCHING: f64 = 1e-5;

@@ -92,8 +92,7 @@ impl Step {
         [0, 1].map(|i| a[i] + s * (b[i] + r * (c[i] + s * (d[i] + r * e[i]))))
     }
 
-    /// The integral of v^2 over the first `share` of the step: Gauss's rule of four points on the
-    /// continuous extension.
+    /// The integral of v^2 over the first `share` of the step, by Gauss's rule of four points.
     fn squares(&self, share: f64) -> f64 {
         const POINTS: [(f64, f64); 2] = [
             (0.339_981_043_584_856_3, 0.652_145_154_862_546_1),
@@ -174,8 +173,7 @@ struct March<'a> {
 }
 
 impl March<'_> {
-    /// Rests until the release if the mass is at a stop, nearly at rest, and the net force presses. Returns
-    /// whether it does.
+    /// Whether the mass is at a stop, nearly at rest, and pressed; then it rests until the release.
     fn rest(&mut self) -> bool {
         let (problem, model, now) = (self.problem, self.problem.model, self.now);
         let is_slow = |side: &Side| now.v * sign(*side) > -REST_SPEED * model.scales().speed;
@@ -258,8 +256,7 @@ impl March<'_> {
     }
 }
 
-/// The time at which the press, positive at `from`, falls to 0, by a scan and bisection; `end` if it
-/// stays positive.
+/// The time at which the press, positive at `from`, falls to 0; `end` if it stays positive.
 fn release(press: impl Fn(f64) -> f64, from: f64, end: f64, stride: f64) -> f64 {
     let mut low = from;
     while low < end {

@@ -23,8 +23,7 @@ use crate::system::clock::ThreadClock;
 words! {
     /// A scheme of fixed step.
     Scheme {
-        /// Semi-implicit (symplectic) Euler: velocity first, then displacement by the new velocity. First
-        /// order.
+        /// Semi-implicit (symplectic) Euler: velocity first, then displacement by it. First order.
         SemiImplicitEuler = "semi-implicit Euler",
         /// Velocity Verlet; where the force depends on the velocity, its new value is predicted by an Euler
         /// step. Second order.

@@ -1,5 +1,4 @@
-//! Error of a run against a more accurate one, the time up to which its path can be trusted, and the cost of
-//! each of its digits.
+//! Error of a run against a more accurate one, how long its path can be trusted, and the cost of its digits.
 
 use std::sync::atomic::AtomicBool;
 
@@ -203,8 +202,7 @@ fn more_accurate(model: &Model, tolerance: f64, request: &Request) -> Option<(f6
     finished(run).map(|run| (finer, run))
 }
 
-/// The course of two runs that part at `until` in s; with both tolerances tightened they part at `next`, if
-/// at all.
+/// The course of two runs that part at `until` in s; with tighter tolerances they part at `next`, if at all.
 fn parted(model: &Model, beside: &Beside, better: &Run, until: f64, next: Option<f64>) -> Course {
     let Some(next) = next.filter(|next| *next < TIMES * until) else { return Course::Coarse { until } };
     let summary = &better.summary;

@@ -22,8 +22,7 @@ const SHARE_OF_DEPTH: f64 = 1e-2;
 /// Half the step of the central difference of the map by the second field.
 const FIELD_DIFFERENCE: f64 = 1e-7;
 
-/// Largest distance over the first field, in its range, of an orbit at which a locus ends from one that
-/// grazes.
+/// Largest distance over the first field, in its range, of the end of a locus from an orbit that grazes.
 const BESIDE_A_GRAZING: f64 = 2e-3;
 
 /// Largest gap in the units of an orbit that grazes at two instants.

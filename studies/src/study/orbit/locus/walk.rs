@@ -19,8 +19,7 @@ const SHORTEST: f64 = 1e-9;
 /// Cosine of the largest angle between the tangents at both ends of a step.
 const STRAIGHT: f64 = 0.9;
 
-/// The fields turn back at a cusp: smallest cosine, with its sign turned, of the angle between their changes
-/// before and after it.
+/// At a cusp the fields turn back: smallest cosine, its sign turned, of the angle between their changes.
 const OPPOSITE: f64 = 0.5;
 
 /// Largest component of the tangent by a field at a cusp.
