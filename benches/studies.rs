@@ -11,8 +11,8 @@ use std::sync::atomic::AtomicBool;
 use interwell::dynamics::STANDARD_GRAVITY;
 use interwell::system::threads::Pool;
 use interwell_studies::study::{
-    Answer, Basins, Branch, BranchEvent, BranchOptions, Carry, EvenRange, ExponentOptions, Family, Grid,
-    Onset, Orbit, Scan, SectionAt, SectionOptions, Sections, Signal, SpectrumOptions, Starts, Sweep,
+    Answer, Basins, Branch, BranchEvent, BranchOptions, Carry, Cells, EvenRange, ExponentOptions, Family,
+    Grid, Onset, Orbit, Scan, SectionAt, SectionOptions, Sections, Signal, SpectrumOptions, Starts, Sweep,
     SweepOptions, Table, Task, branch, check_lesson, exponents, result_fields, spectrum, threshold,
     threshold_table,
 };
@@ -246,8 +246,8 @@ fn threshold_of(pool: &Pool) {
     let scan = Scan { field: "excitation.amplitude_g".into(), values, resolution: 1e-5, until_settled: None };
     let never = AtomicBool::new(false);
     let task = Task { tick: &|| (), cancel: &never };
-    let grid = Grid::of_one();
-    threshold_table(&document.scene, &document.files, &grid, &scan, Onset::Interwell, pool, &task).unwrap();
+    let cells = Cells::new(&document.scene, &document.files, Grid::of_one());
+    threshold_table(&cells, &scan, Onset::Interwell, pool, &task).unwrap();
 }
 
 fn lessons(pool: &Pool) {

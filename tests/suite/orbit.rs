@@ -17,7 +17,6 @@ use interwell::mechanics::Mechanism;
 use interwell::scene::{Document, Files};
 use interwell_studies::study::{
     Branch, BranchEnd, BranchEvent, BranchOptions, Family, NoOrbit, Orbit, Task, branch, orbit, orbit_near,
-    orbit_table,
 };
 
 use crate::support::{changed, model, near, near_relative, preset};
@@ -229,7 +228,7 @@ fn a_motion_that_rests_has_multipliers_of_zero_and_a_table_says_so() {
     assert!(found.multipliers().iter().all(|multiplier| multiplier.magnitude() == 0.0));
     let still = find(&preset("paper", &["excitation.amplitude_g=0.5"]), 0.0, None).unwrap();
     assert_eq!((still.period, still.state, still.passage.impacts), (1, (1.5e-3, 0.0).into(), 0));
-    let table = orbit_table(&[found]);
+    let table = found.table();
     assert_eq!(table.numbers("multiplier_1_re").unwrap(), [0.0]);
     assert!(table.numbers("gentlest_impact_m_per_s").unwrap()[0] > 0.1);
 }

@@ -6,7 +6,8 @@ use super::grid::{Over, even, over_fields};
 use super::{Error, Progress, Simulation, Threshold};
 use crate::scene::{Document, field_info};
 use crate::study::{
-    Chance, EscapeOptions, Grid, NoThresholds, Scan, Table, Until, escape_table, probable_threshold_table,
+    Cells, Chance, EscapeOptions, Grid, NoThresholds, Scan, Table, Until, escape_table,
+    probable_threshold_table,
 };
 
 /// How often, and after which time, a motion under noise leaves its well: runs that differ in the seed of the
@@ -96,10 +97,9 @@ impl Escape {
     #[doc(hidden)]
     pub fn in_cells(&self, document: &Document, grid: &Grid, progress: &Progress) -> Result<Table, Error> {
         let options = self.options(document, grid)?;
-        let (scene, files) = (&document.scene, &document.files);
+        let cells = Cells::new(&document.scene, &document.files, grid.clone());
         let runs = grid.cells() * options.runs;
-        let found =
-            progress.shared(runs, |pool, task| escape_table(scene, files, grid, &options, pool, task))?;
+        let found = progress.shared(runs, |pool, task| escape_table(&cells, &options, pool, task))?;
         found.map_err(|end| no_table(document, end))
     }
 
@@ -184,9 +184,9 @@ impl ProbableThreshold {
     #[doc(hidden)]
     pub fn in_cells(&self, document: &Document, grid: &Grid, progress: &Progress) -> Result<Table, Error> {
         let (scan, chance) = (self.scan(document, grid)?, self.chance(document, grid)?);
-        let (scene, files) = (&document.scene, &document.files);
+        let cells = Cells::new(&document.scene, &document.files, grid.clone());
         let found = progress.shared(grid.cells() * chance.runs, |pool, task| {
-            probable_threshold_table(scene, files, grid, &scan, &chance, pool, task)
+            probable_threshold_table(&cells, &scan, &chance, pool, task)
         })?;
         found.map_err(|end| no_table(document, end))
     }

@@ -14,9 +14,9 @@ use crate::mechanics::{ForceCurve, Mechanism};
 use crate::scene::Mechanism::Linear;
 use crate::scene::{Axis, Damping, Document, Scene, Start, Stops, Transducer, is_whole};
 use crate::study::{
-    ExponentCells, ExponentOptions, Exponents as ExponentsAnswer, Grid, GridStudy, IMPACTS, MAX_SECTION,
-    NoExponents, Onset, Question, Scan, SectionAt, SectionOptions, Sections, Table, drive_fault, exponents,
-    section, suits_melnikov, threshold_table, with_melnikov,
+    Cells, ExponentCells, ExponentOptions, Exponents as ExponentsAnswer, Grid, GridStudy, IMPACTS,
+    MAX_SECTION, NoExponents, Onset, Question, Scan, SectionAt, SectionOptions, Sections, Table, drive_fault,
+    exponents, section, suits_melnikov, threshold_table, with_melnikov,
 };
 
 /// Fields, each with its values.
@@ -134,7 +134,7 @@ impl Section {
         if let Some(carry) = self.options.carry {
             return Err(Error::argument("carry", carry.name(), "walks a field: name one by over"));
         }
-        let (document, run) = (simulation.document(), self.options.run_of(simulation.model()));
+        let (document, run) = (simulation.document(), self.options.model(simulation.model().clone()));
         check_until(self.options.until_settled, document, &run)?;
         let found = section(simulation.model(), simulation.scene(), &self.options, progress.stop());
         let found = found.map_err(|fault| Error::faults_of(document, vec![fault]))?;
@@ -339,10 +339,10 @@ impl Threshold {
     pub fn in_cells(&self, document: &Document, grid: &Grid, progress: &Progress) -> Result<Table, Error> {
         let scan = self.scan(document, grid)?;
         let values = grid.cells() * scan.values.len() as u64;
-        let (scene, files) = (&document.scene, &document.files);
+        let cells = Cells::new(&document.scene, &document.files, grid.clone());
         let found = progress.shared(values, |pool, task| {
-            let table = threshold_table(scene, files, grid, &scan, self.of, pool, task)?;
-            if self.melnikov { with_melnikov(table, scene, files, grid, pool, task) } else { Ok(table) }
+            let table = threshold_table(&cells, &scan, self.of, pool, task)?;
+            if self.melnikov { with_melnikov(table, &cells, pool, task) } else { Ok(table) }
         })?;
         found.map_err(|end| no_table(document, end))
     }

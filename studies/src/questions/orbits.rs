@@ -7,7 +7,7 @@ use crate::scene::{Axis, Document, FieldPath, Scene, is_whole};
 use crate::study::{
     Branch as BranchAnswer, BranchEnd, BranchEvent, BranchOptions, Family, FieldRange, Locus as OneLocus,
     NoBasins, NoOrbit, Orbit as OrbitAnswer, Table, branch, branches_table, loci, loci_table, orbit,
-    orbit_table, switched,
+    switched,
 };
 
 /// The periodic orbit near the settled motion of a run, stable or not, with its Floquet multipliers.
@@ -61,13 +61,6 @@ impl Orbit {
         can_have_orbits(simulation.document(), simulation.model())?;
         let found = orbit(simulation.model(), phase(self.phase_deg)?, self.period, progress.stop());
         found.map_err(|error| no_orbit(simulation.document(), error, ""))
-    }
-}
-
-impl OrbitAnswer {
-    /// One row: period, state, multipliers and what happens on the motion.
-    pub fn table(&self) -> Table {
-        orbit_table(std::slice::from_ref(self))
     }
 }
 

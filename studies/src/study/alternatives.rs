@@ -7,12 +7,13 @@ use super::amplitudes::{Above, crossing, frees_at};
 use super::bisection::multiple;
 use super::grid::{is_of_mechanism, name_of};
 use super::settled::{followed, settled_within, shared_runs};
+use super::thresholds::from_rest;
 use super::{Cancelled, Family, Found, Onset, Result, SummaryField, Table, Task};
 use crate::dynamics::{Model, Run, Summary};
 use crate::mechanics::Mechanism;
 use crate::numeric::elementary;
 use crate::numeric::round::decade;
-use crate::scene::{Excitation, FieldPath, Files, STANDARD_GRAVITY, Scene, Start, numeric_fields};
+use crate::scene::{Excitation, FieldPath, Files, STANDARD_GRAVITY, Scene, numeric_fields};
 use crate::system::threads::Pool;
 
 /// A scene of a comparison, with the common excitation.
@@ -50,8 +51,7 @@ const FREQUENCY: &str = "excitation.frequency_hz";
 pub struct Rated {
     /// The scene.
     pub name: String,
-    /// Smallest amplitude in g that releases the mass from the stop on which it rests; `None` if it rests on
-    /// no stop.
+    /// Smallest amplitude in g that releases the mass from its stop; `None` if it rests on none.
     pub release_g: Option<f64>,
     /// Smallest amplitude in g whose settled motion from rest crosses; `None` if there is no barrier.
     pub crossing: Option<Found>,
@@ -146,7 +146,7 @@ impl Rated {
 
 impl Rating<'_> {
     fn rate(&self, scene: &Alternative) -> Result<Rated> {
-        let trial = Scene { start: Start::Rest, ..scene.scene.clone() };
+        let trial = from_rest(&scene.scene);
         let crossing = self.crossing(&trial, &scene.mechanism, Above::Searched)?;
         // the scene was checked
         let model = Model::build(&trial, Arc::clone(&scene.mechanism)).map_err(|_| Cancelled)?;
@@ -167,7 +167,7 @@ impl Rating<'_> {
 
     /// The crossing threshold with one size changed by the share `by`.
     fn changed(&self, scene: &Alternative, field: &str, by: f64) -> Result<Option<f64>> {
-        let mut trial = Scene { start: Start::Rest, ..scene.scene.clone() };
+        let mut trial = from_rest(&scene.scene);
         let path = FieldPath::new(field);
         // the scene has the field, which is one of its sizes
         path.get(&trial).filter(|value| path.set(&mut trial, value * (1.0 + by))).ok_or(Cancelled)?;
@@ -244,7 +244,5 @@ pub fn comparison_table(rated: &[Rated]) -> Table {
         .each("crosses_from_hz", rated, |row| row.crosses_hz.map(|band| band.0))
         .each("crosses_to_hz", rated, |row| row.crosses_hz.map(|band| band.1))
         .each("threshold_sensitivity", rated, |row| Some(row.sensitivity.as_ref()?.0))
-        .each("most_sensitive_to", rated, |row| {
-            row.sensitivity.clone().map_or(String::new(), |(_, size)| size)
-        })
+        .each("most_sensitive_to", rated, |row| row.sensitivity.clone().unwrap_or_default().1)
 }

@@ -6,13 +6,13 @@ use serde::{Deserialize, Serialize};
 
 use super::bisection::multiple;
 use super::settled::followed;
-use super::thresholds::{Answers, Search};
+use super::thresholds::{Answers, Search, from_rest};
 use super::{Cancelled, Family, Found, Onset, Task, Verdict};
 use crate::dynamics::{Model, Request, STANDARD_GRAVITY};
 use crate::mechanics::{Landscape, Mechanism};
 use crate::numeric::elementary;
 use crate::numeric::round::{ONE_TWO_FIVE, decade, round_down};
-use crate::scene::{Files, Scene, Start, Stops};
+use crate::scene::{Files, Scene, Stops};
 use crate::system::threads::Pool;
 
 /// The place value of the third significant digit.
@@ -49,8 +49,7 @@ const GAP_STEPS: u32 = 50;
 /// Length of such a step, as a share of the threshold.
 const GAP_STEP: f64 = 0.01;
 
-/// The thresholds of the amplitude. `None` if the drive is not harmonic, without a barrier between the stops,
-/// or if cancelled.
+/// The thresholds of the amplitude; `None` without a harmonic drive or a barrier, or if cancelled.
 pub fn thresholds(scene: &Scene, mechanism: &Arc<Mechanism>, task: &Task) -> Option<Thresholds> {
     let found = crossing(scene, mechanism, None, None, Above::Searched, task);
     let (crossing, searched_to) = found.ok().flatten()?;
@@ -87,7 +86,7 @@ pub(super) fn crossing(
     values.iter_mut().for_each(|value| *value = multiple(*value, third_digit(*value)));
     values.dedup();
     let searched_to = values.last().copied().unwrap_or(push);
-    let trial = Scene { start: Start::Rest, excitation: drive.sine(), ..scene.clone() };
+    let trial = Scene { excitation: drive.sine(), ..from_rest(scene) };
     let files = Files::default(); // an amplitude changes no mechanism
     let family = Family::new(&trial, &files, mechanism, "excitation.amplitude_g");
     let search = Search { family, onset: Onset::Crossing, until_settled, task, pool, ahead: 1 };
@@ -115,8 +114,7 @@ pub(super) fn crossing(
     Ok(Some((found, searched_to)))
 }
 
-/// The amplitude in g whose inertial force equals the largest force between the rest position and the
-/// barrier.
+/// The amplitude in g whose inertial force equals the largest one between the rest position and the barrier.
 fn holding_push(scene: &Scene, mechanism: &Mechanism) -> Option<f64> {
     let Landscape { barrier, extrema, .. } = &mechanism.landscape;
     let barrier = barrier.as_ref().filter(|_| can_cross(scene, mechanism))?;
@@ -127,8 +125,7 @@ fn holding_push(scene: &Scene, mechanism: &Mechanism) -> Option<f64> {
     Some(force / (scene.mass_g / 1e3) / STANDARD_GRAVITY).filter(|push| *push > 0.0 && push.is_finite())
 }
 
-/// Whether the mechanism has a barrier between the stops of a scene. Compliant stops let the mass pass beyond
-/// their surface.
+/// Whether there is a barrier between the stops of a scene. A mass passes beyond compliant stops.
 pub fn can_cross(scene: &Scene, mechanism: &Mechanism) -> bool {
     let [left, right] = stops(scene);
     let soft = matches!(scene.stops, Stops::Hertz { .. });
@@ -142,8 +139,7 @@ fn stops(scene: &Scene) -> [Option<f64>; 2] {
     scene.stops.positions_mm().map(|stop| stop.map(|mm| mm / 1e3))
 }
 
-/// The amplitude in m/s^2 of a harmonic drive whose inertial force equals the force that presses a resting
-/// mass on its stop.
+/// The amplitude in m/s^2 of a harmonic drive whose inertial force is that of the mass on its stop.
 pub(super) fn frees_at(scene: &Scene, mechanism: &Mechanism) -> Option<f64> {
     scene.harmonic()?;
     let right = stops(scene)[1]?;
@@ -152,8 +148,7 @@ pub(super) fn frees_at(scene: &Scene, mechanism: &Mechanism) -> Option<f64> {
     (right < well && press > 0.0).then(|| press / (scene.mass_g / 1e3))
 }
 
-/// Smallest number of steps from the well to the middle in the search for stops; the largest is 2.5 times as
-/// many.
+/// Smallest number of steps from the well to the middle in the search for stops; up to 2.5 times as many.
 const MIN_STEPS: f64 = 50.0;
 
 /// The largest travel limit in mm inside the wells, the same on both sides, whose motion from rest is
@@ -173,7 +168,7 @@ pub fn stops_that_cross(
     };
     let well_mm = well.x.abs() * 1e3;
     let step = round_down(well_mm / MIN_STEPS, &ONE_TWO_FIVE);
-    let mut trial = Scene { start: Start::Rest, ..scene.clone() };
+    let mut trial = from_rest(scene);
     for i in (1..=(well_mm / step).floor() as u32).rev() {
         let travel_limit_mm = multiple(f64::from(i) * step, step);
         trial.stops = Stops::Rigid { travel_limit_mm, restitution };

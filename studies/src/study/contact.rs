@@ -3,9 +3,9 @@
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
-use super::Table;
 use super::identify::median;
-use crate::dynamics::{EventKind, Model, Outcome, Request, Summary};
+use super::{Table, finished};
+use crate::dynamics::{EventKind, Model, Request, Summary};
 use crate::mechanics::Hertz;
 use crate::numeric::round::{ONE_TWO_FIVE, round_up};
 use crate::numeric::{bisect, elementary, short};
@@ -16,12 +16,9 @@ use crate::system::threads;
 const SPEEDS: usize = 401;
 
 /// A single impact on the model's compliant stop over the impact speed, in even steps up to twice the speed
-/// scale, rounded up to 1, 2 or 5 times a power of ten; `None` if the stops are not compliant.
-///
-/// Columns
-/// `speed_m_per_s,restitution,rigid_restitution,contact_time_s,depth_m,peak_force_n,peak_pressure_pa`; the
-/// restitution of a rigid stop is the constant `rigid`, and values are missing without a contact time (at
-/// speed 0) or a known material. All are closed forms: see [`Hertz`].
+/// scale, rounded up to 1, 2 or 5 times a power of ten; `None` if the stops are not compliant. `rigid` is the
+/// restitution of a rigid stop beside it. Values are missing without a contact time (at speed 0) or a known
+/// material. All are closed forms: see [`Hertz`].
 pub fn contact(model: &Model, rigid: f64) -> Option<Table> {
     let stop = model.compliant()?;
     let top = round_up(2.0 * model.scales().speed, &ONE_TWO_FIVE);
@@ -76,10 +73,7 @@ pub struct Strikes {
 /// The first impacts of flights in one run: those after a crossing, a release or an impact on the other stop,
 /// without the rebounds that follow. `None` without an impact, or if cancelled.
 pub fn strikes(model: &Model, cancel: &AtomicBool) -> Option<Strikes> {
-    let run = model.run(&Request { events: true, cancel: Some(cancel), ..Request::default() });
-    if matches!(run.summary.outcome, Outcome::Cancelled { .. }) {
-        return None;
-    }
+    let run = finished(model.run(&Request { events: true, cancel: Some(cancel), ..Request::default() }))?;
     let mut last = None;
     let mut first: Vec<(f64, f64)> = Vec::new();
     for event in &run.events {

@@ -5,7 +5,7 @@ use super::{Table, Task};
 use crate::mechanics::flexure::{FlexureError, Flexures, State};
 use crate::mechanics::{Equilibrium, Mechanism};
 use crate::numeric::round::decade;
-use crate::numeric::{Decimal, elementary, short};
+use crate::numeric::{Decimal, elementary, extent, short};
 use crate::scene::Scene;
 
 /// Default number of positions of a force curve.
@@ -133,9 +133,7 @@ pub fn states(mechanism: &Mechanism, positions: &[f64], task: &Task) -> Result<V
     positions.iter().map(state).collect()
 }
 
-/// The table of [`curve`] at the positions of `states`, with `axial_n,bump_m,max_stress_pa`: the axial force
-/// of all buckling flexures, the height of their buckled shape, and the largest bending stress of any
-/// flexure.
+/// The table of [`curve`] at the positions of `states`, with `axial_n,bump_m,max_stress_pa`.
 pub fn full_curve(mechanism: &Mechanism, states: &[State]) -> Table {
     let positions: Vec<f64> = states.iter().map(|state| state.x).collect();
     let table = rows(mechanism, &positions);
@@ -143,13 +141,12 @@ pub fn full_curve(mechanism: &Mechanism, states: &[State]) -> Table {
     table.each("max_stress_pa", states, |state| state.max_stress)
 }
 
-/// The table `x_m,flexure,s_m,px_m,py_m`: the centre lines of each state, point by point; `flexure` is
-/// `parallel` or `buckling`, each of which represents its group.
+/// The table `x_m,flexure,s_m,px_m,py_m`: the centre lines of each state, point by point.
 ///
 /// px and py are coordinates in the frame, for a shuttle without width: the parallel flexures are clamped at
 /// (0, 0) and reach the shuttle at (L_p - u, x), u being their shortening; the buckling ones are clamped at
-/// (L_p + L_b - preload, 0) and reach the same point of the shuttle. So px runs along the flexures and py
-/// with x. s is the length along a flexure from its clamp in the frame.
+/// (L_p + L_b - preload, 0) and reach the same point of the shuttle. s is the length along a flexure from its
+/// clamp in the frame.
 pub fn shapes(states: &[State]) -> Table {
     let mut rows = Vec::new();
     for state in states {
@@ -172,11 +169,10 @@ pub fn shapes(states: &[State]) -> Table {
 /// the range of |x|, the largest stress and the limit.
 pub fn stress_warning(flexures: &Flexures, states: &[State]) -> Option<String> {
     let limit = flexures.geometry().yield_stress;
-    let farthest = states.iter().fold(0.0_f64, |largest, state| largest.max(state.x.abs()));
+    let (_, farthest) = extent(states.iter().map(|state| state.x.abs()));
     let above: Vec<&State> = states.iter().filter(|state| state.max_stress > limit).collect();
     let worst = above.iter().max_by(|a, b| a.max_stress.total_cmp(&b.max_stress))?;
-    let from = above.iter().fold(f64::INFINITY, |least, state| least.min(state.x.abs()));
-    let to = above.iter().fold(0.0_f64, |largest, state| largest.max(state.x.abs()));
+    let (from, to) = extent(above.iter().map(|state| state.x.abs()));
     let end = if to < farthest { format!("to {} mm", short(to * 1e3)) } else { "on".to_owned() };
     let [begin, place] = [from, worst.x].map(|metres| short(metres * 1e3));
     let [limit, largest] = [limit, worst.max_stress].map(|pascal| short(pascal / 1e9));
@@ -189,15 +185,7 @@ pub fn stress_warning(flexures: &Flexures, states: &[State]) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mechanics::flexure::CentreLine;
-    use crate::mechanics::{ForceCurve, Landscape};
     use crate::scene::{Document, Files};
-    use crate::study::Values;
-
-    fn cubic() -> Mechanism {
-        let curve = ForceCurve::polynomial(&[0.0, -40.0, 0.0, 8e5]);
-        Mechanism { landscape: Landscape::default(), ..Mechanism::new(curve) }
-    }
 
     #[test]
     fn positions_have_exact_ends_and_middle() {
@@ -216,15 +204,6 @@ mod tests {
     }
 
     #[test]
-    fn rows_keep_the_order_of_the_positions() {
-        let table = curve(&cubic(), vec![3e-3, 0.0, -3e-3]).unwrap();
-        assert_eq!(table.numbers("x_m").unwrap(), [3e-3, 0.0, -3e-3]);
-        assert_eq!(table.numbers("potential_j").unwrap()[1], 0.0);
-        assert_eq!(table.numbers("stiffness_n_per_m").unwrap()[1], -40.0);
-        assert!(curve(&cubic(), vec![f64::NAN]).is_err());
-    }
-
-    #[test]
     fn a_corner_mixes_the_two_half_swings() {
         let smooth = Equilibrium { x: 0.0, stable: true, stiffness_left: 4.0, stiffness_right: 4.0 };
         let frequency = small_amplitude_frequency(1.0, &smooth).unwrap();
@@ -234,7 +213,6 @@ mod tests {
     }
 
     fn state(x: f64, max_stress: f64) -> State {
-        let line = |flexure| CentreLine { flexure, points: vec![[0.0, 0.0, -0.0], [1.0, 2.0, x]] };
         State {
             x,
             force: 0.0,
@@ -243,21 +221,8 @@ mod tests {
             axial: 5.0,
             bump: 1e-3,
             max_stress,
-            lines: vec![line("parallel"), line("buckling")],
+            lines: Vec::new(),
         }
-    }
-
-    #[test]
-    fn lines_follow_point_after_point() {
-        let table = shapes(&[state(1e-3, 0.0), state(-1e-3, 0.0)]);
-        let names: Vec<&str> = table.columns().iter().map(|column| column.name.as_str()).collect();
-        assert_eq!(names, ["x_m", "flexure", "s_m", "px_m", "py_m"]);
-        let words = ["parallel", "parallel", "buckling", "buckling"];
-        assert_eq!(table.column("flexure").unwrap().values, Values::Words([words, words].concat()));
-        assert_eq!(table.numbers("x_m").unwrap()[3..5], [1e-3, -1e-3]);
-        assert_eq!(table.numbers("px_m").unwrap()[..2], [0.0, 2.0]);
-        assert!(table.numbers("py_m").unwrap()[0].is_sign_positive());
-        assert_eq!(shapes(&[]).rows(), 0);
     }
 
     #[test]

@@ -1,5 +1,4 @@
-//! Cells of a sweep: the product of its axes, of which the first changes slowest; and their order in a map,
-//! from coarse to fine.
+//! Cells of a sweep: the product of its axes, the first the slowest; their order from coarse to fine.
 
 use super::Table;
 use crate::scene::{Axis, Scene, column_names};
@@ -209,34 +208,6 @@ mod tests {
     fn grid(over: &[&str]) -> Grid {
         let document = Document::load("nominal-cubic").unwrap();
         Grid::new(document.axes(over).unwrap()).unwrap()
-    }
-
-    #[test]
-    fn the_first_axis_is_the_slowest() {
-        let grid =
-            grid(&["run.settle_s=0:2:1", "mechanism.linear_n_per_m=0,1", "mechanism.cubic_n_per_m3=0:3:1"]);
-        assert_eq!(grid.cells(), 24);
-        let mut expected = Vec::new();
-        for a in 0..3 {
-            for b in 0..2 {
-                for c in 0..4 {
-                    expected.push((vec![f64::from(a), f64::from(b), f64::from(c)], b as u64 * 4 + c as u64));
-                }
-            }
-        }
-        let cell = |i| (grid.values(i).collect::<Vec<_>>(), grid.mechanism(i));
-        assert_eq!((0..24).map(cell).collect::<Vec<_>>(), expected);
-        assert_eq!(grid.mechanisms(), 8);
-        assert_eq!(grid.describe(5), "settle_s = 0, linear_n_per_m = 1, cubic_n_per_m3 = 1");
-    }
-
-    #[test]
-    fn too_many_cells_are_counted() {
-        assert_eq!(count([101, 41].into_iter()), Ok(4141));
-        let error = count([1_000_000, 1_000_000].into_iter()).unwrap_err();
-        assert!(error.to_string().contains("1000000000000 cells"), "{error}");
-        assert!(matches!(count([u64::MAX, 3].into_iter()), Err(GridError::TooMany(_))));
-        assert_eq!(count(std::iter::empty()), Err(GridError::NoAxes));
     }
 
     #[test]

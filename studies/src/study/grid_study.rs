@@ -55,8 +55,7 @@ pub trait Question: Default + Sync {
     /// Adds an answer to the tally.
     fn count(tally: &mut Tally, answer: &Self::Answer);
 
-    /// The table of some rows. With [draws](Self::draws) each cell has consecutive rows: without a draw, then
-    /// with each.
+    /// The table of some rows. With [draws](Self::draws) a cell has a row without one, then with each.
     fn table(&self, grid: &Grid, rows: &[Row<Self::Answer>]) -> Table;
 
     /// The directions in which the last field is walked, if each cell continues from the one before.
@@ -82,10 +81,10 @@ pub(super) type Built = Result<Arc<Mechanism>, BuildError>;
 
 /// A scene, the grid over it, and the mechanisms that its cells share.
 #[derive(Debug)]
-pub(super) struct Cells {
-    base: Scene,
-    grid: Grid,
-    files: Files,
+pub struct Cells {
+    pub(super) base: Scene,
+    pub(super) grid: Grid,
+    pub(super) files: Files,
     draws: Draws,
     mechanisms: Vec<Mutex<Option<Built>>>,
     /// Mechanisms built so far.
@@ -102,19 +101,24 @@ pub struct GridStudy<Q> {
 /// Number of walks of any length that a thread may begin ahead: about as many as it runs at a time.
 const MIN_WALKS_AHEAD: u64 = 64;
 
-/// Largest number of mechanisms that are kept for the whole study; if the grid has more, each cell builds its
-/// own.
+/// Largest number of mechanisms that are kept for the whole study; of more, each cell builds its own.
 const MAX_KEPT_MECHANISMS: u64 = 4096;
 /// Approximate size of a large mechanism in bytes (flexures with their states).
 const MECHANISM_BYTES: u64 = 50_000;
 
 impl Cells {
+    /// The cells of `grid` over `base`, before any mechanism is built.
     pub fn new(base: &Scene, files: &Files, grid: Grid) -> Self {
         // fields without influence on a run are dropped, so that they are not copied for each cell
         let base = Scene { notes: String::new(), sweep: Vec::new(), app: None, ..base.clone() };
         let (files, draws, built) = (files.clone(), Draws::default(), AtomicU64::new(0));
         let mechanisms = places(grid.mechanisms());
         Self { base, files, grid, draws, mechanisms, built }
+    }
+
+    /// The columns of the swept fields, a row for each cell.
+    pub(super) fn table(&self) -> Table {
+        self.grid.table(|| 0..self.grid.cells())
     }
 
     /// Number of different mechanisms in a cell of the grid.
@@ -150,7 +154,7 @@ impl Cells {
 
     /// Checks all cells; wrong are those in which `faults` finds any, or whose mechanism is wrong. A
     /// mechanism that is not solved is no fault.
-    pub fn check(
+    pub(super) fn check(
         &self,
         pool: &Pool,
         task: &Task,
@@ -170,7 +174,7 @@ impl Cells {
 
     /// The answers for `parts` parts of each cell, from the scene of the cell, its mechanism or why it has
     /// none, and the number of the part.
-    pub fn map<R: Send>(
+    pub(super) fn map<R: Send>(
         &self,
         parts: usize,
         pool: &Pool,
@@ -185,8 +189,7 @@ impl Cells {
         pool.map(self.grid.cells() as usize * parts, || self.base.clone(), part)
     }
 
-    /// The model of a cell with a draw, or its faults; `None` if its mechanism was not solved, or if
-    /// cancelled.
+    /// The model of a cell with a draw, or its faults; `None` without a solved mechanism, or if cancelled.
     fn model(
         &self,
         index: u64,
@@ -203,8 +206,7 @@ impl Cells {
 }
 
 impl<Q: Question> GridStudy<Q> {
-    /// A study of `grid` over `base`. Precondition: `base` and the corners of the grid have passed the check
-    /// of scenes.
+    /// A study of `grid` over `base`. Precondition: `base` and the corners of the grid are checked.
     pub fn new(base: &Scene, files: &Files, grid: Grid) -> Self {
         Self { cells: Cells::new(base, files, grid), question: Q::default() }
     }
@@ -472,8 +474,7 @@ fn places(count: u64) -> Vec<Mutex<Option<Built>>> {
     (0..kept).map(|_| Mutex::new(None)).collect()
 }
 
-/// The columns of the swept fields and, if `walked`, of the direction; `count` gives the number of rows of an
-/// answer.
+/// The columns of the swept fields and, if `walked`, of the direction; an answer has `count` rows.
 pub(super) fn fields<A>(grid: &Grid, rows: &[Row<A>], count: impl Fn(&A) -> usize, walked: bool) -> Table {
     let each = || rows.iter().flat_map(|row| std::iter::repeat_n(row, count(&row.answer)));
     let table = grid.table(|| each().map(|row| row.index));

@@ -85,17 +85,14 @@ fn flexures(geometry: &Geometry) -> [String; 2] {
     ]
 }
 
-/// A line on the accuracy of the force curve of flexures. Errors of features that do not exist, such as a
-/// barrier, are left out.
+/// A line on the accuracy of the force curve of flexures, without features that do not exist.
 fn accuracy(mechanism: &Mechanism, accuracy: &Accuracy) -> String {
+    let outer = if accuracy.force.is_finite() { "of the force further out" } else { "of the force" };
     let parts = [
         (accuracy.force, "of the largest inner force"),
         (accuracy.potential, "of the barrier"),
         (accuracy.stiffness, "of the stiffness at x = 0"),
-        (
-            accuracy.outer_force,
-            if accuracy.force.is_finite() { "of the force further out" } else { "of the force" },
-        ),
+        (accuracy.outer_force, outer),
     ];
     let parts = parts.into_iter().filter(|(error, _)| error.is_finite());
     let parts: Vec<String> = parts.map(|(error, of)| format!("{} {of}", short(error))).collect();
@@ -139,8 +136,7 @@ fn force_curve(mechanism: &Mechanism) -> String {
     }
 }
 
-/// Lines on stiffness and damping coefficient for a damping ratio and, at a kink, on those for other
-/// definitions of the ratio.
+/// Lines on stiffness and coefficient for a damping ratio and, at a kink, for other definitions of it.
 fn damping(scene: &Scene, model: &Model) -> Vec<String> {
     let Damping::Ratio(xi) = scene.damping else { return Vec::new() };
     let landscape = &model.mechanism().landscape;

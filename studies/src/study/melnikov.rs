@@ -8,10 +8,10 @@
 
 use super::grid_study::Cells;
 use super::thresholds::from_rest;
-use super::{Grid, NoThresholds, Table, Task};
+use super::{NoThresholds, Table, Task};
 use crate::dynamics::Model;
 use crate::mechanics::Homoclinic;
-use crate::scene::{Files, Scene};
+use crate::scene::Scene;
 use crate::system::threads::Pool;
 
 /// Melnikov's threshold in m/s^2 of the base's acceleration under a sine of this frequency in Hz, for the
@@ -49,24 +49,17 @@ pub fn melnikov_threshold(model: &Model, frequency_hz: f64) -> Option<f64> {
 }
 
 /// A table of thresholds with one more column, `melnikov_g` for a sine, `melnikov_m_per_s2` or `melnikov_n`
-/// for a harmonic drive in SI: Melnikov's threshold of the amplitude in its unit in each cell of `grid`,
+/// for a harmonic drive in SI: Melnikov's threshold of the amplitude in its unit in each of the cells,
 /// missing where it does not apply and where the drive is not harmonic. The runs begin at rest.
-pub fn with_melnikov(
-    table: Table,
-    scene: &Scene,
-    files: &Files,
-    grid: &Grid,
-    pool: &Pool,
-    task: &Task,
-) -> Result<Table, NoThresholds> {
-    let cells = Cells::new(scene, files, grid.clone());
+pub fn with_melnikov(table: Table, cells: &Cells, pool: &Pool, task: &Task) -> Result<Table, NoThresholds> {
     let found = cells.map(1, pool, task, |scene, built, _| {
         let Some(drive) = scene.harmonic() else { return Ok(None) };
         let model = built.ok().and_then(|mechanism| Model::build(&from_rest(scene), mechanism).ok());
         let threshold = model.and_then(|model| melnikov_threshold(&model, drive.frequency_hz));
         Ok(threshold.map(|acceleration| drive.amplitude_of(acceleration)))
     })?;
-    let unit = scene.harmonic().and_then(|drive| drive.amplitude_path().strip_prefix("excitation.amplitude"));
+    let unit =
+        cells.base.harmonic().and_then(|drive| drive.amplitude_path().strip_prefix("excitation.amplitude"));
     Ok(table.each(&format!("melnikov{}", unit.unwrap_or("_g")), &found, |found| *found))
 }
 

@@ -70,6 +70,8 @@ mod watch;
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use crate::dynamics::{Outcome, Run};
+
 pub use alternatives::{Alternative, Rated, alternatives};
 pub(crate) use alternatives::{SEARCHED_SPAN, comparison_parts, comparison_table};
 pub(crate) use amplitudes::stops_that_cross;
@@ -96,7 +98,7 @@ pub(crate) use fields::InJson;
 pub use fields::{RMS_VELOCITY, Read, SUMMARY_FIELDS, SummaryField};
 pub use grid::{Grid, GridError, Levels, MAX_CELLS, STRIDES};
 pub(crate) use grid_study::Row;
-pub use grid_study::{GridStudy, Question};
+pub use grid_study::{Cells, GridStudy, Question};
 pub use identify::{
     FORCE_POINTS, Identified, Identity, Unidentified, damping, force, restitution, restitution_of_times,
 };
@@ -111,7 +113,7 @@ pub(crate) use melnikov::{suits_melnikov, with_melnikov};
 pub(crate) use models::ModelUse;
 pub use orbit::{
     Branch, BranchEnd, BranchEvent, BranchOptions, FieldRange, Locus, LocusEnd, LocusEvent, NoOrbit, Orbit,
-    branch, branches_table, loci, loci_table, orbit, orbit_near, orbit_table, switched,
+    branch, branches_table, loci, loci_table, orbit, orbit_near, switched,
 };
 pub use section::{IMPACTS, MAX_SECTION, SectionAt, SectionOptions, Sections, section};
 pub(crate) use settled::followed_until;
@@ -162,6 +164,11 @@ impl Task<'_> {
         self.check_cancelled()?;
         found
     }
+}
+
+/// A run unless it was cancelled.
+fn finished(run: Run) -> Option<Run> {
+    (!matches!(run.summary.outcome, Outcome::Cancelled { .. })).then_some(run)
 }
 
 /// The result of a part of a study that can be cancelled.

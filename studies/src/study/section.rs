@@ -180,13 +180,6 @@ impl Default for SectionOptions {
     }
 }
 
-impl SectionOptions {
-    /// The model as it is run.
-    pub fn run_of(&self, model: &Model) -> Model {
-        self.model(model.clone())
-    }
-}
-
 /// The section of a run of `model`, the model of `scene`, and the summary of the run. The table of states has
 /// the column [`IMPACTS`]. A fault if the drive does not repeat, or if the settled window has no period or
 /// too many.
@@ -196,7 +189,7 @@ pub fn section(
     options: &SectionOptions,
     cancel: &AtomicBool,
 ) -> Result<(Table, Summary), Fault> {
-    let model = options.run_of(model);
+    let model = options.model(model.clone());
     if let Some(fault) = options.fault(&model, scene) {
         return Err(fault);
     }
@@ -206,6 +199,5 @@ pub fn section(
     Ok((options.table(&Grid::of_one(), &[row]), summary))
 }
 
-/// Sections of the cells of a grid: columns of the swept fields and of the direction of a walk, then those of
-/// one [`section`].
+/// Sections of the cells of a grid: the swept fields, the direction of a walk, then one [`section`].
 pub type Sections = GridStudy<SectionOptions>;

@@ -4,7 +4,7 @@
 use std::cell::RefCell;
 use std::sync::atomic::AtomicBool;
 
-use super::Task;
+use super::{Task, finished};
 use crate::dynamics::{Model, Outcome, Phase, Request, Run, Sample, Summary};
 use crate::system::threads::{Pool, Queue, UnderWay, share_from};
 
@@ -13,8 +13,7 @@ use crate::system::threads::{Pool, Queue, UnderWay, share_from};
 /// long: without stops, five of 40 amplitudes within 1 % of it take between 1000 and 4500 periods.
 pub(super) const PATIENCE: u32 = 1000;
 
-/// Smallest number of forcing periods, for sums of sines whose common period is much longer than that of the
-/// fastest sine.
+/// Smallest number of forcing periods, for sums of sines whose common period is long beside the fastest sine.
 const MIN_PATIENCE: f64 = 16.0;
 
 /// The time in s up to which a run of `model` may continue until its motion repeats: its duration and 1000
@@ -25,8 +24,7 @@ pub fn followed_until(model: &Model) -> f64 {
     model.duration() + (f64::from(PATIENCE) * fastest).max(MIN_PATIENCE * period)
 }
 
-/// Number of forcing periods of a settled window that replaces one of less than two, in which no repetition
-/// can be seen.
+/// Forcing periods of a settled window in place of one of less than two, in which no repetition can be seen.
 const WINDOW: f64 = 8.0;
 
 /// The model with a settled window that is long enough to see a repetition, if its drive repeats.
@@ -59,8 +57,7 @@ pub(super) fn settled_within(model: &Model, until: Option<f64>, cancel: &AtomicB
     let duration = ramp.map_or(model.duration(), |end| end.max(model.duration()));
     let model = model.with_duration(duration, model.settle());
     let run = model.run(&Request { ledger: true, cancel: Some(cancel), until_settled, ..Request::default() });
-    let cancelled = matches!(run.summary.outcome, Outcome::Cancelled { .. });
-    (!cancelled).then_some(run.summary)
+    finished(run).map(|run| run.summary)
 }
 
 /// Whether a run of `model` does not end within its first `seconds`.
@@ -114,8 +111,7 @@ pub(super) fn shared_runs<'q, R: Send>(
     runs_from(pool, task, &|under_way| queue.take(under_way), model, |_, run| answer(run))
 }
 
-/// Like [`shared_runs`], for the indices that `take` returns, such as those of a [`Queue`]. `answer` also
-/// gets the index.
+/// Like [`shared_runs`], for the indices that `take` returns, which `answer` gets too.
 pub(super) fn runs_from<'q, R: Send>(
     pool: Option<&Pool>,
     task: &'q Task,

@@ -127,33 +127,29 @@ pub fn events_table(events: &[Event]) -> Table {
         .each("v_out_m_per_s", events, |event| event.v_out)
 }
 
-/// Ratio of the time scale of the motion to the duration of a contact above which a contact with a compliant
-/// stop is short.
+/// Ratio of the time scale of the motion to a contact with a compliant stop above which the contact is short.
 const SHORT: f64 = 100.0;
 
 /// A clause on how to make a run of `model` with this outcome last longer or be more accurate; `None` if the
 /// run was completed or cancelled, or if the outcome itself names the remedy.
 pub fn ended_remedy(model: &Model, outcome: Outcome) -> Option<String> {
     let tolerance = model.tolerance();
-    match outcome {
-        Outcome::StepBudget { at, .. } => Some(
-            model.fast_circuit().or_else(|| short_contact(model)).unwrap_or_else(|| fewer_steps(model, at)),
-        ),
+    let remedy = match outcome {
+        Outcome::StepBudget { at, .. } => short_contact(model).unwrap_or_else(|| fewer_steps(model, at)),
+        Outcome::Inaccurate { .. } if tolerance > TOLERANCES.0 => "use a smaller tolerance".to_owned(),
         Outcome::Inaccurate { .. } => {
-            Some(model.fast_circuit().unwrap_or_else(|| match tolerance > TOLERANCES.0 {
-                true => "use a smaller tolerance".to_owned(),
-                false => format!("{tolerance:e} is the smallest tolerance, so the cause lies elsewhere"),
-            }))
+            format!("{tolerance:e} is the smallest tolerance, so the cause lies elsewhere")
         }
-        Outcome::NotFinite { .. } => Some(model.fast_circuit().unwrap_or_else(|| match model.stops() {
+        Outcome::NotFinite { .. } => match model.stops() {
             None => "stops, or a force that holds the mass, keep the motion within bounds".to_owned(),
             Some(_) => "smaller numbers in the scene (stiffness, amplitude, speed) keep it finite".to_owned(),
-        })),
+        },
         Outcome::Done
         | Outcome::LeftTable { .. }
         | Outcome::ImpactBudget { .. }
-        | Outcome::Cancelled { .. } => None,
-    }
+        | Outcome::Cancelled { .. } => return None,
+    };
+    Some(model.fast_circuit().unwrap_or(remedy))
 }
 
 /// A clause on how to keep a run within its step budget, which it used up at `at` in s: a shorter run, a

@@ -43,8 +43,7 @@ pub struct SpectrumOptions {
     /// Samples per second, raised until a forcing period has a whole number of them; by default at least 128
     /// per shortest period of excitation and mechanism, and at least 4096 in total.
     pub rate_hz: Option<f64>,
-    /// The run continues until the motion repeats, at most up to this time in s; the spectrum is that of the
-    /// last window.
+    /// The run continues until the motion repeats, at most up to this time in s; the last window counts.
     pub until_settled: Option<f64>,
 }
 
@@ -124,10 +123,8 @@ const DEFAULT_SAMPLES: f64 = 4096.0;
 
 /// The spectrum of the settled motion of `model`, which is run twice: for its verdict and for its samples.
 ///
-/// Frequencies above half the rate are folded back below it. In a smooth motion that is negligible: its
-/// spectrum falls faster than any power of the frequency. Impacts are jumps of the velocity, whose amplitude
-/// falls like 1/f, and that of the displacement like 1/f^2: with impacts, four times the rate leaves a
-/// quarter of the aliasing in each line of the velocity, and a sixteenth in each line of the displacement.
+/// Frequencies above half the rate are folded back below it, which is negligible in a smooth motion. With
+/// impacts the velocity jumps, and amplitudes fall only like 1/f, those of the displacement like 1/f^2.
 pub fn spectrum(model: &Model, options: &SpectrumOptions, task: &Task) -> Result<Spectrum, NoSpectrum> {
     let request =
         Request { cancel: Some(task.cancel), until_settled: options.until_settled, ..Request::default() };
@@ -183,8 +180,7 @@ struct Plan {
 }
 
 impl Plan {
-    /// The plan of a window of `periods` forcing periods, in which the motion repeats after `repeats` of
-    /// them.
+    /// The plan of a window of `periods` forcing periods; the motion repeats after `repeats` of them.
     fn new(
         model: &Model,
         (from, to): (f64, f64),

@@ -137,18 +137,13 @@ pub const DIRECTION: &str = "direction";
 /// Options of a sweep beyond running each cell for its duration.
 #[derive(Debug, Clone, Default)]
 pub struct SweepOptions {
-    /// Columns in addition to the [standard](STANDARD) ones. With one of the energy ledger, cells are run one
-    /// at a time.
+    /// Columns besides the [standard](STANDARD) ones; with one of the ledger, cells are run one at a time.
     pub columns: Vec<&'static SummaryField>,
     /// Each run continues until its motion repeats, at most up to this time in s.
     pub until_settled: Option<f64>,
-    /// The last field is walked: each cell begins in the state of the cell before at the last whole forcing
-    /// period of its run. Only the first cell begins at the start of its scene. A column `direction` follows
-    /// those of the fields, and the rows are in the order of the walk.
+    /// The last field is walked, as [`Sweep`](crate::questions::Sweep) says; the rows are in its order.
     pub carry: Option<Carry>,
-    /// Draws of uncertain fields, which are run in each cell besides the cell itself; without `carry`. Each
-    /// column of numbers is followed by the band of the draws, `_low` and `_high`, each of words by the share
-    /// of the draws with the same word, `_share`; `draws` is the last column.
+    /// Draws of uncertain fields, which are run in each cell besides the cell itself; without `carry`.
     pub draws: Draws,
 }
 

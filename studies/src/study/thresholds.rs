@@ -16,7 +16,7 @@ use super::bisection::{Trial, between, next_between};
 use super::grid_study::{Built, Cells};
 use super::settled::{followed, runs_from};
 use super::walk::excitation_fault;
-use super::{Cancelled, CellFaults, Family, Grid, NoModel, Table, Task};
+use super::{Cancelled, CellFaults, Family, NoModel, Table, Task};
 use crate::dynamics::{Model, Outcome, Regime, Run, Summary};
 use crate::mechanics::Mechanism;
 use crate::scene::{Fault, Files, Scene, Start};
@@ -47,13 +47,11 @@ pub struct Found {
     pub low: Option<f64>,
     /// The smallest tried value, from it on, that is known to have the motion.
     pub high: Option<f64>,
-    /// Whether the answer at the value or just below it is unknown; without a value, that at the end of the
-    /// scan.
+    /// Whether the answer at the value or just below it is unknown; without a value, at the end of the scan.
     pub undecided: bool,
     /// Number of changes of the answer above it, within the scan.
     pub windows: u64,
-    /// The value above which the whole scan has the motion; `None` if the last value of the scan does not
-    /// have it.
+    /// The value above which the whole scan has the motion; `None` if its last value does not have it.
     pub without_gap: Option<f64>,
 }
 
@@ -91,42 +89,38 @@ impl From<Cancelled> for NoThresholds {
     }
 }
 
-/// The thresholds of every cell of `grid`: the swept fields, then `of,value,low,high,undecided,windows`. A
-/// value is missing if it was not found or the mechanism is not solved. Ticks for each value of the scan in
-/// each cell. All cells are checked before the first run.
+/// The thresholds of every cell, with the columns of [`Threshold`](crate::questions::Threshold).
+/// Ticks for each value of the scan in each cell. All cells are checked before the first run.
 pub fn threshold_table(
-    scene: &Scene,
-    files: &Files,
-    grid: &Grid,
+    cells: &Cells,
     scan: &Scan,
     onset: Onset,
     pool: &Pool,
     task: &Task,
 ) -> Result<Table, NoThresholds> {
-    let cells = Cells::new(scene, files, grid.clone());
     cells.check(pool, task, |scene, mechanism| {
         let trial = from_rest(scene);
-        faults(&trial, mechanism, files, scan, |model| {
+        faults(&trial, mechanism, &cells.files, scan, |model| {
             let suits = onset != Onset::Interwell || model.repeats();
             (!suits).then(|| excitation_fault(&trial, NO_PERIOD.to_owned()))
         })
     })?;
     // with several cells, each runs on one thread
-    let ahead = if grid.cells() == 1 { pool.count() } else { 1 };
+    let ahead = if cells.grid.cells() == 1 { pool.count() } else { 1 };
     let of_cell = |scene: &Scene, built: Built, _: u64| {
         let Ok(mechanism) = built else {
             scan.values.iter().for_each(|_| (task.tick)());
             return Ok(Found { undecided: true, ..Found::default() });
         };
         let trial = from_rest(scene);
-        let family = Family::new(&trial, files, &mechanism, &scan.field);
+        let family = Family::new(&trial, &cells.files, &mechanism, &scan.field);
         let until_settled = scan.until_settled;
         let search = Search { family, onset, until_settled, task, pool: Some(pool), ahead };
         search.found(scene, &mechanism, scan)
     };
     let found = cells.map(1, pool, task, of_cell)?;
-    Ok(grid
-        .table(|| 0..grid.cells())
+    Ok(cells
+        .table()
         .each("of", &found, |_| onset.name())
         .each("value", &found, |found| found.value)
         .each("low", &found, |found| found.low)
@@ -197,8 +191,7 @@ impl Answers {
         self.scan.iter().position(|(_, verdict)| verdict.is_some_and(|verdict| verdict.does))
     }
 
-    /// The two values of the scan between which the answer changes first; `None` until all values below are
-    /// known.
+    /// The two values of the scan between which the answer changes first; `None` until all below are known.
     fn first_change(&mut self) -> Option<(f64, f64)> {
         let does = |answer: &Answer| answer.1.map(|verdict| verdict.does);
         self.below += self.scan[self.below..].iter().take_while(|answer| does(answer) == Some(false)).count();

@@ -22,13 +22,11 @@ pub struct Trace {
     pub impacts: Table,
     /// `from_s,to_s,side` of every span at rest on a stop.
     pub rests: Table,
-    /// `t_s,x_m,v_m_per_s` once per forcing period, at the phase of time 0, over the times of the phase
-    /// portrait.
+    /// `t_s,x_m,v_m_per_s` once per forcing period, at the phase of time 0, over the phase portrait.
     pub strobes: Table,
     /// First time in s of the phase portrait: that of the last forcing periods, or of a requested window.
     pub portrait_from: f64,
-    /// First time in s of the motion over time: 0, or that of the last forcing periods of a long run, or of a
-    /// requested window.
+    /// First time in s of the motion over time: 0, that of the last periods, or of a requested window.
     pub shown_from: f64,
     /// Last time in s of both.
     pub shown_to: f64,
@@ -51,8 +49,7 @@ impl Trace {
     }
 }
 
-/// Smallest and largest number of samples over the whole run: several per pixel column, and a bound on
-/// memory.
+/// Smallest and largest number of samples over a run: several per pixel column, and a bound on memory.
 const OVERVIEW: (f64, f64) = (8_000.0, 400_000.0);
 
 /// Samples per period of the drive or of small oscillations, whichever is shorter.
@@ -71,12 +68,10 @@ const MAX_STROBES: u32 = 300;
 /// Samples of a phase portrait.
 const PORTRAIT: f64 = 24_000.0;
 
-/// Largest number of rows in a phase portrait; more of them, as from a million impacts, would cover it
-/// completely.
+/// Largest number of rows in a phase portrait; more, as from a million impacts, would cover it completely.
 const MAX_PORTRAIT_ROWS: usize = 60_000;
 
-/// Runs `model` and returns what `keep` requests and the data of a picture. A `window` in s restricts the
-/// picture to these times.
+/// Runs `model` and returns what `keep` requests and the data of a picture of a `window` in s, or of all.
 pub fn simulate_with_trace(
     model: &Model,
     keep: &Keep,
@@ -98,7 +93,6 @@ pub fn simulate_with_trace(
     let times = ascending(picture_samples.iter().chain(&keep.times).copied().collect());
     let run = model.run(&Request { sample_times: &times, events: true, ledger: true, ..request });
     let (left, right) = model.stop_positions();
-    let stops = (left.unwrap_or(f64::NAN), right.unwrap_or(f64::NAN));
     let end = run.summary.outcome.ended_at().unwrap_or(span.1);
     let mut shown = in_order(&picture_samples, &run.samples);
     if end < span.1 && !matches!(run.summary.outcome, Outcome::Cancelled { .. }) {
@@ -107,7 +101,7 @@ pub fn simulate_with_trace(
         (picture_samples, strobes) = sampled(close, end);
         shown = model.run(&Request { sample_times: &picture_samples, ..request }).samples;
     }
-    let path = path(model, &shown, &run.events, stops);
+    let path = path(model, &shown, &run.events);
     let rows = path.numbers("t_s").unwrap_or_default();
     let (mut portrait_from, shown_to) = close;
     let until = rows.partition_point(|t| *t <= shown_to);
@@ -135,7 +129,7 @@ pub fn simulate_with_trace(
         shown_from,
         shown_to,
         is_section: window.is_some(),
-        stops,
+        stops: (left.unwrap_or(f64::NAN), right.unwrap_or(f64::NAN)),
         end,
         ledger: LiveLedger::default(),
     };
@@ -185,12 +179,12 @@ fn picture_times(model: &Model, close: (f64, f64), duration: f64) -> Vec<f64> {
 }
 
 /// Samples and impacts in order of time. A sample at the time of an impact is the state after it.
-fn path(model: &Model, samples: &[Sample], events: &[Event], stops: (f64, f64)) -> Table {
+fn path(model: &Model, samples: &[Sample], events: &[Event]) -> Table {
     let mut rows: Vec<[f64; 5]> = Vec::with_capacity(samples.len());
     let mut jumps = events.iter().filter(|event| event.kind == EventKind::Impact).peekable();
     for sample in samples {
         while let Some(jump) = jumps.next_if(|jump| jump.t <= sample.t) {
-            let x = if jump.side == Side::Left { stops.0 } else { stops.1 };
+            let x = model.stop(jump.side).map_or(f64::NAN, |stop| stop.x);
             rows.push([jump.t, x, jump.v_in, f64::NAN, f64::NAN]);
             rows.push([jump.t, x, jump.v_out, f64::NAN, f64::NAN]);
         }

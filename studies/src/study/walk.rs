@@ -175,8 +175,7 @@ pub struct Visit {
     pub value: f64,
     /// Its summary.
     pub summary: Summary,
-    /// Displacements in m once per forcing period, at the phase 0 of the drive: the last 60 of the settled
-    /// window.
+    /// Displacements in m at phase 0 of each forcing period: the last 60 of the settled window.
     pub strobes: Vec<f64>,
 }
 

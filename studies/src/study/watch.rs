@@ -1,9 +1,8 @@
 //! Live run that keeps its recent path.
 //!
 //! The path is sampled for display: 80 times per period, and at every event, so that impacts are drawn as
-//! corners and rests as straight lines. While ledgers are switched on, the energy ledger is stored at the end
-//! of every forcing period. The oldest data are dropped. The models of the motion are stored as well
-//! ([`models`](super::models)).
+//! corners and rests as straight lines. The oldest data are dropped. The models of the motion are stored as
+//! well ([`models`](super::models)).
 
 use std::collections::VecDeque;
 use std::ops::Range;
@@ -82,8 +81,7 @@ impl Watch {
         self.ledgers.len()
     }
 
-    /// Continues to the time `to` in s. False if the run ended earlier, or if many impacts in a short time
-    /// need further calls.
+    /// Continues to the time `to` in s. False if the run ended before, or many impacts need further calls.
     pub fn advance(&mut self, to: f64) -> bool {
         let from = self.live.time();
         let step = self.step.max((to - from) / MAX_SAMPLES_PER_CALL);
@@ -131,8 +129,7 @@ impl Watch {
         self.jump(|live, passage| live.place(x, v, passage));
     }
 
-    /// Changes the state or the model at the present time. The state before the change is stored, so that the
-    /// path shows the jump.
+    /// Changes the state or the model now, and keeps the state before, so that the path shows the jump.
     fn jump(&mut self, change: impl FnOnce(&mut Live, &mut LiveOutput)) {
         if self.samples.back().is_none_or(|last| last.t < self.now.t) {
             self.samples.push_back(self.now);
@@ -259,8 +256,7 @@ impl Watch {
         }
     }
 
-    /// The next event after a time in s, or the last one before it: a release, a crossing, or the first
-    /// impact after a flight.
+    /// The next event after a time in s, or the last one before it; of a chatter the first impact alone.
     pub fn neighbour(&self, t: f64, later: bool) -> Option<Event> {
         // a chattering sequence counts as one event, at its first impact
         let begins_sequence = |i: &usize| {
@@ -270,9 +266,9 @@ impl Watch {
             !(struck(event.kind) || event.kind == EventKind::Rest)
                 || before.is_none_or(|before| !struck(before.kind) || before.side != event.side)
         };
-        let split = |time: f64| self.events.partition_point(|event| event.t <= time);
         let found = if later {
-            (split(t)..self.events.len()).find(begins_sequence)
+            let after = self.events.partition_point(|event| event.t <= t);
+            (after..self.events.len()).find(begins_sequence)
         } else {
             let before = self.events.partition_point(|event| event.t < t);
             (0..before).rev().find(begins_sequence)
@@ -299,9 +295,8 @@ impl Watch {
     }
 
     fn corner(&mut self, event: &Event, changed: Option<f64>) {
-        let (left, right) = self.live.model().stop_positions();
-        let stop = if event.side == Side::Left { left } else { right };
-        let Some(x) = changed.or(stop) else { return };
+        let stop = self.live.model().stop(event.side);
+        let Some(x) = changed.or(stop.map(|stop| stop.x)) else { return };
         let base_accel = self.live.base_acceleration(event.t);
         // Events have no electrical state; NaN becomes a missing value in a table.
         let electrical = if self.live.model().has_electrical_state() { f64::NAN } else { 0.0 };

@@ -116,9 +116,15 @@ fn what_does_not_fit_together_is_refused() {
 
 #[test]
 fn shards_are_numbered_by_hand_or_by_an_array_job() {
-    for (shard, word) in
-        [("0/5", "no shard 0 of 5"), ("6/5", "no shard 6 of 5"), ("x", "I/N"), ("1/0", "0 shards")]
-    {
+    for (shard, word) in [
+        ("0/5", "no shard 0 of 5"),
+        ("6/5", "no shard 6 of 5"),
+        ("-1/5", "I/N"),
+        ("a/b", "I/N"),
+        ("5", "I/N"),
+        ("1/0", "0 shards"),
+        ("1/1000001", "1000001 shards"),
+    ] {
         refused(headless(&format!("{MAP} --shard {shard}")), &["--shard", word]);
     }
     refused(headless(&format!("{MAP} --shard 1/2 --plot map.png")), &["--shard", "--plot"]);

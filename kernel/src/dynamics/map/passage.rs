@@ -181,11 +181,7 @@ fn traced<T: Scalar>(
 
 /// The product of the squared restitution of each impact.
 fn squared_restitutions(model: &Model, events: &[Event]) -> f64 {
-    let (left, right) = model.sides();
-    let restitution = |side: Side| {
-        let stop = if side == Side::Left { left } else { right };
-        stop.map_or(1.0, |stop| stop.restitution)
-    };
+    let restitution = |side: Side| model.stop(side).map_or(1.0, |stop| stop.restitution);
     let impacts = events.iter().filter(|event| event.kind == EventKind::Impact);
     impacts.map(|event| restitution(event.side).powi(2)).product()
 }

@@ -11,6 +11,7 @@ pub(crate) mod transducer;
 
 use std::sync::Arc;
 
+use crate::dynamics::result::Side;
 use crate::mechanics::{Hertz, Mechanism};
 use crate::numeric::elementary;
 use crate::scene::{self, Damping, Fault, Scene, Start};
@@ -202,6 +203,12 @@ impl Model {
     pub fn stop_positions(&self) -> (Option<f64>, Option<f64>) {
         let (left, right) = self.sides();
         (left.map(|stop| stop.x), right.map(|stop| stop.x))
+    }
+
+    /// The stop on a side, if there is one.
+    pub fn stop(&self, side: Side) -> Option<StopAt> {
+        let (left, right) = self.sides();
+        if side == Side::Left { left } else { right }
     }
 
     /// The left and the right stop, if there are any.

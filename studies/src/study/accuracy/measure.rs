@@ -10,10 +10,10 @@ use std::f64::consts::TAU;
 
 use super::Stopped;
 use super::setup::Setup;
-use crate::dynamics::{Event, EventKind, Model, Outcome, Request, Run, Sample, Summary};
+use crate::dynamics::{Event, EventKind, Model, Request, Run, Sample, Summary};
 use crate::numeric::elementary;
 use crate::scene::{FieldPath, numeric_fields};
-use crate::study::Task;
+use crate::study::{Task, finished};
 
 /// Largest error of the state in one step, relative to the scene's length and speed: four spacings of the
 /// doubles at 1. At the tolerance 1e-14 one is the series cut off (a fiftieth of the tolerance, 2e-16), one
@@ -70,8 +70,7 @@ impl Check {
         if let Self::Error { error, .. } = self { Some(digits(error)) } else { None }
     }
 
-    /// The error as a share of the error allowed; a fact comes before all numbers if it fails, after them if
-    /// it holds.
+    /// The error as a share of that allowed; a fact comes before all numbers if it fails, else after them.
     fn share(self) -> f64 {
         match self {
             Self::Fact(false) => f64::INFINITY,
@@ -252,8 +251,7 @@ impl Bench<'_> {
     }
 
     fn unless_cancelled(&self, run: Run) -> Result<Run, Stopped> {
-        let cancelled = matches!(run.summary.outcome, Outcome::Cancelled { .. });
-        if cancelled || self.task.is_cancelled() { Err(Stopped::Cancelled) } else { Ok(run) }
+        finished(run).filter(|_| !self.task.is_cancelled()).ok_or(Stopped::Cancelled)
     }
 
     /// Numbers of a run, and their sensitivities to its data: for each number the sum, over the data, of

@@ -17,7 +17,7 @@ mod setup;
 
 pub use cases::{HARD_CASES, HardCase};
 pub use measure::{Check, REFERENCE_TOLERANCE, STEP_ERROR, Variant};
-pub use precision::{OWN, PROBLEMS, Point, Problem, Setting};
+pub use precision::{OWN, PROBLEMS, Point, Problem};
 pub use setup::Stopped;
 
 use super::{Table, Task};
@@ -114,14 +114,8 @@ impl Report {
             .each("method", points, |point| point.method)
             .each("variant", points, |_| "")
             .each("quantity", points, |_| "")
-            .each("tolerance", points, |point| match point.setting {
-                Setting::Tolerance(tolerance) => tolerance,
-                Setting::Step(_) => f64::NAN,
-            })
-            .each("step_s", points, |point| match point.setting {
-                Setting::Tolerance(_) => f64::NAN,
-                Setting::Step(step) => step,
-            })
+            .each("tolerance", points, |point| point.tolerance)
+            .each("step_s", points, |point| point.step)
             .each("error", points, |point| point.error)
             .each("allowed", points, |_| f64::NAN)
             .each("digits_allowed", points, |_| f64::NAN)

@@ -55,15 +55,6 @@ pub const PROBLEMS: &[Problem] = &[
     Problem { name: "flexures", heading: "flexures, stops", preset: "paper", changes: &[], length: None },
 ];
 
-/// Setting of a method.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Setting {
-    /// Local error allowed, relative to the scene's scales.
-    Tolerance(f64),
-    /// Step in s.
-    Step(f64),
-}
-
 /// One run of one method.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Point {
@@ -71,8 +62,10 @@ pub struct Point {
     pub problem: &'static str,
     /// Name of the method.
     pub method: &'static str,
-    /// Its setting.
-    pub setting: Setting,
+    /// Local error allowed, relative to the scene's scales; `None` for a fixed step.
+    pub tolerance: Option<f64>,
+    /// Fixed step in s.
+    pub step: Option<f64>,
     /// Error, as the problem defines it.
     pub error: f64,
     /// Its numbers; the CPU time is the median of a few runs that keep statistics alone.
@@ -80,8 +73,7 @@ pub struct Point {
 }
 
 impl Problem {
-    /// Tolerances 1e-3 to 1e-14 for the program's method and Dormand-Prince, steps of 1/60 s down to 5 us for
-    /// the others.
+    /// Tolerances 1e-3 to 1e-14 for the adaptive methods, steps of 1/60 s down to 5 us for the others.
     pub(super) fn measure(&self, task: &Task) -> Result<Vec<Point>, Stopped> {
         let model = Setup::preset(self.preset, self.changes)?.model()?;
         let request = Request { events: true, cancel: Some(task.cancel), ..Request::default() };
@@ -89,9 +81,11 @@ impl Problem {
         (task.tick)();
         let bare = Request { events: false, ..request };
         let mut points = Vec::new();
-        let mut measure = |method, settings: &[Setting], run: &dyn Fn(f64, &Request) -> MethodRun| {
-            for setting in settings.iter().copied() {
-                let (Setting::Tolerance(value) | Setting::Step(value)) = setting;
+        // as written: a power of ten by multiplication is off by an ulp
+        let tolerances = [1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12, 1e-13, 1e-14];
+        let steps: [f64; 8] = std::array::from_fn(|i| elementary::powf(10.0, -0.5 * i as f64) / 60.0);
+        let mut measure = |method, is_adaptive: bool, run: &dyn Fn(f64, &Request) -> MethodRun| {
+            for value in if is_adaptive { &tolerances[..] } else { &steps }.iter().copied() {
                 let found = run(value, &request);
                 if task.is_cancelled() {
                     return Err(Stopped::Cancelled);
@@ -100,7 +94,8 @@ impl Problem {
                 points.push(Point {
                     problem: self.name,
                     method,
-                    setting,
+                    tolerance: is_adaptive.then_some(value),
+                    step: (!is_adaptive).then_some(value),
                     error: self.error_of(&model, &found, &exact),
                     statistics: Statistics { cpu_s, ..found.statistics },
                 });
@@ -108,17 +103,12 @@ impl Problem {
             (task.tick)();
             Ok(())
         };
-        // as written: a power of ten by multiplication is off by an ulp
-        let tolerances = [1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12, 1e-13, 1e-14]
-            .map(Setting::Tolerance);
-        let steps = [0, 1, 2, 3, 4, 5, 6, 7]
-            .map(|i| Setting::Step(elementary::powf(10.0, -0.5 * f64::from(i)) / 60.0));
-        measure(OWN, &tolerances, &|tolerance, request| model.with_tolerance(tolerance).run(request).into())?;
-        measure("Dormand-Prince 5(4)", &tolerances, &|tolerance, request| {
+        measure(OWN, true, &|tolerance, request| model.with_tolerance(tolerance).run(request).into())?;
+        measure("Dormand-Prince 5(4)", true, &|tolerance, request| {
             dormand_prince(&model, tolerance, request)
         })?;
         for scheme in Scheme::ALL {
-            measure(scheme.name(), &steps, &|step, request| fixed_step(&model, scheme, step, request))?;
+            measure(scheme.name(), false, &|step, request| fixed_step(&model, scheme, step, request))?;
         }
         Ok(points)
     }
@@ -140,8 +130,7 @@ impl Problem {
     }
 }
 
-/// Time in s from an impact to the nearest of `impacts`, ascending in time, on the same stop; infinite
-/// without any.
+/// Time in s from an impact to the nearest of `impacts`, ascending, on the same stop; infinite without any.
 fn nearest(impacts: &[Event], impact: &Event) -> f64 {
     let after = impacts.partition_point(|event| event.t < impact.t);
     let same = |event: &&Event| event.side == impact.side;

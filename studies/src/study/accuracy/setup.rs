@@ -31,8 +31,7 @@ pub(super) struct Setup {
 }
 
 impl Setup {
-    /// 1 kg at `x` in m with `v` in m/s, without damping, stops or drive; the settled window begins at
-    /// the start.
+    /// 1 kg at `x` in m with `v` in m/s, without damping, stops or drive; all of the run is judged.
     pub fn new(mechanism: Mechanism, (x, v): (f64, f64), duration_s: f64) -> Self {
         Self {
             scene: Scene {
@@ -53,8 +52,7 @@ impl Setup {
         }
     }
 
-    /// The cubic of the prototype's size (wells at 7 mm, 15.2 g, damping ratio 0.023) between stops,
-    /// from rest.
+    /// The cubic of the prototype's size (wells at 7 mm, 15.2 g, ratio 0.023) between stops, from rest.
     pub fn nominal(limit_mm: f64, restitution: f64, excitation: Excitation, duration_s: f64) -> Self {
         let cubic = Mechanism::Cubic { linear_n_per_m: -40.0, cubic_n_per_m3: 40.0 / 49e-6 };
         let mut setup = Self::new(cubic, (0.0, 0.0), duration_s);

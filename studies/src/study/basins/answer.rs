@@ -1,12 +1,11 @@
-//! Result of a map of basins: the attractors, numbered in the order of the first start that goes to each, and
-//! the rows.
+//! Result of a map of basins: attractors, in the order of the first start of each, and rows.
 
 use serde::{Deserialize, Serialize};
 
 use super::Basins;
 use super::rounds::{Fate, Kind, Way};
 use super::stroboscopic::final_state;
-use crate::dynamics::{MapState, Model, Outcome, Place, Regime, Request, Side, Summary};
+use crate::dynamics::{MapState, Model, Outcome, Place, Regime, Request, Summary};
 use crate::numeric::decimals;
 use crate::study::{State, Table, Task};
 
@@ -84,11 +83,7 @@ impl Attractor {
     }
 }
 
-/// Results of a map of basins so far.
-///
-/// Starts that reach no attractor, or whose run ends early, have no number, and are counted.
-///
-/// [`BasinsAnswer`](crate::questions::BasinsAnswer) has it, with both of its tables.
+/// Results of a map of basins so far; [`BasinsAnswer`](crate::questions::BasinsAnswer) has both its tables.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Answer {
     /// The attractors in the order of their numbers, which begin at 1.
@@ -98,8 +93,7 @@ pub struct Answer {
     pub rows: Vec<Option<(u32, u32)>>,
     /// Number of starts outside the limits of displacement.
     pub outside: u64,
-    /// Whether the answer of each row is sure, see [`Basins`](crate::questions::Basins); empty if it was not
-    /// checked.
+    /// Whether the answer of each row is [sure](crate::questions::Basins); empty if it was not checked.
     pub sure: Vec<bool>,
     /// Number of starts whose run ended early.
     pub lost: u64,
@@ -227,8 +221,7 @@ impl Basins {
         Some(Answer { attractors, rows, sure: Vec::new(), outside, lost, spent, undecided })
     }
 
-    /// The sequence of releases from `release` on, and the fate that ends it: one that is not a release, or a
-    /// release of the sequence.
+    /// The sequence of releases from `release` on, and the fate that ends it: none of them, or one once more.
     pub(super) fn chain(&self, release: u32) -> (Vec<(u32, Way)>, Fate) {
         let (mut passed, mut at, mut way) = (Vec::new(), release, Way::default());
         loop {
@@ -267,16 +260,16 @@ impl Basins {
         match key {
             Key::Cycle(_) => settle = f64::from(settled) * period,
             Key::Kind(kind) => match &self.rounds.kinds[kind as usize] {
-                Kind::Orbit(orbit) => {
+                (Kind::Orbit(orbit), _) => {
                     let first = self.rounds.orbit_of.iter().position(|number| number == orbit)?;
                     start = self.rounds.captures[first].state;
                 }
-                Kind::Rest(side) => {
-                    let stops = self.model.stop_positions();
-                    let stop = if *side == Side::Left { stops.0 } else { stops.1 };
-                    start = MapState { x: stop.unwrap_or(start.x), v: 0.0, electrical };
+                (Kind::Rest(side), _) => {
+                    let x = self.model.stop(*side).map_or(start.x, |stop| stop.x);
+                    start = MapState { x, v: 0.0, electrical };
                 }
-                Kind::Judged(_, summary) => {
+                (Kind::Judged(_), summary) => {
+                    let summary = summary.as_ref()?;
                     return Some((**summary, vec![(summary.final_x, summary.final_v)]));
                 }
             },
@@ -289,8 +282,7 @@ impl Basins {
     }
 }
 
-/// The states of a settled motion after each of `count` forcing periods, beginning with the one farthest to
-/// the right.
+/// The states of a settled motion once a forcing period, beginning with the one farthest to the right.
 fn states(model: &Model, state: MapState, count: u32, period: f64) -> Vec<State> {
     let times: Vec<f64> = (0..count).map(|number| f64::from(number) * period).collect();
     let request = Request { sample_times: &times, ..Request::default() };

@@ -109,10 +109,9 @@ impl Basins {
         let (left, right) = mechanism.curve.domain();
         let within = |x_mm: f64| x_mm.clamp(left * 1e3, right * 1e3);
         let [left_stop, right_stop] = scene.stops.positions_mm();
-        let between = |x_mm: f64| {
-            let x_mm = left_stop.map_or(x_mm, |stop| x_mm.max(stop));
-            right_stop.map_or(x_mm, |stop| x_mm.min(stop))
-        };
+        let (left_stop, right_stop) =
+            (left_stop.unwrap_or(f64::NEG_INFINITY), right_stop.unwrap_or(f64::INFINITY));
+        let between = |x_mm: f64| x_mm.max(left_stop).min(right_stop);
         let middle = at(between(within(0.0)), 0.0, &scene.excitation)?;
         let excitation = shaken(scene, &middle);
         let excitation = excitation.as_ref().unwrap_or(&scene.excitation);
@@ -128,10 +127,8 @@ impl Basins {
             return Err(NoBasins::KeepsCharge);
         }
         let stops = model.stop_positions();
-        let room =
-            (stops.0.map_or(left, |stop| stop.max(left)), stops.1.map_or(right, |stop| stop.min(right)));
-        let levels = starts.levels();
-        let rounds = Rounds::new(starts.count());
+        let room = (stops.0.unwrap_or(left).max(left), stops.1.unwrap_or(right).min(right));
+        let (levels, rounds) = (starts.levels(), Rounds::new(starts.count()));
         let effort = Effort::of_starts(starts.count());
         let basins = Self { model, starts, levels, done: 0, room, rounds, effort };
         if !(0..basins.starts.count()).any(|row| is_inside(room, basins.starts.at(row).0)) {

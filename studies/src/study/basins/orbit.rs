@@ -36,8 +36,7 @@ const AROUND: usize = 16;
 /// Number of starts on the sphere that takes the place of a circle beside a circuit.
 const ON_SPHERE: usize = 96;
 
-/// Distance to an orbit below which a state has arrived there, as a share of the scales: the same as for a
-/// repetition of states.
+/// Distance to an orbit below which a state has arrived, as a share of the scales.
 const NEAR: f64 = 1e-3;
 
 /// Multiples of the period that are tried for the map around an orbit.

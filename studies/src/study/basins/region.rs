@@ -30,8 +30,7 @@ const MAX_CELLS: usize = 20_000;
 /// Largest number of rounds in which cells are added.
 const ROUNDS: usize = 40;
 
-/// A region around the irregular motion through `state`; `None` if there is none, or if a motion reaches a
-/// known orbit.
+/// A region around the irregular motion through `state`; `None` if there is none, or near a known orbit.
 pub(super) fn absorbing(scope: &Stroboscope, state: MapState, known: &[Capture]) -> Result<Option<Region>> {
     // the cells are those of a plane
     if scope.size() == 3 {

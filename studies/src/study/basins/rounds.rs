@@ -60,8 +60,7 @@ impl Item {
         whole.since(self.after.map_or(Way::default(), |(_, before)| before))
     }
 
-    /// The pursuit of the motion, which begins with this state of the circuit, with at most `max_work` units
-    /// of work.
+    /// The pursuit of the motion from this state of the circuit, with at most `max_work` units of work.
     pub fn pursuit<'a>(
         &self,
         starts: &Starts,
@@ -90,8 +89,7 @@ pub(super) const MAX_ROUND: usize = 8192;
 /// Largest number of searches for regions around motions of one kind.
 const MAX_SEARCHES: usize = 4;
 
-/// Number of motions of one verdict that may fail to be confirmed by their exponents, before others are no
-/// longer tested.
+/// Motions of one verdict that their exponents may fail to confirm before others are no longer tested.
 const MAX_UNCONFIRMED: usize = 4;
 
 /// Distance below which two proposals count as one, as a share of the scales.
@@ -99,36 +97,13 @@ const SAME_PROPOSAL: f64 = 1e-3;
 /// Distance below which a state lies on an unstable orbit, as a share of the scales.
 const ON_ORBIT: f64 = 1e-6;
 
+/// The verdict on a settled motion: all with the same one are one attractor.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Verdict {
-    /// A settled motion: all with the same regime, side and period (if any) are one attractor.
-    Settled {
-        regime: Regime,
-        side: Option<Place>,
-        /// Its period, if no ellipse could be found around it.
-        period: Option<u32>,
-    },
-    /// It ended early.
-    Lost,
-    /// Its attractor is not known.
-    Undecided,
-}
-
-/// The verdict from the summary of a pursuit, whose window is its last hundred forcing periods; `on_unstable`
-/// says whether it ended on an unstable orbit. A verdict without a period must be confirmed by the Lyapunov
-/// exponent of one such motion.
-///
-/// An exponent distinguishes irregular motion from motion that settles slowly, but not from a long irregular
-/// transient, whose length in a double well is random. So a motion is called irregular only after a thousand
-/// periods without another attractor.
-pub(super) fn verdict(summary: &Summary, on_unstable: bool) -> Verdict {
-    match summary.outcome {
-        Outcome::Done if on_unstable || summary.steady != Some(true) => Verdict::Undecided,
-        Outcome::Done => {
-            Verdict::Settled { regime: summary.regime, side: summary.side, period: summary.period }
-        }
-        _ => Verdict::Lost,
-    }
+pub(super) struct Verdict {
+    regime: Regime,
+    side: Option<Place>,
+    /// Its period, if no ellipse could be found around it.
+    period: Option<u32>,
 }
 
 /// What is known of the motion of a start. Indices are those of the lists of [`Rounds`].
@@ -148,24 +123,12 @@ pub(super) enum Fate {
 }
 
 /// A kind of motion that a start reaches without a release.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Kind {
     /// A stable orbit, by its index.
     Orbit(u32),
     Rest(Side),
-    /// A verdict of [`verdict`], and the summary of the first motion with it.
-    Judged(Verdict, Box<Summary>),
-}
-
-impl Kind {
-    fn is_same(&self, other: &Self) -> bool {
-        match (self, other) {
-            (Self::Orbit(number), Self::Orbit(other)) => number == other,
-            (Self::Rest(side), Self::Rest(other)) => side == other,
-            (Self::Judged(verdict, _), Self::Judged(other, _)) => verdict == other,
-            _ => false,
-        }
-    }
+    Judged(Verdict),
 }
 
 #[derive(Debug, Clone, PartialEq)]
@@ -177,7 +140,8 @@ pub(super) struct Release {
 #[derive(Debug, Default)]
 pub(super) struct Rounds {
     pub fates: Vec<Fate>,
-    pub kinds: Vec<Kind>,
+    /// The kinds, each that was judged with the summary of the first such motion.
+    pub kinds: Vec<(Kind, Option<Box<Summary>>)>,
     pub releases: Vec<Release>,
     /// States of stable orbits with their ellipses.
     pub captures: Vec<Capture>,
@@ -205,13 +169,13 @@ impl Rounds {
         Self { fates, next_round: FIRST_ROUND, remaining: starts, ..Self::default() }
     }
 
-    fn known_kind(&self, kind: &Kind) -> Option<u32> {
-        self.kinds.iter().position(|known| known.is_same(kind)).map(|place| place as u32)
+    fn known_kind(&self, kind: Kind) -> Option<u32> {
+        self.kinds.iter().position(|(known, _)| *known == kind).map(|place| place as u32)
     }
 
-    fn kind(&mut self, kind: Kind) -> u32 {
-        self.known_kind(&kind).unwrap_or_else(|| {
-            self.kinds.push(kind);
+    fn kind(&mut self, kind: Kind, summary: Option<Box<Summary>>) -> u32 {
+        self.known_kind(kind).unwrap_or_else(|| {
+            self.kinds.push((kind, summary));
             self.kinds.len() as u32 - 1
         })
     }
@@ -233,9 +197,9 @@ impl Rounds {
     fn note(&mut self, item: Item, pursued: Pursued, scope: &Stroboscope) -> Option<Item> {
         let way = item.way(pursued.periods.unwrap_or(PATIENCE), pursued.crossings);
         let fate = match pursued.arrival {
-            Arrival::Captured(which) => Fate::Kind(self.kind(Kind::Orbit(self.orbit_of[which])), way),
+            Arrival::Captured(which) => Fate::Kind(self.kind(Kind::Orbit(self.orbit_of[which]), None), way),
             Arrival::Entered(which) => Fate::Kind(self.region_of[which], way),
-            Arrival::Rests(side) => Fate::Kind(self.kind(Kind::Rest(side)), way),
+            Arrival::Rests(side) => Fate::Kind(self.kind(Kind::Rest(side), None), way),
             Arrival::Released(identity) => {
                 let (place, new) = self.release(identity);
                 self.put(item, Fate::Release(place, way));
@@ -246,9 +210,8 @@ impl Rounds {
                 return Some(Item { repeats_from: 2 * pursued.periods?, ..item });
             }
             Arrival::Unsettled(summary) => match self.verdict(&summary, scope) {
-                Verdict::Lost => Fate::Lost { spent: matches!(summary.outcome, Outcome::StepBudget { .. }) },
-                Verdict::Undecided => Fate::Undecided,
-                settled @ Verdict::Settled { .. } => self.judged(settled, summary, scope, way),
+                Ok(verdict) => self.judged(verdict, summary, scope, way),
+                Err(fate) => fate,
             },
         };
         self.put(item, fate);
@@ -259,11 +222,12 @@ impl Rounds {
     pub fn known_fate(&self, item: &Item, pursued: &Pursued, scope: &Stroboscope) -> Option<Fate> {
         let way = item.way(pursued.periods.unwrap_or(PATIENCE), pursued.crossings);
         let kind = match &pursued.arrival {
-            Arrival::Captured(which) => self.known_kind(&Kind::Orbit(self.orbit_of[*which])),
+            Arrival::Captured(which) => self.known_kind(Kind::Orbit(self.orbit_of[*which])),
             Arrival::Entered(which) => Some(self.region_of[*which]),
-            Arrival::Rests(side) => self.known_kind(&Kind::Rest(*side)),
+            Arrival::Rests(side) => self.known_kind(Kind::Rest(*side)),
             Arrival::Unsettled(summary) => {
-                self.known_kind(&Kind::Judged(self.verdict(summary, scope), summary.clone()))
+                let verdict = self.verdict(summary, scope).ok();
+                verdict.and_then(|verdict| self.known_kind(Kind::Judged(verdict)))
             }
             Arrival::Released(identity) => {
                 return self.known_release(*identity).map(|place| Fate::Release(place, way));
@@ -273,26 +237,33 @@ impl Rounds {
         kind.map(|kind| Fate::Kind(kind, way))
     }
 
-    /// The verdict on a motion that has reached no known attractor.
-    fn verdict(&self, summary: &Summary, scope: &Stroboscope) -> Verdict {
+    /// The verdict on a motion that has reached no known attractor, from the summary of its pursuit, whose
+    /// window is its last hundred forcing periods; its fate if it ended early or its attractor is not known.
+    fn verdict(&self, summary: &Summary, scope: &Stroboscope) -> Result<Verdict, Fate> {
+        let Summary { outcome, steady, regime, side, period, .. } = *summary;
         let end = final_state(summary);
-        verdict(summary, self.unstable.iter().any(|state| is_near(scope, *state, end, ON_ORBIT)))
+        let on_unstable = self.unstable.iter().any(|state| is_near(scope, *state, end, ON_ORBIT));
+        match outcome {
+            Outcome::Done if on_unstable || steady != Some(true) => Err(Fate::Undecided),
+            Outcome::Done => Ok(Verdict { regime, side, period }),
+            _ => Err(Fate::Lost { spent: matches!(outcome, Outcome::StepBudget { .. }) }),
+        }
     }
 
     /// The fate of a motion that was classified. The exponent of the first motion without a period, or of one
-    /// of the next few, must confirm that it is irregular, since it may only settle slowly.
+    /// of the next few, must confirm that it is irregular, since it may only settle slowly. An exponent does
+    /// not distinguish it from a long irregular transient, whose length in a double well is random: so a
+    /// motion is called irregular only after a thousand periods without another attractor.
     fn judged(&mut self, verdict: Verdict, summary: Box<Summary>, scope: &Stroboscope, way: Way) -> Fate {
-        let repeats = matches!(verdict, Verdict::Settled { period: Some(_), .. });
-        let state = final_state(&summary);
-        let kind = Kind::Judged(verdict, summary);
-        if !repeats && self.known_kind(&kind).is_none() {
+        let kind = Kind::Judged(verdict);
+        if verdict.period.is_none() && self.known_kind(kind).is_none() {
             let doubts = self.doubted.iter().filter(|other| **other == verdict).count();
-            if doubts >= MAX_UNCONFIRMED || !scope.is_irregular(state) {
+            if doubts >= MAX_UNCONFIRMED || !scope.is_irregular(final_state(&summary)) {
                 self.doubted.push(verdict);
                 return Fate::Undecided;
             }
         }
-        Fate::Kind(self.kind(kind), way)
+        Fate::Kind(self.kind(kind, Some(summary)), way)
     }
 
     fn put(&mut self, item: Item, fate: Fate) {
@@ -328,15 +299,11 @@ impl Rounds {
         Ok(())
     }
 
-    /// Searches for a region around the irregular motion that an item reaches and that passes through
-    /// `state`.
+    /// Searches for a region around the irregular motion through `state` that an item reaches.
     fn surround(&mut self, scope: &Stroboscope, item: Item, state: MapState) -> Result<()> {
         let fate = item.after.map_or(self.fates[item.row], |after| self.releases[after.0 as usize].next);
         let Fate::Kind(kind, _) = fate else { return Ok(()) };
-        let irregular = match &self.kinds[kind as usize] {
-            Kind::Judged(Verdict::Settled { period, .. }, _) => period.is_none(),
-            _ => false,
-        };
+        let irregular = matches!(self.kinds[kind as usize].0, Kind::Judged(Verdict { period: None, .. }));
         let searches = self.searches.iter().filter(|searched| **searched == kind).count();
         if !irregular || searches >= MAX_SEARCHES || self.is_surrounded(state) {
             return Ok(());

@@ -1,11 +1,10 @@
-//! The stroboscopic map of a model, computed by runs of whole forcing periods, and the budget of work of a
-//! map of basins.
+//! The stroboscopic map of a model, by runs of whole periods, and the budget of work of a map of basins.
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use crate::dynamics::{Arrival, MapState, Model, Outcome, Pursued, Pursuit, Request, Sample, Summary};
 use crate::study::orbit::Units;
-use crate::study::{Cancelled, ExponentOptions, Result, average_exponents};
+use crate::study::{Cancelled, ExponentOptions, Result, average_exponents, finished};
 use crate::system::threads::{Pool, UnderWay, share};
 
 /// A displacement, a velocity and the state of a circuit (0 without one) in units of the scene's scales.
@@ -95,20 +94,15 @@ impl Stroboscope<'_> {
             let model = self.model.with_start(starts[number]).with_duration(last, last);
             let kept = &times[skipped.min(times.len())..];
             let request = Request { sample_times: kept, cancel: Some(self.cancel), ..Request::default() };
-            let run = model.run(&request);
-            match run.summary.outcome {
-                Outcome::Done => Ok(Some(run.samples)),
-                Outcome::Cancelled { .. } => Err(Cancelled),
-                _ => Ok(None),
-            }
+            let run = finished(model.run(&request)).ok_or(Cancelled)?;
+            Ok((run.summary.outcome == Outcome::Done).then_some(run.samples))
         };
         let all: Option<Vec<_>> = self.pool.map(starts.len(), || (), path)?.into_iter().collect();
         let state = |&Sample { x, v, electrical, .. }: &Sample| MapState { x, v, electrical };
         Ok(all.map(|paths| paths.iter().flatten().map(state).collect()))
     }
 
-    /// Whether the Lyapunov exponent of the motion through a state shows that it is irregular; false if too
-    /// little work is left.
+    /// Whether the motion through a state is irregular by its Lyapunov exponent; false without work left.
     pub fn is_irregular(&self, state: MapState) -> bool {
         if !self.effort.has_room_for(WITH_DERIVATIVES * u64::from(ExponentOptions::PERIODS)) {
             return false;
@@ -149,8 +143,7 @@ pub(super) fn final_state(summary: &Summary) -> MapState {
     MapState { x: summary.final_x, v: summary.final_v, electrical: summary.final_electrical }
 }
 
-/// Units of work for the orbits and regions of a map: enough for some ellipses of an orbit of 12 periods that
-/// passes a kink.
+/// Units of work for orbits and regions: some ellipses of an orbit of 12 periods that passes a kink.
 const MAP_WORK: u64 = 20_000_000_000;
 
 /// Units of work per start: four times those of the prototype over 1000 forcing periods.

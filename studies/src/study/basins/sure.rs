@@ -14,8 +14,7 @@ use crate::scene::TOLERANCES;
 use crate::study::{Result, Task};
 use crate::system::threads::Pool;
 
-/// Factor on the tolerance for the second run of a start; its inverse if the product exceeds the largest
-/// tolerance.
+/// Factor on the tolerance for the second run of a start, or its inverse if that is beyond the largest one.
 const FACTOR: f64 = 10.0;
 
 impl Basins {
@@ -133,7 +132,7 @@ impl Basins {
     fn is_same(&self, first: Fate, before: Way, again: Option<Fate>, alone: bool) -> bool {
         match (first, again) {
             (Fate::Kind(kind, way), Some(Fate::Kind(other, now))) if kind == other => {
-                let judged = matches!(self.rounds.kinds[kind as usize], Kind::Judged(..));
+                let judged = matches!(self.rounds.kinds[kind as usize].0, Kind::Judged(_));
                 let longest = way.periods.max(now.periods).saturating_add(before.periods);
                 // the counts of an irregular motion that was followed to the end have no meaning
                 let ended = judged && u64::from(longest) >= PATIENCE;

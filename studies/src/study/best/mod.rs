@@ -70,8 +70,7 @@ pub struct Environment {
     pub files: Files,
 }
 
-/// A field that varies about its value: within a tolerance to both sides of it ([`best`]), or with a standard
-/// deviation (`Draws`).
+/// A field that varies about its value: within a tolerance ([`best`]) or with a deviation (`Draws`).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Variation {
     /// Dotted path of the field.
@@ -108,9 +107,7 @@ pub const MOST_FIELDS: usize = 4;
 /// Numbers of intervals of the scan for one to four fields.
 pub const INTERVALS: [usize; MOST_FIELDS] = [256, 32, 12, 8];
 
-/// A design and its results.
-///
-/// The values of the fields are in their units and in the order of the question's fields.
+/// A design and its results; the values of the fields are in their units and in the order of the question.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Optimum {
     /// The fields' values.
@@ -126,8 +123,7 @@ pub struct Optimum {
 pub struct Tried {
     /// The fields' values.
     pub at: Vec<f64>,
-    /// The mean of the maximised result; `None` if a run ended early, a result is missing, or the design is
-    /// no valid scene.
+    /// The mean of the maximised result; `None` if a run ended early or without it, or for no valid scene.
     pub value: Option<f64>,
     /// Whether no constraint is known to be violated.
     pub keeps: bool,
@@ -179,8 +175,7 @@ pub enum NoBest {
     Invalid(Vec<Fault>),
     /// No design has the maximised result and those of the constraints.
     NoValue,
-    /// No design meets the constraints; the nearest one, and its results in the environment with the largest
-    /// violation.
+    /// No design meets the constraints; the nearest one, and its results in the worst environment.
     NoneMeets {
         /// The fields' values.
         nearest: Vec<f64>,

@@ -10,8 +10,7 @@ use crate::study::grid::places;
 /// Stride of the coarse scan before the full one.
 const COARSE: usize = 4;
 
-/// Number of best designs that are refined, since a narrow window may have a higher maximum than the scan
-/// shows.
+/// Number of best designs that are refined, since the scan may miss the maximum of a narrow window.
 const REFINED: usize = 5;
 
 /// Numbers of intervals on each side of the middle in a refinement, for one to four fields.

@@ -112,6 +112,8 @@ mod tests {
             ("c_n_s_per_m", "2 N s/m"),
             ("rms_velocity_m_per_s", "2 m/s"),
             ("mean_load_power_w", "2 W"),
+            ("yield_gpa", "2 GPa"),
+            ("amplitude_g", "2 g"),
             ("impacts", "2"),
             ("coefficients_si.2", "2"),
         ] {

@@ -54,18 +54,12 @@ words! {
 }
 
 /// Kramers' rate in 1/s of the escape from the well in which the model starts over its barrier into the well
-/// behind it; the condition that fails where it does not hold.
+/// behind it; of its conditions ([`NoKramers`]) the one that fails where it does not hold.
 ///
 /// With the rates w_0 of the well and w_b of the barrier, g = c/m and the height E of the barrier over the
 /// well, the rate is (sqrt(g^2/4 + w_b^2) - g/2)/w_b * w_0/(2 pi) * exp(-E/k_B T) (Kramers 1940; Hänggi,
 /// Talkner and Borkovec 1990, equation 4.33), times the factor of [`depopulation`] that leads over to weak
 /// damping. Its relative error is of the order k_B T/E.
-///
-/// It holds if the excitation is one noise alone whose band begins below a 30th of the slowest rate of the
-/// motion, ends above ten times w_0, w_b and g, and has at least eight lines in the width of the response;
-/// if E and the height over the other well are at least 3 k_B T; if damping is linear and above 0 and no
-/// circuit takes part; if the curve has no kink near the well and the barrier; if stops and ends of a table
-/// lie behind the wells, higher than the barrier; and if the well has one barrier.
 pub fn kramers_rate(model: &Model) -> Result<f64, NoKramers> {
     let (mass, damping) = (model.mass(), model.total_damping());
     let landscape = &model.mechanism().landscape;

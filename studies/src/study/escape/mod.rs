@@ -4,10 +4,9 @@
 //! of the runs can be repeated alone with that seed, the runs do not depend on threads, and all cells of a
 //! grid have the same random numbers, whose scatter then hardly shows in the differences between cells.
 //!
-//! A run begins in the start of the scene and ends with its escape, or at the time `within`. Waiting times
-//! that are cut short count: the estimate of the rate is the number of escapes over the time observed
-//! ([`Rate`]). It assumes exponential waiting times, which hold once the time to escape is much longer than
-//! the time in which the motion forgets its start.
+//! A run begins in the start of the scene and ends with its escape, or at the time `within`. The estimate of
+//! the rate ([`Rate`]) assumes exponential waiting times, which hold once the time to escape is much longer
+//! than the time in which the motion forgets its start.
 
 mod kramers;
 mod probability;
@@ -18,11 +17,11 @@ use std::sync::atomic::AtomicBool;
 use super::grid_study::{Built, Cells};
 use super::thresholds::NoThresholds;
 use super::walk::{choice_fault, excitation_fault};
-use super::{Cancelled, Grid, Table, Task};
+use super::{Cancelled, Table, Task};
 use crate::dynamics::{Model, Outcome, Request};
 use crate::mechanics::Mechanism;
 use crate::numeric::{Rate, Waiting, median};
-use crate::scene::{Excitation, Fault, Files, Scene, Start};
+use crate::scene::{Excitation, Fault, Scene, Start};
 use crate::system::threads::Pool;
 pub use kramers::{NoKramers, depopulation, kramers_rate};
 pub use probability::{Chance, probable_threshold_table};
@@ -64,19 +63,14 @@ struct Waited {
 /// The waiting times of a cell, and its rate by Kramers; `None` if the mechanism was not solved.
 type Escapes = Option<(Vec<Waited>, Result<f64, NoKramers>)>;
 
-/// Escapes in every cell of `grid`: the swept fields, then the columns
-/// `runs,escaped,ended_early,observed_s`, the rate, the mean and the median of the waiting times, each with
-/// its interval, `kramers_rate_per_s` and `kramers_fails`. Ticks for each run. All cells are checked before
-/// the first run.
+/// Escapes in every cell, with the columns of [`Escape`](crate::questions::Escape). Ticks for each
+/// run. All cells are checked before the first run.
 pub fn escape_table(
-    scene: &Scene,
-    files: &Files,
-    grid: &Grid,
+    cells: &Cells,
     options: &EscapeOptions,
     pool: &Pool,
     task: &Task,
 ) -> Result<Table, NoThresholds> {
-    let cells = Cells::new(scene, files, grid.clone());
     let fault = |scene: &Scene, mechanism: &Arc<Mechanism>| {
         let prepared = prepared(scene, 0, options.within);
         match Model::build(&prepared, Arc::clone(mechanism)) {
@@ -107,7 +101,7 @@ pub fn escape_table(
     let of_cell = |cell: &[Option<Waited>]| cell.iter().copied().collect::<Option<Vec<Waited>>>();
     let found: Vec<Escapes> =
         waited.chunks(runs).map(of_cell).zip(rates).map(|(waited, rate)| waited.zip(rate)).collect();
-    Ok(with_columns(grid.table(|| 0..grid.cells()), options, &found))
+    Ok(with_columns(cells.table(), options, &found))
 }
 
 fn with_columns(table: Table, options: &EscapeOptions, found: &[Escapes]) -> Table {

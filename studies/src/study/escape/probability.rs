@@ -6,11 +6,11 @@
 
 use super::{Until, escape_fault, prepared, waited};
 use crate::numeric::QuantileRanks;
-use crate::scene::{Files, Scene};
+use crate::scene::Scene;
 use crate::study::bisection::between;
 use crate::study::grid_study::{Built, Cells};
 use crate::study::thresholds::{faults, from_rest};
-use crate::study::{Cancelled, Family, Grid, NoThresholds, Onset, Scan, Table, Task};
+use crate::study::{Cancelled, Family, NoThresholds, Onset, Scan, Table, Task};
 use crate::system::threads::Pool;
 
 /// The share of runs that are to cross, their number and their time.
@@ -28,31 +28,25 @@ pub struct Chance {
 /// end of the range, and `None` if the mechanism was not solved.
 type Firsts = Option<Vec<f64>>;
 
-/// The thresholds in probability of every cell of `grid`: the swept fields, then
-/// `of,probability,value,low,high,runs,crossed`. All runs begin at rest. The thresholds of the runs are
-/// multiples of the resolution of `scan`, of whose values only the first and the last are used.
-///
-/// The bisection assumes that a run which crosses at a value crosses at all higher ones. Where that is not
-/// so, it finds one of the values of the range at which the answer changes. Ticks for each run.
+/// The thresholds in probability of every cell, with the columns of
+/// [`ProbableThreshold`](crate::questions::ProbableThreshold). Those of the runs are multiples of the
+/// resolution of `scan`, of whose values only the first and the last are used. Ticks for each run.
 pub fn probable_threshold_table(
-    scene: &Scene,
-    files: &Files,
-    grid: &Grid,
+    cells: &Cells,
     scan: &Scan,
     chance: &Chance,
     pool: &Pool,
     task: &Task,
 ) -> Result<Table, NoThresholds> {
-    let cells = Cells::new(scene, files, grid.clone());
     cells.check(pool, task, |scene, mechanism| {
         let prepared = prepared(&from_rest(scene), 0, chance.within);
-        faults(&prepared, mechanism, files, scan, |model| escape_fault(model, &prepared))
+        faults(&prepared, mechanism, &cells.files, scan, |model| escape_fault(model, &prepared))
     })?;
     let first = |scene: &Scene, built: Built, run: u64| {
         let found = match built {
             Ok(mechanism) => {
                 let prepared = prepared(&from_rest(scene), run, chance.within);
-                let family = Family::new(&prepared, files, &mechanism, &scan.field);
+                let family = Family::new(&prepared, &cells.files, &mechanism, &scan.field);
                 Some(least(&family, scan, task)?)
             }
             Err(_) => None,
@@ -75,8 +69,8 @@ pub fn probable_threshold_table(
             Some(value).filter(|value| value.is_finite())
         }
     };
-    Ok(grid
-        .table(|| 0..grid.cells())
+    Ok(cells
+        .table()
         .each("of", &found, |_| Onset::Crossing.name())
         .each("probability", &found, |_| chance.probability)
         .each("value", &found, at(Some(ranks.value)))

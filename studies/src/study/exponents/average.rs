@@ -8,14 +8,12 @@ use super::{Estimate, Exponents, NoExponents};
 use crate::dynamics::{Jacobian, MapState, Model};
 use crate::numeric::{CompensatedSum, elementary};
 
-/// Number of forcing periods before the average, in which a perturbation turns into the direction of fastest
-/// growth.
+/// Forcing periods before the average, in which a perturbation turns into the direction of fastest growth.
 const ALIGNMENT: u32 = 20;
 
 /// The exponents of the motion through `state`, such as `(x, v)` without a circuit, at a
 /// [`phase`](Model::drive_phase) of the drive from 0 to 1, averaged over `periods` forcing periods, at least
-/// 1, from this state on: transients are included, and periodic orbits get no special treatment. Without a
-/// drive, a period is the natural time of the mechanism.
+/// 1, from this state on. Without a drive, a period is the natural time of the mechanism.
 ///
 /// Standard errors are those of batch means, with the square root of the number of periods as the number of
 /// batches (Flegal and Jones 2010). They are valid if correlations decay within a batch.

@@ -146,8 +146,7 @@ fn with_columns(mut table: Table, found: &[Found], has_circuit: bool) -> Table {
 pub struct ExponentOptions {
     /// Number of forcing periods over which exponents of a motion without a period are averaged, at least 1.
     pub periods: u32,
-    /// Time in s up to which a run may continue until its motion repeats; by default 1000 periods beyond the
-    /// run.
+    /// Time in s up to which a run may continue until it repeats; by default 1000 periods beyond the run.
     pub until_settled: Option<f64>,
     /// Whether the cells of a grid may have a circuit, so that the table has the columns of a third exponent.
     pub circuits: bool,
@@ -169,8 +168,7 @@ impl Default for ExponentOptions {
 pub struct Estimate {
     /// The value in 1/s; minus infinity if perturbations vanish completely, NaN if it is not known.
     pub per_s: f64,
-    /// Its standard error in 1/s: 0 for a periodic orbit or a value of minus infinity, NaN for too few
-    /// periods.
+    /// Its standard error in 1/s: 0 for a periodic orbit or minus infinity, NaN for too few periods.
     pub error: f64,
 }
 
@@ -191,16 +189,14 @@ impl Estimate {
 pub struct Exponents {
     /// The larger one.
     pub first: Estimate,
-    /// The second one. NaN if stops are compliant and the contraction is too strong to be computed from the
-    /// derivatives.
+    /// The second one. NaN if stops are compliant and the contraction is lost in rounding.
     pub second: Estimate,
     /// The smallest one beside a circuit; otherwise `None`.
     pub third: Option<Estimate>,
     /// Their sum in 1/s from the determinants of the derivatives. NaN if areas contract so much in a forcing
     /// period that a determinant, the difference of two products, is lost in rounding.
     pub sum: f64,
-    /// Their sum in 1/s from damping and impacts; `None` with compliant stops, whose loss is not known in
-    /// advance.
+    /// Their sum in 1/s from damping and impacts; `None` with compliant stops, whose loss varies.
     pub exact_sum: Option<f64>,
     /// Period of the orbit in forcing periods; `None` for averages.
     pub period: Option<u32>,

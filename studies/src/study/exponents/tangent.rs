@@ -47,19 +47,14 @@ impl Passed {
 }
 
 impl Tangent {
-    /// The map over one period, beginning at a phase of the drive in forcing periods; without a drive, over
-    /// the natural time.
+    /// The map over one period from a phase of the drive; without a drive, over the natural time.
     pub fn of(model: &Model, phase: f64) -> Result<Self, NoExponents> {
         let map = match model.stroboscopic_map(phase) {
             Some(map) => map,
             None if model.excitation().is_constant() => StroboscopicMap::over(model, model.natural_time()),
             None => return Err(NoExponents::NoPeriod),
         };
-        let stops = model.stops();
-        let kept = |side: Side| {
-            let pair = stops.and_then(|pair| if side == Side::Left { pair.left } else { pair.right });
-            2.0 * elementary::ln(pair.map_or(1.0, |stop| stop.restitution))
-        };
+        let kept = |side: Side| 2.0 * elementary::ln(model.stop(side).map_or(1.0, |stop| stop.restitution));
         let struck = model.compliant().is_none().then(|| [Side::Left, Side::Right].map(kept));
         let damped = model.contraction(map.period());
         Ok(Self { units: Units::of(model, 1.0), map, damped, struck })
@@ -94,8 +89,7 @@ impl Tangent {
         Ok(Passed { state: (&passage).into(), jacobian, measured, exact, rested })
     }
 
-    /// Logarithm of the determinant of a part of a period; `None` if the determinant is below the share
-    /// `least` of its products.
+    /// Logarithm of the determinant of a part of a period; `None` below the share `least` of its products.
     fn logarithm(&self, passage: &Passage, derivative: &Jacobian, share: f64, least: f64) -> Option<f64> {
         let determinant = derivative.determinant().abs();
         let exact = passage.determinant.unwrap_or_else(|| elementary::exp(self.damped * share));

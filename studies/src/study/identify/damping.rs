@@ -33,10 +33,7 @@ const CLEAR: f64 = 1.5;
 /// line through the times of the turning points, with an offset between maxima and minima. Intervals are
 /// 95 %, from the scatter of the turning points about envelope and line.
 ///
-/// The fit begins after the last flat top of a clipped record, otherwise at the largest oscillation. Rows:
-/// `turns,from_s,to_s,amplitude,damping_ratio,damping_ratio_low,damping_ratio_high,frequency_hz,
-/// frequency_low_hz,frequency_high_hz,decay_per_s,decay_low_per_s,decay_high_per_s`, each for about eight
-/// turning points in order of time; the name of the amplitude column ends with the unit of the channel.
+/// The fit begins after the last flat top of a clipped record, otherwise at the largest oscillation.
 pub fn damping(times: &[f64], channel: &Channel) -> Result<Identified, Unidentified> {
     let flat = clipped(&channel.values);
     let begin = flat.map_or(0, |flat| flat.last + 1);
@@ -51,8 +48,7 @@ pub fn damping(times: &[f64], channel: &Channel) -> Result<Identified, Unidentif
     let swing = |k: usize| (values[all[k + 1].at] - values[all[k].at]).abs();
     let swings = all.len().saturating_sub(1);
     let largest = (0..swings).rev().max_by(|a, b| swing(*a).total_cmp(&swing(*b))).unwrap_or(0);
-    // an oscillation near the range of the noise may be missed, and its neighbours would appear as one long
-    // oscillation
+    // a swing near the range of the noise may be missed, and its neighbours appear as a long one
     let clear = (largest..swings).take_while(|k| swing(*k) > CLEAR * back).count();
     let turns = &all[largest.min(all.len())..(largest + clear + 1).min(all.len())];
     if turns.len() < MIN_TURNS {
@@ -212,8 +208,7 @@ fn natural(frequency: Identity, damping: Identity) -> Identity {
     Identity { name: "natural_frequency_hz", value, interval: (value - low, value + high) }
 }
 
-/// Whether the numbers of the rows differ from that of the whole record by more than their intervals and more
-/// than a negligible amount.
+/// Whether rows differ from the whole record by more than their intervals and a negligible amount.
 fn differ(rows: impl ExactSizeIterator<Item = Identity>, whole: f64) -> bool {
     let chance = 1 + rows.len() / 5;
     let apart = |row: &Identity| (row.value - whole).abs() > NEGLIGIBLE * whole.abs();
@@ -227,10 +222,7 @@ fn table(rows: &[Decay], amplitude: &str) -> Table {
         .each("from_s", rows, |row| row.span.0)
         .each("to_s", rows, |row| row.span.1)
         .each(amplitude, rows, |row| row.amplitude);
-    let ratios = ["damping_ratio", "damping_ratio_low", "damping_ratio_high"];
-    let frequencies = ["frequency_hz", "frequency_low_hz", "frequency_high_hz"];
-    let decays = ["decay_per_s", "decay_low_per_s", "decay_high_per_s"];
-    let table = with_interval(table, ratios, rows, |row| row.ratio);
-    let table = with_interval(table, frequencies, rows, |row| row.frequency);
-    with_interval(table, decays, rows, |row| row.rate)
+    let table = with_interval(table, "damping_ratio", rows, |row| row.ratio);
+    let table = with_interval(table, "frequency_hz", rows, |row| row.frequency);
+    with_interval(table, "decay_per_s", rows, |row| row.rate)
 }

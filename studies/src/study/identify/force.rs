@@ -65,13 +65,11 @@ struct Curve {
 /// measured, in one direction or in both, any number of times.
 ///
 /// The curve has `points` even positions over the range that all directions cover, by default the largest
-/// number up to [`FORCE_POINTS`] for which the samples are enough. At each a cubic is fitted
-/// by least squares to the samples of one direction up to the neighbouring points, or up to a kink beside an
-/// equilibrium. The force is the mean of both directions, half their difference the friction. The equilibria
-/// are fitted separately (see `Rest::near`). Intervals are 95 %, from the residuals of the fits.
-///
-/// Rows, as a table mechanism reads them:
-/// `x_m,force_n,force_low_n,force_high_n,force_rising_n,force_falling_n`.
+/// number up to [`FORCE_POINTS`] for which the samples are enough. At each a cubic is fitted by least squares
+/// to the samples of one direction up to the neighbouring points, or up to a kink beside an equilibrium. The
+/// force is the mean of both directions, half their difference the friction. The equilibria are fitted
+/// separately (see `Rest::near`). Intervals are 95 %, from the residuals of the fits. A table mechanism reads
+/// the rows.
 pub fn force(x: &[f64], force: &[f64], points: Option<usize>) -> Result<Identified, Unidentified> {
     let [rising, falling] = directions(x, force);
     let pulls: Vec<&Pull> = [&rising, &falling].into_iter().filter(|pull| !pull.is_empty()).collect();
@@ -103,7 +101,7 @@ pub fn force(x: &[f64], force: &[f64], points: Option<usize>) -> Result<Identifi
         }
     };
     let rows = Table::new().each("x_m", &curve.positions, |x| *x);
-    let rows = with_interval(rows, ["force_n", "force_low_n", "force_high_n"], &curve.mean, |(force, _)| {
+    let rows = with_interval(rows, "force_n", &curve.mean, |(force, _)| {
         Identity::new("force_n", force.value, force.half())
     })
     .with("force_rising_n", forces(&rising, 0))

@@ -14,6 +14,7 @@ pub use restitution::{restitution, restitution_of_times};
 use super::{Table, label_and_unit};
 use crate::numeric::{MIN_TURNS, elementary, extent, short};
 pub(super) use crate::numeric::{Turn, turns};
+use crate::scene::unit_ending;
 use peaks::MIN_SAMPLES;
 use restitution::ENOUGH;
 
@@ -47,10 +48,13 @@ impl Identity {
     }
 }
 
-/// The table with three more columns: a number for each row and the ends of its interval.
-fn with_interval<R>(table: Table, names: [&str; 3], rows: &[R], of: impl Fn(&R) -> Identity) -> Table {
-    let table = table.each(names[0], rows, |row| of(row).value);
-    table.each(names[1], rows, |row| of(row).interval.0).each(names[2], rows, |row| of(row).interval.1)
+/// The table with three more columns: a number for each row and the ends of its interval, whose names have
+/// `_low` and `_high` before the unit.
+fn with_interval<R>(table: Table, name: &str, rows: &[R], of: impl Fn(&R) -> Identity) -> Table {
+    let (unit, _) = unit_ending(name).unwrap_or_default();
+    let end = |end: &str| format!("{}_{end}{unit}", name.strip_suffix(unit).unwrap_or(name));
+    let table = table.each(name, rows, |row| of(row).value).each(&end("low"), rows, |row| of(row).interval.0);
+    table.each(&end("high"), rows, |row| of(row).interval.1)
 }
 
 /// The quantities identified from a record.

@@ -4,7 +4,7 @@ use nalgebra::SVector;
 
 use super::Identity;
 use super::force::{Known, Pull, within};
-use crate::numeric::regression::{Fit, least_squares};
+use crate::numeric::regression::{Fit, least_squares, powers};
 use crate::numeric::{bisect, elementary, golden_section};
 
 /// Shares of the range, on each side of an equilibrium, over which the force is fitted.
@@ -164,8 +164,7 @@ impl Near {
     /// The fit to samples over u, with a kink there; `None` if they are too few.
     fn fit(samples: &[(f64, f64)], centre: f64, reach: f64, kink: Option<f64>) -> Option<Self> {
         let Some(kink) = kink else {
-            let smooth =
-                |(u, force): &(f64, f64)| (std::array::from_fn(|k| elementary::powi(*u, k as i32)), *force);
+            let smooth = |(u, force): &(f64, f64)| (powers(*u), *force);
             let fit = least_squares(&samples.iter().map(smooth).collect::<Vec<_>>())?;
             let enough = fit.freedom >= MIN_FREEDOM;
             let fit = Polynomial::Smooth(Box::new(fit));
@@ -200,8 +199,7 @@ impl Near {
         Known { value: value / unit, error: error / unit, freedom }
     }
 
-    /// Integral of the force in J: by Gauss's rule with two points on each side of the kink, exact for
-    /// cubics.
+    /// Integral of the force in J: by Gauss's rule with two points on each side of the kink.
     fn work(&self, from: f64, to: f64) -> Known {
         let inner = self.kink.filter(|kink| (*kink - from) * (*kink - to) < 0.0);
         let ends: Vec<f64> = [Some(from), inner, Some(to)].into_iter().flatten().collect();

@@ -35,8 +35,7 @@ pub struct Lack {
     pub found: Value,
 }
 
-/// The first condition of the goal of a step that `subject` does not meet; `before` is the scene at the start
-/// of the step.
+/// The first condition of the goal of a step that `subject` does not meet; `before` began the step.
 pub fn goal_lack(step: &Step, subject: &Subject, before: &Subject) -> Result<Option<Lack>, Unjudged> {
     let Step::Do { goal, .. } = step else { return Ok(None) };
     Judge { subject, before, from: None }.lack(goal)
@@ -105,8 +104,7 @@ impl Judge<'_> {
         Ok(Some(Lack { asked: condition.clone(), found }))
     }
 
-    /// Number of these conditions that hold. All are evaluated, so that the runs do not depend on the
-    /// results.
+    /// Number of these conditions that hold; all are evaluated, so that the runs do not depend on results.
     fn count(&self, parts: &[Condition]) -> Result<usize, Unjudged> {
         let verdicts = parts.iter().map(|part| self.holds(part)).collect::<Result<Vec<_>, _>>()?;
         Ok(verdicts.into_iter().filter(|holds| *holds).count())

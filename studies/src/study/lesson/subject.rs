@@ -121,8 +121,7 @@ impl<'a> Subject<'a> {
         })
     }
 
-    /// The values at which the motion starts to cross on the upward walk and stops crossing on the downward
-    /// walk.
+    /// The values at which the motion starts to cross on the upward walk and stops on the downward walk.
     pub(super) fn turns(&self) -> Result<[Option<f64>; 2], Unjudged> {
         let turns = once(&self.turns, || {
             let Axis { field, values, .. } = self.axis()?;

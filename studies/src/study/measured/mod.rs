@@ -7,8 +7,8 @@ use std::sync::atomic::AtomicBool;
 
 use serde::{Deserialize, Serialize};
 
-use super::Table;
-use crate::dynamics::{Model, Outcome, Request, Sample};
+use super::{Table, finished};
+use crate::dynamics::{Model, Request, Sample};
 use crate::mechanics::Mechanism;
 use crate::numeric::{alignment, short};
 use crate::scene::{Channel, Quantity, Scene, Timing};
@@ -80,8 +80,7 @@ const STEPS: usize = 8;
 /// Rounding error of a scaled and shifted time, in units of the last place.
 const ROUNDINGS: f64 = 4.0;
 
-/// Range of the measured samples within the run, their times in the run, and the computed samples at these
-/// times.
+/// Range of the measured samples within the run, their times in it, and the computed samples then.
 type Aligned = (Range<usize>, Vec<f64>, Vec<Sample>);
 
 /// Compares a measured motion with the run of `model`, the model of `scene`.
@@ -100,10 +99,7 @@ pub fn compare(
     let timing = Timing::of(&scaled);
     let run = |times: &[f64]| {
         let run = model.run(&Request { sample_times: times, cancel: Some(cancel), ..Request::default() });
-        match run.summary.outcome {
-            Outcome::Cancelled { .. } => Err(NoComparison::Cancelled),
-            _ => Ok(run.samples),
-        }
+        finished(run).map(|run| run.samples).ok_or(NoComparison::Cancelled)
     };
     let of = |sample: &Sample| match motion.channel.quantity {
         Quantity::Velocity => sample.v,

@@ -3,11 +3,10 @@
 use crate::dynamics::Model;
 use crate::numeric::extent;
 use crate::scene::{Excitation, Quantity, Scene};
+use crate::study::Table;
 use crate::study::identify::{Turn, noise, reach, turns};
-use crate::study::{Table, Values};
 
-/// Distance from a stop within which a turning point counts as an impact, as a share of the distance of the
-/// stops.
+/// Distance from a stop below which a turning point is an impact, as a share of the distance of the stops.
 const AT_STOP: f64 = 0.1;
 
 /// A row: quantity, unit, measured, computed.
@@ -65,10 +64,9 @@ pub(super) fn assembled(rows: &[Row], rms_difference: f64, of_measured: f64) -> 
         let of_rms = matches!(row.0, "rms_difference" | "largest_difference");
         100.0 * difference(row) / if of_rms { of_measured } else { row.2.abs() }
     };
-    let words = |of: fn(&Row) -> &'static str| Values::Words(rows.iter().map(of).collect());
     Table::new()
-        .with("quantity", words(|row| row.0))
-        .with("unit", words(|row| row.1))
+        .each("quantity", rows, |row| row.0)
+        .each("unit", rows, |row| row.1)
         .each("measured", rows, |row| row.2)
         .each("computed", rows, |row| row.3)
         .each("difference", rows, difference)
@@ -157,8 +155,7 @@ fn rebounds(model: &Model, times: &[f64], measured: &[f64], computed: &[f64]) ->
     rows
 }
 
-/// Pairs of heights of the rebounds nearest in time, if closer than half the shortest interval of measured
-/// ones.
+/// Pairs of heights of the rebounds nearest in time, if nearer than half the shortest measured interval.
 fn paired(measured: &[Rebound], computed: &[Rebound]) -> Vec<(f64, f64)> {
     let apart = measured.windows(2).map(|pair| pair[1].t - pair[0].t).fold(f64::INFINITY, f64::min);
     let partner = |rebound: &Rebound| {

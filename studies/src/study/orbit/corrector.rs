@@ -98,8 +98,7 @@ pub(super) struct Point {
 }
 
 impl Point {
-    /// Whether the mass rests during the motion, which then no longer depends on its initial displacement and
-    /// velocity.
+    /// Whether the mass rests during the motion, which then no longer depends on its start.
     pub fn forgets(&self) -> bool {
         self.orbit.passage.rested
     }
@@ -156,8 +155,7 @@ fn bordered<const N: usize>(rows: &[SVector<f64, N>], last: &SVector<f64, N>) ->
     SMatrix::from_fn(|i, j| rows.get(i).unwrap_or(last)[j])
 }
 
-/// The tangent of the curve of solutions of equations with these derivatives, with a positive component along
-/// `along`.
+/// The tangent of the curve of solutions of equations with these derivatives, in the direction of `along`.
 pub(super) fn tangent<const N: usize>(
     slopes: &[SVector<f64, N>],
     along: &SVector<f64, N>,
@@ -198,11 +196,8 @@ impl Corrector<'_> {
     }
 
     /// A state after these forcing periods, mirrored if the map is.
-    pub fn image(&self, MapState { x, v, electrical }: MapState) -> MapState {
-        match self.mirrored {
-            true => MapState { x: -x, v: -v, electrical: 0.0 - electrical },
-            false => MapState { x, v, electrical },
-        }
+    pub fn image(&self, state: MapState) -> MapState {
+        if self.mirrored { mirrored(state) } else { state }
     }
 
     /// Difference of a motion from its mirror image half its period later, relative to the scales; `None` if
@@ -213,13 +208,8 @@ impl Corrector<'_> {
             return None;
         }
         let half = map.pass_between(orbit.state, (0.0, 0.5 * f64::from(orbit.period)));
-        let units = Units::of(model, 1.0);
-        let off = Vector3::new(
-            (orbit.state.x + half.state.0) / units.length,
-            (orbit.state.v + half.state.1) / units.speed,
-            (orbit.state.electrical + half.electrical) / units.electrical,
-        );
-        (half.outcome == Outcome::Done).then_some(off)
+        let off = Units::of(model, 1.0).apart(mirrored(orbit.state), (&half).into());
+        (half.outcome == Outcome::Done).then(|| Vector3::from(off))
     }
 
     /// Difference in the units between the states of an orbit half its period apart; `None` if that is not a
@@ -242,9 +232,8 @@ impl Corrector<'_> {
         (passage.outcome == Outcome::Done).then(|| Orbit { state: MapState::from(&passage), ..orbit.clone() })
     }
 
-    /// The shift in forcing periods to the phase that is farthest from all events at stops and from the times
-    /// `also` (in forcing periods); `None` if the present phase is far enough from them, or if no other one
-    /// is much better.
+    /// The phase that is farthest from all events at stops and from the times `also` (in forcing periods);
+    /// `None` if the present phase is far enough from them, or if no other one is much better.
     pub fn clear_phase(&self, point: &Point, also: &[f64]) -> Option<f64> {
         let map = self.map(point.value)?;
         let whole = f64::from(self.periods);
@@ -260,7 +249,7 @@ impl Corrector<'_> {
         }
         let choices = (1..PHASES).map(|choice| f64::from(choice) / f64::from(PHASES));
         let best = choices.max_by(|a, b| room(*a).total_cmp(&room(*b)))?;
-        (room(best) > 2.0 * room(0.0)).then_some(best)
+        (room(best) > 2.0 * room(0.0)).then_some((self.phase + best).rem_euclid(1.0))
     }
 
     /// Displacements in m at the quarters of each forcing period of a motion; `None` if it ends early.
@@ -385,6 +374,10 @@ impl Corrector<'_> {
         let orbit = Orbit { period: self.periods, state, passage, jacobian, circuit };
         Some(Point { at: self.at(state, value), value, orbit, by_state, determinant, by_field })
     }
+}
+
+fn mirrored(MapState { x, v, electrical }: MapState) -> MapState {
+    MapState { x: -x, v: -v, electrical: 0.0 - electrical }
 }
 
 /// Whether two motions from one state strike the stops in the same order at similar speeds. Motions that rest

@@ -27,8 +27,7 @@ const LOCATED: f64 = 1e-12;
 /// Distance on both sides of an event at which the test function must have different signs.
 const CHECKED: f64 = 1e-9;
 
-/// Largest distance of a multiplier from 1 or -1 at an event; it cannot be smaller where the multiplier
-/// changes fast.
+/// Largest distance of a multiplier from 1 or -1 at an event, where the multiplier may change fast.
 const AT_UNIT: f64 = 1e-6;
 
 /// Two differences from the mirror image are opposite if the cosine of their angle is below minus this value.
@@ -136,8 +135,7 @@ pub(super) fn has(multipliers: &[Multiplier], unit: f64) -> bool {
     multipliers.iter().any(|multiplier| elementary::hypot(multiplier.re - unit, multiplier.im) <= AT_UNIT)
 }
 
-/// The zero of a quantity with different signs at two points of the branch, as a share of their distance;
-/// `None` if it is not found.
+/// The zero, if found, of a quantity with different signs at two points, as a share of their distance.
 fn root(
     corrector: &Corrector,
     (from, to): (&Point, &Point),

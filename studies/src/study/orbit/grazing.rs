@@ -22,8 +22,7 @@ use crate::dynamics::{
 /// Largest gap at which a stop may be grazed nearby, as a share of the length scale.
 const SMALL_GAP: f64 = 0.1;
 
-/// Largest number of turning points and impacts of an orbit that are tried, those with the smallest gaps and
-/// speeds first.
+/// Turning points and impacts of an orbit that are tried, those with the smallest gaps and speeds first.
 const MAX_CANDIDATES: usize = 4;
 
 /// Half the step of the central difference of a flight, in the units; few digits are needed.
@@ -44,12 +43,10 @@ pub(super) const FINEST: Accuracy = Accuracy { change: 0.0, step: 1e-15 };
 /// Time in forcing periods within which a turning point at a stop is the touch itself.
 const AT_ONCE: f64 = 1e-4;
 
-/// Speed of an impact, in the units, below which it is the touch itself: half its square is the depth, about
-/// [`EXACT`].
+/// Speed of an impact, in the units, below which it is the touch itself: half its square is about [`EXACT`].
 const GENTLEST: f64 = 1e-4;
 
-/// Accuracy of the grazing orbit in the units: of the state at the stop, of the return after a period, and of
-/// the last step.
+/// Accuracy of the grazing orbit in the units: of the state at the stop, of the return, and of the last step.
 pub(super) const EXACT: f64 = 1e-9;
 
 /// The side of a grazing on which an orbit lies.
@@ -71,8 +68,7 @@ impl Beside {
 #[derive(Debug, Clone)]
 pub(super) struct Touch {
     side: Side,
-    /// Times in forcing periods after a strobe around which stops are ignored, with half the length of each
-    /// interval.
+    /// Times in forcing periods after a strobe around which stops are ignored, with half the length of each.
     open: Vec<(f64, f64)>,
     /// Time in forcing periods after a strobe, 0, state of the circuit then and field in their units.
     pub solution: Vector4<f64>,
@@ -93,8 +89,7 @@ struct Maps<'a> {
     without: StroboscopicMap<'a>,
 }
 
-/// The grazing orbits near an orbit that turns back close to a stop or strikes it gently, and the side on
-/// which that orbit lies.
+/// The grazing orbits near an orbit that nearly touches a stop or strikes it gently, and the side it lies on.
 pub(super) fn grazings<'a>(corrector: &'a Corrector<'a>, near: &Point) -> Vec<(Grazing<'a>, Beside)> {
     let contacts = near.orbit.contacts();
     if near.orbit.passage.misses.is_empty() && contacts.is_empty() {
@@ -207,13 +202,6 @@ impl Touch {
         self.fly(&maps, point.orbit.state, (0.0, (phase - corrector.phase).rem_euclid(1.0)))
     }
 
-    /// Position in m and restitution of the stop.
-    fn stop(&self, maps: &Maps) -> Option<(f64, f64)> {
-        let pair = maps.with.model().stops()?;
-        let stop = if self.side == Side::Left { pair.left } else { pair.right }?;
-        Some((stop.x, stop.restitution))
-    }
-
     /// A span of time in parts, each with a flag whether it has stops.
     fn parts(&self, maps: &Maps, (from, to): (f64, f64)) -> Vec<(bool, (f64, f64))> {
         const ROUNDING: f64 = 1e-9;
@@ -249,16 +237,16 @@ impl Touch {
 
     /// The state that leaves the grazing, and the state that must be reached after the flight.
     fn ends(&self, maps: &Maps, at: &Vector4<f64>, beside: Beside) -> Option<[MapState; 2]> {
-        let (stop, restitution) = self.stop(maps)?;
+        let stop = maps.with.model().stop(self.side)?;
         let units = &maps.corrector.units;
         let toward = if self.side == Side::Left { -at.y } else { at.y };
         let electrical = at.z * units.electrical;
         let state = |x: f64, v: f64| MapState { x, v, electrical };
         Some(match beside {
-            Beside::Missing => [state(stop - toward * units.length, 0.0); 2],
+            Beside::Missing => [state(stop.x - toward * units.length, 0.0); 2],
             Beside::Touching => {
                 let speed = toward * units.speed;
-                [state(stop, -restitution * speed), state(stop, speed)]
+                [state(stop.x, -stop.restitution * speed), state(stop.x, speed)]
             }
         })
     }
@@ -299,7 +287,7 @@ impl Touch {
         if corrector.mirrored && flights % 2.0 != 0.0 {
             (side, x) = (side.other(), -x);
         }
-        let gap = (x - self.stop(maps)?.0).abs();
+        let gap = (x - maps.with.model().stop(self.side)?.x).abs();
         let t = maps.with.first_strobe() + time * maps.with.period();
         misses.retain(|miss| apart(time_of(corrector, &maps.with, miss.t), time, flight) > AT_ONCE);
         misses.push(Miss { t, side, gap });
@@ -332,8 +320,7 @@ impl Touch {
     }
 }
 
-/// The near misses of the motion from a state, with the touches; `None` if it strikes a stop harder than by
-/// rounding at a touch.
+/// The near misses of the motion from a state, with the touches; `None` if it strikes a stop hard.
 fn missed(maps: &Maps, from: MapState, span: (f64, f64)) -> Option<Vec<Miss>> {
     let Passage { events, mut misses, .. } = maps.with.pass_between(from, span);
     let touches = events.iter().filter(|event| event.kind == EventKind::Impact);

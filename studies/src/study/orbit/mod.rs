@@ -166,6 +166,11 @@ impl Orbit {
         all.map(|event| event.v_in.abs()).reduce(f64::min)
     }
 
+    /// One row: period, state, multipliers and what happens on the motion.
+    pub fn table(&self) -> Table {
+        with_orbits(Table::new(), std::slice::from_ref(self))
+    }
+
     /// Whether the orbit is stable.
     pub fn is_stable(&self) -> bool {
         self.multipliers()[0].magnitude() < 1.0
@@ -300,11 +305,7 @@ fn closest_return(map: &StroboscopicMap, from: MapState, periods: u32) -> MapSta
     returns.min_by(|a, b| far(*a).total_cmp(&far(*b))).map_or(from, |(state, _)| *state)
 }
 
-/// One row per orbit: period, state, multipliers, stability and contacts.
-pub fn orbit_table(orbits: &[Orbit]) -> Table {
-    with_orbits(Table::new(), orbits)
-}
-
+/// The table with the columns of [`Orbit::table`], one row per orbit.
 fn with_orbits(table: Table, orbits: &[Orbit]) -> Table {
     let part = |number: usize, of: fn(&Multiplier) -> f64| {
         move |orbit: &Orbit| orbit.multipliers().get(number).map(of)
@@ -380,17 +381,6 @@ pub struct Branch {
 }
 
 impl Branch {
-    fn empty(field: &str) -> Self {
-        Self {
-            field: field.to_owned(),
-            values: Vec::new(),
-            orbits: Vec::new(),
-            events: Vec::new(),
-            end: BranchEnd::Points,
-            unlocated: Vec::new(),
-        }
-    }
-
     /// One row per orbit: the field, the columns of [`Orbit`](crate::questions::Orbit), and `event`.
     pub fn table(&self) -> Table {
         let column = column_names(&[&self.field]).concat();
@@ -463,9 +453,6 @@ pub fn branch(
         let point =
             corrector.correct(corrector.at(first.state, from), &upwards).ok_or(NoOrbit::NotConverged)?;
         let along = corrector.tangent(&point, &upwards).ok_or(NoOrbit::Grazing)?;
-        let branch = Branch::empty(field);
-        let mut walk = Walk::new(corrector, branch, (from, to), &model, (point, along), *options);
-        walk.branch.end = walk.run_out(task)?;
-        Ok(walk.branch)
+        Walk::new(corrector, field, (from, to), &model, (point, along), *options).run_out(task)
     })
 }

@@ -50,10 +50,9 @@ pub fn switched(
                         starts(family, &all, (number, place), range, options, task.cancel)
                     {
                         let model = family.model(first.0.value).map_err(|_| NoOrbit::NotConverged)?;
-                        let branch = Branch::empty(&all[number].field);
-                        let mut walk = Walk::new(corrector, branch, range, &model, first, *options);
-                        walk.branch.end = walk.run_out(task)?;
-                        all.push(walk.branch);
+                        let field = &all[number].field;
+                        let walk = Walk::new(corrector, field, range, &model, first, *options);
+                        all.push(walk.run_out(task)?);
                     }
                 }
             }
@@ -109,8 +108,7 @@ fn starts<'a>(
 /// The point of an event, at a phase of the drive away from impacts.
 fn cleared<'a>(base: Corrector<'a>, at: Vector4<f64>) -> Option<(Corrector<'a>, Point)> {
     let point = base.evaluate(&at)?;
-    let Some(later) = base.clear_phase(&point, &[]) else { return Some((base, point)) };
-    let phase = (base.phase + later).rem_euclid(1.0);
+    let Some(phase) = base.clear_phase(&point, &[]) else { return Some((base, point)) };
     let state = base.at_phase(&point.orbit, point.value, phase)?.state;
     let moved = Corrector { phase, ..base };
     let point = moved.correct(moved.at(state, point.value), &Vector4::w())?;

@@ -17,18 +17,15 @@ const SHORTEST: f64 = 1e-9;
 /// Step below which a change of the orbit is accepted although its event was not located.
 const UNLOCATED: f64 = 1e-6;
 
-/// Cosine of the largest angle between the tangents at both ends of a step, and between the step and a
-/// tangent.
+/// Cosine of the largest angle between the tangents at both ends of a step, and between step and tangent.
 const STRAIGHT: f64 = 0.9;
 
-/// Largest change in a step of the displacement of an orbit with a rest, as a share of the room between the
-/// stops.
+/// Largest change in a step of the displacement of an orbit with a rest, as a share of the room.
 const CHANGE: f64 = 0.1;
 
 /// Distances from a grazing at which the branch is continued, in the order of trial.
 const PAST_A_GRAZING: [f64; 6] = [1e-4, 3e-4, 1e-3, 3e-3, 3e-5, 1e-5];
-/// Smallest distance from a grazing of an orbit that misses the stop; nearer to it derivatives are lost in
-/// rounding.
+/// Smallest distance from a grazing of an orbit that misses the stop, for the derivatives to be exact.
 const MIN_MISSING: f64 = 1e-6;
 /// The same of an orbit that touches the stop.
 const MIN_TOUCHING: f64 = 1e-5;
@@ -53,7 +50,7 @@ struct Stretch {
 pub(super) struct Walk<'a> {
     /// Its phase of the drive is kept away from impacts, at which a state has no derivative by the field.
     corrector: Corrector<'a>,
-    pub branch: Branch,
+    branch: Branch,
     /// The range, and its ends in its unit.
     range: [f64; 2],
     ends: [f64; 2],
@@ -70,10 +67,10 @@ pub(super) struct Walk<'a> {
 }
 
 impl<'a> Walk<'a> {
-    /// A continuation over a range from the orbit of `model` at its first value.
+    /// A continuation of a branch over a field, within a range, from a point at which the model is `model`.
     pub fn new(
         corrector: Corrector<'a>,
-        branch: Branch,
+        field: &str,
         (from, to): (f64, f64),
         model: &Model,
         first: Directed,
@@ -84,6 +81,14 @@ impl<'a> Walk<'a> {
         let room = match model.stop_positions() {
             (Some(left), Some(right)) => length.min(0.5 * (right - left)),
             _ => length,
+        };
+        let branch = Branch {
+            field: field.to_owned(),
+            values: Vec::new(),
+            orbits: Vec::new(),
+            events: Vec::new(),
+            end: BranchEnd::Points,
+            unlocated: Vec::new(),
         };
         let mut walk = Self {
             branch,
@@ -101,7 +106,13 @@ impl<'a> Walk<'a> {
         walk
     }
 
-    pub fn run_out(&mut self, task: &Task) -> Result<BranchEnd, NoOrbit> {
+    /// Walks until the branch ends, and returns it with its end.
+    pub fn run_out(mut self, task: &Task) -> Result<Branch, NoOrbit> {
+        self.branch.end = self.end(task)?;
+        Ok(self.branch)
+    }
+
+    fn end(&mut self, task: &Task) -> Result<BranchEnd, NoOrbit> {
         let mut step = FIRST.min(self.options.step);
         while self.branch.values.len() < self.options.count {
             task.check_cancelled()?;
@@ -132,20 +143,15 @@ impl<'a> Walk<'a> {
                 let grazes = stretch.events.iter().any(|event| event.0 == BranchEvent::Grazing);
                 let is_last = stretch.is_last;
                 let goes_on = self.go_along(stretch);
-                if self.meets {
-                    return Ok(BranchEnd::Closed);
-                }
-                if joins.is_some() {
-                    return Ok(BranchEnd::Joined);
-                }
-                if is_last {
-                    return Ok(BranchEnd::Range);
-                }
-                if !goes_on {
-                    return Ok(BranchEnd::Grazing);
-                }
-                if self.is_closed(step) {
-                    return Ok(BranchEnd::Closed);
+                let ends = [
+                    (self.meets, BranchEnd::Closed),
+                    (joins.is_some(), BranchEnd::Joined),
+                    (is_last, BranchEnd::Range),
+                    (!goes_on, BranchEnd::Grazing),
+                    (self.is_closed(step), BranchEnd::Closed),
+                ];
+                if let Some((_, end)) = ends.into_iter().find(|(is_end, _)| *is_end) {
+                    return Ok(end);
                 }
                 step = if grazes && !self.compliant {
                     PAST_A_GRAZING[0].min(self.options.step)
@@ -374,8 +380,7 @@ impl<'a> Walk<'a> {
     /// periods after a strobe, comes near to the present one.
     fn keep_clear(&mut self, also: &[f64]) {
         let (point, along) = &self.at;
-        let Some(later) = self.corrector.clear_phase(point, also) else { return };
-        let phase = (self.corrector.phase + later).rem_euclid(1.0);
+        let Some(phase) = self.corrector.clear_phase(point, also) else { return };
         let Some(orbit) = self.corrector.at_phase(&point.orbit, point.value, phase) else { return };
         let upwards = Vector4::w() * along.w.signum();
         let corrector = Corrector { phase, ..self.corrector };

@@ -1,5 +1,4 @@
-//! A circuit with stops: limits in which it vanishes, decay at rest, releases that it decides, impacts at
-//! which it must not jump.
+//! A circuit with stops: limits in which it vanishes, decay at rest, releases and impacts.
 
 use std::f64::consts::TAU;
 

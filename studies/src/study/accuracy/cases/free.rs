@@ -1,5 +1,4 @@
-//! Motions that are known in closed form from one contact to the next: a well, boxes, balls, a stop at a
-//! crest.
+//! Motions known in closed form from contact to contact: a well, boxes, balls, a stop at a crest.
 
 use std::f64::consts::{FRAC_PI_2, SQRT_2};
 

@@ -1,5 +1,4 @@
-//! A linear oscillator under every kind of drive and beside circuits: stiff, strongly coupled, and with an
-//! inductance that vanishes.
+//! A linear oscillator under every drive and beside circuits: stiff, strongly coupled, resistive.
 
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -100,8 +99,7 @@ pub(super) fn shock(bench: &Bench) -> Trials {
 }
 
 pub(super) fn record(bench: &Bench) -> Trials {
-    // the fractional parts of multiples of the golden ratio: as uneven as random numbers, the
-    // same everywhere
+    // fractional parts of multiples of the golden ratio: as uneven as random numbers, the same everywhere
     let jump = |i: u32| (f64::from(i) * 0.618_033_988_749_894_9).fract() - 0.5;
     let times = (0..1000_u32).map(|i| f64::from(i) * 0.005).collect();
     let accelerations = (0..1000_u32).map(|i| STANDARD_GRAVITY * jump(i)).collect();

@@ -7,7 +7,7 @@
 //! not seen.
 
 use super::{MethodRun, Problem, Tally, TimedState, is_cancelled};
-use crate::dynamics::{Model, Phase, Request, Side};
+use crate::dynamics::{Model, Request, Side};
 use crate::numeric::{bisect, elementary};
 
 /// A pressed rebound slower than this share of the scene's speed counts as a rest: a solver that does not sum
@@ -92,8 +92,7 @@ impl Step {
         [0, 1].map(|i| a[i] + s * (b[i] + r * (c[i] + s * (d[i] + r * e[i]))))
     }
 
-    /// The integral of v^2 over the first `share` of the step: Gauss's rule of four points on the
-    /// continuous extension.
+    /// The integral of v^2 over the first `share` of the step, by Gauss's rule of four points.
     fn squares(&self, share: f64) -> f64 {
         const POINTS: [(f64, f64); 2] = [
             (0.339_981_043_584_856_3, 0.652_145_154_862_546_1),
@@ -128,9 +127,8 @@ impl Step {
 
 /// Runs `model` with the local error `tolerance` allowed relative to the scene's length and speed.
 ///
-/// Samples lie on straight lines between steps, as those of [`fixed_step`](super::fixed_step). A pressed
-/// rebound slower than 1e-6 of the scene's speed is a rest, its release found by a scan in 200ths of the
-/// forcing period (or of the duration) and bisection. Ends early where the force curve ends, and after
+/// A pressed rebound slower than 1e-6 of the scene's speed is a rest, its release found by a scan in 200ths
+/// of the forcing period (or of the duration) and bisection. Ends early where the force curve ends, and after
 /// 2e7 attempts.
 pub fn dormand_prince(model: &Model, tolerance: f64, request: &Request) -> MethodRun {
     let problem = Problem::new(model);
@@ -142,9 +140,6 @@ pub fn dormand_prince(model: &Model, tolerance: f64, request: &Request) -> Metho
         h: 1e-2 * model.scales().time,
         slope: None,
         touching: SIDES.into_iter().find(|side| problem.start.x == problem.stop(*side).0),
-        phase: Phase::Free,
-        steps: 0,
-        evaluations: 0,
     };
     let mut attempts = 0_u64;
     while march.now.t < model.duration() {
@@ -155,7 +150,7 @@ pub fn dormand_prince(model: &Model, tolerance: f64, request: &Request) -> Metho
             break;
         }
     }
-    march.tally.finish(march.now, march.phase, march.steps, march.evaluations)
+    march.tally.finish(march.now)
 }
 
 const SIDES: [Side; 2] = [Side::Left, Side::Right];
@@ -175,33 +170,26 @@ struct March<'a> {
     /// (x', v') at `now`, where it is known.
     slope: Option<Pair>,
     touching: Option<Side>,
-    phase: Phase,
-    steps: u64,
-    evaluations: u64,
 }
 
 impl March<'_> {
-    /// Rests until the release if the mass is at a stop, nearly at rest, and the net force presses. Returns
-    /// whether it does.
+    /// Whether the mass is at a stop, nearly at rest, and pressed; then it rests until the release.
     fn rest(&mut self) -> bool {
         let (problem, model, now) = (self.problem, self.problem.model, self.now);
         let is_slow = |side: &Side| now.v * sign(*side) > -REST_SPEED * model.scales().speed;
         let Some(side) = self.touching.filter(is_slow) else { return false };
         let press = |t: f64| sign(side) * problem.acceleration(t, now.x, 0.0);
-        self.evaluations += 1;
+        self.tally.run.statistics.evaluations += 1;
         if !(press(now.t) > 0.0) {
             return false;
         }
-        let at_rest = if side == Side::Left { Phase::LeftStop } else { Phase::RightStop };
         let end = model.duration();
         let release = release(press, now.t, end, model.forcing_period().unwrap_or(end) / SEARCHES);
         let rested = TimedState { v: 0.0, ..now };
         self.now = TimedState { t: release, ..rested };
-        self.tally.step(rested, self.now, at_rest, 0.0);
-        self.phase = if release < end { Phase::Free } else { at_rest };
+        self.tally.step(rested, self.now, 0.0);
         self.slope = None;
         self.h = 1e-2 * model.scales().time;
-        self.steps += 1;
         true
     }
 
@@ -209,20 +197,19 @@ impl March<'_> {
     fn step(&mut self) -> bool {
         let (problem, now, end) = (self.problem, self.now, self.problem.model.duration());
         let start = self.slope.unwrap_or_else(|| {
-            self.evaluations += 1;
+            self.tally.run.statistics.evaluations += 1;
             [now.v, problem.acceleration(now.t, now.x, now.v)]
         });
         self.slope = Some(start);
         let last = now.t + self.h >= end;
         let length = if last { end - now.t } else { self.h };
         let step = Step::take(&problem, now.t, [now.x, now.v], start, length, self.tolerance);
-        self.evaluations += 6;
+        self.tally.run.statistics.evaluations += 6;
         let factor = if step.error > 0.0 { 0.9 * elementary::powf(step.error, -0.2) } else { 5.0 };
         if !(step.error <= 1.0) {
             self.h = length * if factor.is_finite() { factor.clamp(0.2, 1.0) } else { 0.2 };
             return now.t + self.h > now.t;
         }
-        self.steps += 1;
         let contact = |side: Side| {
             let share = step.contact(problem.stop(side).0, sign(side), self.touching == Some(side))?;
             Some((share, side))
@@ -233,7 +220,7 @@ impl March<'_> {
             None => {
                 let t = if last { end } else { now.t + length };
                 let next = TimedState { t, x: step.end[0], v: step.end[1] };
-                self.tally.step(now, next, Phase::Free, step.squares(1.0));
+                self.tally.step(now, next, step.squares(1.0));
                 self.touching = None;
                 self.slope = Some(step.slope);
                 self.h = length * factor.clamp(0.2, 5.0);
@@ -253,7 +240,7 @@ impl March<'_> {
         let (place, restitution) = problem.stop(side);
         let v_in = step.at(share)[1];
         let next = TimedState { t: now.t + share * step.h, x: place, v: -restitution * v_in };
-        self.tally.step(now, TimedState { v: v_in, ..next }, Phase::Free, step.squares(share));
+        self.tally.step(now, TimedState { v: v_in, ..next }, step.squares(share));
         if v_in * sign(side) > 0.0 {
             self.tally.impact(next.t, side, v_in, next.v);
         }
@@ -261,7 +248,7 @@ impl March<'_> {
         self.slope = None;
         // the next step is at most the next flight under a constant press
         let press = sign(side) * problem.acceleration(next.t, place, next.v);
-        self.evaluations += 1;
+        self.tally.run.statistics.evaluations += 1;
         if press > 0.0 {
             self.h = self.h.min((2.0 * next.v.abs() / press).max(1e-9 * problem.model.scales().time));
         }
@@ -269,8 +256,7 @@ impl March<'_> {
     }
 }
 
-/// The time at which the press, positive at `from`, falls to 0, by a scan and bisection; `end` if it
-/// stays positive.
+/// The time at which the press, positive at `from`, falls to 0; `end` if it stays positive.
 fn release(press: impl Fn(f64) -> f64, from: f64, end: f64, stride: f64) -> f64 {
     let mut low = from;
     while low < end {

@@ -1,7 +1,7 @@
 //! Fixed steps with clamp and bounce.
 
 use super::{MethodRun, Problem, Scheme, Tally, TimedState, is_cancelled};
-use crate::dynamics::{Model, Phase, Request, Side};
+use crate::dynamics::{Model, Request, Side};
 
 const CANCEL_STRIDE: u64 = 1 << 14;
 
@@ -11,7 +11,7 @@ const MAX_STEPS: f64 = 1e8;
 /// Runs `model` by `scheme` in even steps of at most `step` in s; the last one ends at the duration.
 ///
 /// The model's tolerance has no effect. A step that ends beyond a stop is put onto it and its velocity is
-/// multiplied by -e; there is no rest: a pressed mass hops for ever. Statistics and samples are those of the
+/// multiplied by -e; there is no rest: a pressed mass hops for ever. Statistics and path are those of the
 /// steps, as the user of such a method sees them; an impact has the time at the end of its step. A step that
 /// is not above 0, or makes more than 1e8 of them, is taken as the shortest allowed. Ends early where the
 /// force curve ends.
@@ -23,21 +23,21 @@ pub fn fixed_step(model: &Model, scheme: Scheme, step: f64, request: &Request) -
     let mut tally = Tally::new(problem, request);
     let mut now = problem.start;
     let mut last_acceleration = problem.acceleration(0.0, now.x, now.v);
-    let mut evaluations = 1;
-    let mut taken = 0;
+    tally.run.statistics.evaluations = 1;
     for i in 1..=count {
         if i % CANCEL_STRIDE == 0 && is_cancelled(request) {
             break;
         }
         let t = if i == count { model.duration() } else { h * i as f64 };
+        let evaluations = &mut tally.run.statistics.evaluations;
         let mut next = match scheme {
             Scheme::SemiImplicitEuler => {
-                evaluations += 1;
+                *evaluations += 1;
                 let v = now.v + h * problem.acceleration(now.t, now.x, now.v);
                 TimedState { t, x: now.x + h * v, v }
             }
             Scheme::VelocityVerlet => {
-                evaluations += 1;
+                *evaluations += 1;
                 let x = now.x + h * (now.v + 0.5 * h * last_acceleration);
                 let new = problem.acceleration(t, x, now.v + h * last_acceleration);
                 let v = now.v + 0.5 * h * (last_acceleration + new);
@@ -45,7 +45,7 @@ pub fn fixed_step(model: &Model, scheme: Scheme, step: f64, request: &Request) -
                 TimedState { t, x, v }
             }
             Scheme::RungeKutta4 => {
-                evaluations += 4;
+                *evaluations += 4;
                 runge_kutta(&problem, now, h, t)
             }
         };
@@ -62,21 +62,20 @@ pub fn fixed_step(model: &Model, scheme: Scheme, step: f64, request: &Request) -
                 }
                 if scheme == Scheme::VelocityVerlet {
                     last_acceleration = problem.acceleration(t, next.x, next.v);
-                    evaluations += 1;
+                    *evaluations += 1;
                 }
             }
         }
         if !problem.is_inside(next.x, next.v) {
             break;
         }
-        tally.step(now, next, Phase::Free, 0.5 * h * (now.v * now.v + next.v * next.v));
+        tally.step(now, next, 0.5 * h * (now.v * now.v + next.v * next.v));
         if let Some((side, v_in, v_out)) = bounced {
             tally.impact(t, side, v_in, v_out);
         }
         now = next;
-        taken = i;
     }
-    tally.finish(now, Phase::Free, taken, evaluations)
+    tally.finish(now)
 }
 
 fn runge_kutta(problem: &Problem, TimedState { t, x, v }: TimedState, h: f64, end: f64) -> TimedState {

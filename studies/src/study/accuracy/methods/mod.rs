@@ -16,15 +16,14 @@ use serde::{Deserialize, Serialize};
 pub use dormand_prince::dormand_prince;
 pub use fixed::fixed_step;
 
-use crate::dynamics::{Event, EventKind, Model, Phase, Request, Run, Sample, Side, StopAt, Summary};
+use crate::dynamics::{Event, EventKind, Model, Request, Run, Side, Summary};
 use crate::numeric::elementary;
 use crate::system::clock::ThreadClock;
 
 words! {
     /// A scheme of fixed step.
     Scheme {
-        /// Semi-implicit (symplectic) Euler: velocity first, then displacement by the new velocity. First
-        /// order.
+        /// Semi-implicit (symplectic) Euler: velocity first, then displacement by it. First order.
         SemiImplicitEuler = "semi-implicit Euler",
         /// Velocity Verlet; where the force depends on the velocity, its new value is predicted by an Euler
         /// step. Second order.
@@ -75,8 +74,8 @@ fn is_cancelled(request: &Request) -> bool {
 /// The result of a run by one of these methods.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct MethodRun {
-    /// The state at the requested times up to the end, on a straight line between steps.
-    pub samples: Vec<Sample>,
+    /// Time in s and displacement in m at the requested times up to the end, on straight lines between steps.
+    pub path: Vec<(f64, f64)>,
     /// Impacts in order of time, where they were asked for.
     pub impacts: Vec<Event>,
     /// The numbers of the run.
@@ -102,10 +101,15 @@ impl From<Run> for MethodRun {
     fn from(run: Run) -> Self {
         Self {
             statistics: Statistics::from(&run.summary),
-            samples: run.samples,
+            path: path(&run),
             impacts: run.events.into_iter().filter(|event| event.kind == EventKind::Impact).collect(),
         }
     }
+}
+
+/// Times in s and displacements in m of the samples of a run.
+pub(super) fn path(run: &Run) -> Vec<(f64, f64)> {
+    run.samples.iter().map(|sample| (sample.t, sample.x)).collect()
 }
 
 /// The equation of motion of a model, evaluated directly: library sines, force curve, no series.
@@ -121,17 +125,13 @@ struct Problem<'a> {
 
 impl<'a> Problem<'a> {
     pub fn new(model: &'a Model) -> Self {
-        let stops = model.stops();
         let at =
-            |stop: Option<StopAt>, open: f64| stop.map_or((open, 1.0), |stop| (stop.x, stop.restitution));
+            |side: Side, open: f64| model.stop(side).map_or((open, 1.0), |stop| (stop.x, stop.restitution));
         let (x, v) = model.start();
         let curve = &model.mechanism().curve;
         Self {
             model,
-            stops: [
-                at(stops.and_then(|pair| pair.left), f64::NEG_INFINITY),
-                at(stops.and_then(|pair| pair.right), f64::INFINITY),
-            ],
+            stops: [at(Side::Left, f64::NEG_INFINITY), at(Side::Right, f64::INFINITY)],
             start: TimedState { t: 0.0, x, v },
             domain: curve.domain(),
             single: match curve.pieces() {
@@ -202,13 +202,12 @@ struct TimedState {
     pub v: f64,
 }
 
-/// Collects samples, impacts and sums from one step to the next.
+/// Collects path, impacts and sums from one step to the next.
 struct Tally<'a> {
     problem: Problem<'a>,
     request: &'a Request<'a>,
     watch: ThreadClock,
-    run: MethodRun,
-    next: usize,
+    pub run: MethodRun,
     squares: f64,
     is_beyond_barrier: bool,
 }
@@ -221,19 +220,18 @@ impl<'a> Tally<'a> {
             request,
             watch: ThreadClock::start(),
             run: MethodRun::default(),
-            next: 0,
             squares: 0.0,
             is_beyond_barrier: barrier.is_some_and(|top| problem.start.x > top),
         }
     }
 
-    /// Records a step from `a` to `b`; `phase` is that of the mass in it, `squares` the integral of v^2
-    /// over it.
-    pub fn step(&mut self, a: TimedState, b: TimedState, phase: Phase, squares: f64) {
+    /// Records a step from `a` to `b`; `squares` is the integral of v^2 over it.
+    pub fn step(&mut self, a: TimedState, b: TimedState, squares: f64) {
+        self.run.statistics.steps += 1;
         let h = b.t - a.t;
-        while let Some(t) = self.request.sample_times.get(self.next).copied().filter(|t| *t < b.t) {
+        while let Some(t) = self.next_time().filter(|t| *t < b.t) {
             let share = if h > 0.0 { (t - a.t) / h } else { 0.0 };
-            self.sample(t, a.x + share * (b.x - a.x), a.v + share * (b.v - a.v), phase);
+            self.run.path.push((t, a.x + share * (b.x - a.x)));
         }
         let inside = (b.t - self.problem.model.settle().max(a.t)).max(0.0);
         if inside > 0.0 {
@@ -249,10 +247,8 @@ impl<'a> Tally<'a> {
         }
     }
 
-    fn sample(&mut self, t: f64, x: f64, v: f64, phase: Phase) {
-        let base_accel = self.problem.base(t);
-        self.run.samples.push(Sample { t, x, v, base_accel, phase, electrical: 0.0 });
-        self.next += 1;
+    fn next_time(&self) -> Option<f64> {
+        self.request.sample_times.get(self.run.path.len()).copied()
     }
 
     /// Records an impact on the stop of `side`.
@@ -264,15 +260,14 @@ impl<'a> Tally<'a> {
     }
 
     /// The finished run, which ends in the state `last`.
-    pub fn finish(mut self, last: TimedState, phase: Phase, steps: u64, evaluations: u64) -> MethodRun {
-        while let Some(t) = self.request.sample_times.get(self.next).copied().filter(|t| *t <= last.t) {
-            self.sample(t, last.x, last.v, phase);
+    pub fn finish(mut self, last: TimedState) -> MethodRun {
+        while let Some(t) = self.next_time().filter(|t| *t <= last.t) {
+            self.run.path.push((t, last.x));
         }
         let model = self.problem.model;
         let window = last.t - model.settle();
         let statistics = &mut self.run.statistics;
         statistics.final_x = last.x;
-        (statistics.steps, statistics.evaluations) = (steps, evaluations);
         statistics.ended_at = (last.t < model.duration()).then_some(last.t);
         statistics.rms_velocity = (window > 0.0).then(|| (self.squares / window).sqrt());
         statistics.cpu_s = self.watch.seconds();

@@ -4,10 +4,11 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use serde::{Deserialize, Serialize};
 
-use super::trust::{Beside, finished, times};
-use crate::dynamics::{Event, EventKind, Model, Request, Sample, Side};
-use crate::study::accuracy::methods::{MethodRun, Scheme, Statistics, fixed_step};
+use super::trust::{Beside, times};
+use crate::dynamics::{Event, EventKind, Model, Request};
+use crate::study::accuracy::methods::{MethodRun, Scheme, Statistics, fixed_step, path};
 use crate::study::accuracy::precision::{MEASURED_FOR, median};
+use crate::study::finished;
 
 /// Tolerance of the true run, unless that of the scene is tighter.
 pub const TRUE_TOLERANCE: f64 = 1e-9;
@@ -93,12 +94,12 @@ pub fn step_size(model: &Model, scheme: Scheme, step: f64, cancel: &AtomicBool) 
     let request =
         |sample_times| Request { sample_times, events: true, cancel: Some(cancel), ..Request::default() };
     let run = finished(model.run(&request(&even))).ok_or(Unfit::Cancelled)?;
-    let path = finished(model.run(&request(&fine))).ok_or(Unfit::Cancelled)?.samples;
+    let truth = finished(model.run(&request(&fine))).ok_or(Unfit::Cancelled)?;
 
     let bare = Request { events: false, ..request(&[]) };
     let mut stepped = fixed_step(model, scheme, step, &request(&even));
     // the same run up to where it is drawn
-    let ghost = fixed_step(&model.with_duration(drawn, 0.0), scheme, step, &request(&steps)).samples;
+    let ghost = fixed_step(&model.with_duration(drawn, 0.0), scheme, step, &request(&steps)).path;
     if stepped.statistics.cpu_s <= MEASURED_FOR {
         stepped.statistics.cpu_s = median(|| fixed_step(model, scheme, step, &bare).statistics.cpu_s);
     }
@@ -108,14 +109,14 @@ pub fn step_size(model: &Model, scheme: Scheme, step: f64, cancel: &AtomicBool) 
     if cancel.load(Ordering::Relaxed) {
         return Err(Unfit::Cancelled);
     }
-    let beside = Beside::new(model, &stepped.samples, &exact.samples);
+    let beside = Beside::new(model, &stepped.path, &exact.path);
     Ok(StepSize {
         scheme,
         step,
         span: model.duration(),
         drawn,
-        truth: with_impacts(model, &path, &exact.impacts),
-        ghost: ghost.iter().map(|sample| (sample.t, sample.x)).collect(),
+        truth: with_impacts(model, path(&truth), &exact.impacts),
+        ghost,
         late: lateness(model, &stepped.impacts, &exact.impacts),
         hops,
         error: beside.error(),
@@ -147,14 +148,10 @@ fn step_times(end: f64, step: f64) -> Vec<f64> {
 }
 
 /// The path with its corners at impacts, which a picture with few points would cut off.
-fn with_impacts(model: &Model, samples: &[Sample], impacts: &[Event]) -> Vec<(f64, f64)> {
-    let (left, right) = model.stop_positions();
-    let end = samples.last().map_or(0.0, |sample| sample.t);
-    let corner = |impact: &Event| {
-        let x = if impact.side == Side::Left { left } else { right };
-        x.filter(|_| impact.t <= end).map(|x| (impact.t, x))
-    };
-    let mut path: Vec<(f64, f64)> = samples.iter().map(|sample| (sample.t, sample.x)).collect();
+fn with_impacts(model: &Model, mut path: Vec<(f64, f64)>, impacts: &[Event]) -> Vec<(f64, f64)> {
+    let end = path.last().map_or(0.0, |last| last.0);
+    let corner =
+        |impact: &Event| model.stop(impact.side).filter(|_| impact.t <= end).map(|stop| (impact.t, stop.x));
     path.extend(impacts.iter().filter_map(corner));
     path.sort_by(|a, b| a.0.total_cmp(&b.0));
     path

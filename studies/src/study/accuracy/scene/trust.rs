@@ -1,14 +1,14 @@
-//! Error of a run against a more accurate one, the time up to which its path can be trusted, and the cost of
-//! each of its digits.
+//! Error of a run against a more accurate one, how long its path can be trusted, and the cost of its digits.
 
 use std::sync::atomic::AtomicBool;
 
 use serde::{Deserialize, Serialize};
 
-use crate::dynamics::{Model, Outcome, Regime, Request, Run, Sample};
+use crate::dynamics::{Model, Outcome, Regime, Request, Run};
 use crate::numeric::elementary;
-use crate::study::accuracy::methods::Statistics;
+use crate::study::accuracy::methods::{Statistics, path};
 use crate::study::accuracy::precision::median;
+use crate::study::finished;
 
 /// A path is trusted until its error exceeds this share of the travel, which is too small to see in a plot.
 pub const TRUSTED_SHARE: f64 = 0.01;
@@ -36,10 +36,8 @@ pub(super) fn times(model: &Model) -> Vec<f64> {
 /// How two runs differ.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Beside {
-    /// Times in s that both runs reached.
-    times: Vec<f64>,
-    /// The largest difference of the displacement in m up to each of these times.
-    worst: Vec<f64>,
+    /// Times in s that both runs reached, each with the largest difference of the displacement in m so far.
+    worst: Vec<(f64, f64)>,
     /// The largest difference in m in the last part of the time.
     at_end: f64,
     /// Travel in m, peak to peak, of the run that the other is compared with.
@@ -49,18 +47,17 @@ pub(super) struct Beside {
 }
 
 impl Beside {
-    /// `samples` beside `better`, both sampled at the same times as far as each of them came.
-    pub fn new(model: &Model, samples: &[Sample], better: &[Sample]) -> Self {
+    /// A path beside a better one, both at the same times as far as each of them came.
+    pub fn new(model: &Model, path: &[(f64, f64)], better: &[(f64, f64)]) -> Self {
         let mut found = Self::default();
         let (mut low, mut high, mut worst) = (f64::INFINITY, f64::NEG_INFINITY, 0.0_f64);
-        let last = samples.len().min(better.len());
+        let last = path.len().min(better.len());
         let from_end = (last as f64 * (1.0 - END)) as usize;
-        for (i, (sample, better)) in samples.iter().zip(better).enumerate() {
-            let apart = (sample.x - better.x).abs();
+        for (i, ((_, x), (t, better))) in path.iter().zip(better).enumerate() {
+            let apart = (x - better).abs();
             worst = worst.max(apart);
-            (low, high) = (low.min(better.x), high.max(better.x));
-            found.times.push(better.t);
-            found.worst.push(worst);
+            (low, high) = (low.min(*better), high.max(*better));
+            found.worst.push((*t, worst));
             if i >= from_end {
                 found.at_end = found.at_end.max(apart);
             }
@@ -72,18 +69,18 @@ impl Beside {
 
     /// The time in s up to which both runs came.
     pub fn span(&self) -> f64 {
-        self.times.last().copied().unwrap_or(0.0)
+        self.worst.last().map_or(0.0, |last| last.0)
     }
 
     /// The largest difference in m.
     pub fn error(&self) -> f64 {
-        self.worst.last().copied().unwrap_or(0.0)
+        self.worst.last().map_or(0.0, |last| last.1)
     }
 
     /// The time in s at which the difference has first reached `level` in m; `None` if it never does.
     pub fn reaches(&self, level: f64) -> Option<f64> {
-        let first = self.worst.partition_point(|worst| *worst < level);
-        self.times.get(first).copied()
+        let first = self.worst.partition_point(|(_, worst)| *worst < level);
+        self.worst.get(first).map(|(t, _)| *t)
     }
 
     /// Time in s up to which the run is trusted; `None` if that is all of the time compared.
@@ -174,12 +171,12 @@ pub fn trust(model: &Model, cancel: &AtomicBool) -> Option<Trust> {
     let request = Request { sample_times: &times, cancel: Some(cancel), ..Request::default() };
     let run = finished(model.run(&request))?;
     let (finer, better) = more_accurate(model, model.tolerance(), &request)?;
-    let beside = Beside::new(model, &run.samples, &better.samples);
+    let beside = Beside::new(model, &path(&run), &path(&better));
     let course = match beside.parted() {
         None => Course::Kept,
         Some(until) => {
             let (_, best) = more_accurate(model, finer, &request)?;
-            let next = Beside::new(model, &better.samples, &best.samples).parted();
+            let next = Beside::new(model, &path(&better), &path(&best)).parted();
             parted(model, &beside, &better, until, next)
         }
     };
@@ -205,12 +202,7 @@ fn more_accurate(model: &Model, tolerance: f64, request: &Request) -> Option<(f6
     finished(run).map(|run| (finer, run))
 }
 
-pub(super) fn finished(run: Run) -> Option<Run> {
-    (!matches!(run.summary.outcome, Outcome::Cancelled { .. })).then_some(run)
-}
-
-/// The course of two runs that part at `until` in s; with both tolerances tightened they part at `next`, if
-/// at all.
+/// The course of two runs that part at `until` in s; with tighter tolerances they part at `next`, if at all.
 fn parted(model: &Model, beside: &Beside, better: &Run, until: f64, next: Option<f64>) -> Course {
     let Some(next) = next.filter(|next| *next < TIMES * until) else { return Course::Coarse { until } };
     let summary = &better.summary;
@@ -279,7 +271,7 @@ pub fn tolerances(model: &Model, cancel: &AtomicBool) -> Option<Tolerances> {
         let trial = model.with_tolerance(tolerance);
         let run = finished(trial.run(&request))?;
         let cpu_s = median(|| trial.run(&bare).summary.cpu_s);
-        let beside = Beside::new(model, &run.samples, &exact.samples);
+        let beside = Beside::new(model, &path(&run), &path(&exact));
         (found.span, found.travel) = (beside.span(), beside.travel);
         found.runs.push(AtTolerance {
             tolerance,

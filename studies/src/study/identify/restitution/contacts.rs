@@ -36,12 +36,10 @@ const TERMS: usize = 3;
 
 const FEWEST: usize = 4;
 
-/// Number of standard deviations, squared, by which two intersecting polynomials must fit better than a
-/// single one.
+/// Standard deviations, squared, by which two intersecting polynomials must fit better than a single one.
 const CLEAR: f64 = 6.0;
 
-/// Impacts are on the same stop if their positions differ by less than this share of the range and six
-/// standard errors.
+/// Impacts on one stop differ in place by less than this share of the range and six standard errors.
 const SAME_STOP: f64 = 0.005;
 
 /// Impacts belong to a given stop if they are nearer to it than this share of the range.

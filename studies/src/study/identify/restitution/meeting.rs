@@ -1,5 +1,4 @@
-//! Intersection of two polynomials: the time and the position of an impact, and the speeds before and after
-//! it.
+//! Intersection of two polynomials: the time and place of an impact, and the speeds before and after it.
 
 use super::{Motion, median};
 use crate::numeric::orthogonal::Orthogonal;

@@ -14,7 +14,7 @@ use crate::numeric::regression::{geometric, student};
 use crate::numeric::{elementary, short};
 use crate::study::Table;
 
-const RESTITUTION: [&str; 3] = ["restitution", "restitution_low", "restitution_high"];
+const RESTITUTION: &str = "restitution";
 
 /// Samples that a rebound should have.
 pub(super) const ENOUGH: usize = 8;
@@ -31,8 +31,6 @@ pub(super) const ENOUGH: usize = 8;
 /// and degrees. Clipped samples are left out. If the stops differ by more than their intervals, the interval
 /// of the common number contains both; if the impacts on a stop do, the interval is widened accordingly
 /// (Birge 1932).
-///
-/// Rows, one an impact: `t_s,side`, then `v_in`, `v_out` in m/s and `restitution` with `_low` and `_high`.
 pub fn restitution(
     times: &[f64],
     x: &[f64],
@@ -99,7 +97,7 @@ fn numbers(
             used += n + m;
         }
         _ => {
-            let (whole, count, _) = of("restitution", |_| true)?;
+            let (whole, count, _) = of(RESTITUTION, |_| true)?;
             summary.push(whole);
             used += count;
         }
@@ -131,7 +129,7 @@ fn differ(one: Identity, other: Identity) -> bool {
 fn spanning(one: Identity, other: Identity) -> Identity {
     let [a, b] = [one, other].map(|number| half(number).powi(-2));
     let interval = (one.interval.0.min(other.interval.0), one.interval.1.max(other.interval.1));
-    Identity { name: "restitution", value: (a * one.value + b * other.value) / (a + b), interval }
+    Identity { name: RESTITUTION, value: (a * one.value + b * other.value) / (a + b), interval }
 }
 
 /// Factor by which single impacts scatter beyond their intervals; `None` if they do not.
@@ -215,17 +213,15 @@ fn rows(contacts: &[Contact], singles: &[Single]) -> Table {
     let right = |single: &Single| contacts[single.contact].right;
     let outward = |single: &Single| if right(single) { 1.0 } else { -1.0 };
     let side = |single: &Single| if right(single) { "right" } else { "left" };
-    let v_in = ["v_in_m_per_s", "v_in_low_m_per_s", "v_in_high_m_per_s"];
-    let v_out = ["v_out_m_per_s", "v_out_low_m_per_s", "v_out_high_m_per_s"];
     let table = Table::new().each("t_s", singles, |single| single.impact.t).each("side", singles, side);
-    let table = with_interval(table, v_in, singles, |single| {
-        Identity::new(v_in[0], outward(single) * single.impact.towards, single.halves[0])
+    let table = with_interval(table, "v_in_m_per_s", singles, |single| {
+        Identity::new("v_in_m_per_s", outward(single) * single.impact.towards, single.halves[0])
     });
-    let table = with_interval(table, v_out, singles, |single| {
-        Identity::new(v_out[0], -outward(single) * single.impact.away, single.halves[1])
+    let table = with_interval(table, "v_out_m_per_s", singles, |single| {
+        Identity::new("v_out_m_per_s", -outward(single) * single.impact.away, single.halves[1])
     });
     with_interval(table, RESTITUTION, singles, |single| {
-        Identity::new(RESTITUTION[0], single.ratio.value, single.ratio.half)
+        Identity::new(RESTITUTION, single.ratio.value, single.ratio.half)
     })
 }
 
@@ -246,10 +242,8 @@ fn fitted(motion: &Motion, contacts: &[Contact], singles: &[Single]) -> Table {
 }
 
 /// Restitution of the impacts at these `times` in s of a body that bounces on one stop under a constant
-/// acceleration: then each flight is as much shorter than the one before, and the times follow
-/// c + a e^k, which is fitted by least squares.
-///
-/// Rows, one for each impact between two flights: `t_s,restitution,restitution_low,restitution_high`.
+/// acceleration: then each flight is as much shorter than the one before, and the times follow c + a e^k,
+/// which is fitted by least squares. One row for each impact between two flights.
 pub fn restitution_of_times(times: &[f64]) -> Result<Identified, Unidentified> {
     let none = |why| Unidentified::NoBounces(times.len(), why);
     let law = geometric(times).ok_or_else(|| none("give more, or such as lie between bounces alone"))?;
@@ -265,7 +259,7 @@ pub fn restitution_of_times(times: &[f64]) -> Result<Identified, Unidentified> {
         let flight = times[1] - times[0];
         let ratio = (times[2] - times[1]) / flight;
         let error = noise / flight * (1.0 + ratio.powi(2) + (1.0 + ratio).powi(2)).sqrt();
-        (times[1], Identity::new(RESTITUTION[0], ratio, student(law.freedom) * error))
+        (times[1], Identity::new(RESTITUTION, ratio, student(law.freedom) * error))
     };
     let rows: Vec<(f64, Identity)> = times.windows(3).map(row).collect();
     let rows = with_interval(Table::new().each("t_s", &rows, |row| row.0), RESTITUTION, &rows, |row| row.1);
@@ -275,6 +269,6 @@ pub fn restitution_of_times(times: &[f64]) -> Result<Identified, Unidentified> {
          of the flights is constant"
             .to_owned(),
     ];
-    let summary = vec![Identity::new("restitution", e, half)];
+    let summary = vec![Identity::new(RESTITUTION, e, half)];
     Ok(Identified { rows, fitted: Table::new(), summary, remarks })
 }

@@ -23,8 +23,7 @@ const NARROWEST: f64 = 3.5;
 /// Ratio of each further window to the one before.
 const WIDER: f64 = SQRT_2;
 
-/// Smallest speed of an impact that counts, in its standard errors; the time of a slower one is too
-/// uncertain.
+/// Smallest speed of an impact that counts, in its standard errors; slower ones have no certain time.
 const FAST: f64 = 12.0;
 
 /// Smallest number of degrees of freedom of the residuals of a trial.
@@ -134,8 +133,7 @@ fn trial(motion: &Motion, contacts: &[Contact], sides: &[(usize, Sides)], settin
     enough.then(|| Trial { setting, variance, student: student(freedom), impacts })
 }
 
-/// The number that `of` computes from the contacts that count, its variance, and the number of these
-/// contacts.
+/// The number that `of` computes from the contacts that count, its variance, and how many contacts count.
 pub fn together(
     trials: &[Trial],
     counts: impl Fn(usize) -> bool,
@@ -170,8 +168,7 @@ pub fn each(trials: &[Trial], contacts: usize) -> Vec<Single> {
     estimates.iter().enumerate().filter_map(single).collect()
 }
 
-/// A setting of the fit: the index of the window, which increases with its width, and the number of
-/// coefficients.
+/// A setting of the fit: the index of the window, which increases with its width, and the coefficients.
 pub type Setting = (usize, usize);
 
 /// Estimates of one number for each setting: the value, and half of the 95 % interval due to noise.

@@ -22,8 +22,7 @@ const SHARE_OF_DEPTH: f64 = 1e-2;
 /// Half the step of the central difference of the map by the second field.
 const FIELD_DIFFERENCE: f64 = 1e-7;
 
-/// Largest distance over the first field, in its range, of an orbit at which a locus ends from one that
-/// grazes.
+/// Largest distance over the first field, in its range, of the end of a locus from an orbit that grazes.
 const BESIDE_A_GRAZING: f64 = 2e-3;
 
 /// Largest gap in the units of an orbit that grazes at two instants.
@@ -99,14 +98,12 @@ impl<'a> Curve<'a> {
         let mut point = curve.at_second(at[4], |corrector| corrector.evaluate(&first_four(&at)))?;
         // the motion from the state of one that touches may miss the stop or strike it, by rounding
         point.orbit.passage.misses.extend(&orbit.passage.misses);
-        let begun = curve.begun(at, point, &upwards)?;
-        Some(begun)
+        curve.begun(at, point, &upwards)
     }
 
     /// These equations with the phase of the drive away from events at the stops, and their point near an
-    /// orbit;
-    /// `along` has the direction of its tangent.
-    fn begun(mut self, mut at: Vector5<f64>, point: Point, along: &Vector5<f64>) -> Option<(Self, Spot)> {
+    /// orbit; `along` has the direction of its tangent.
+    fn begun(mut self, mut at: Vector5<f64>, mut point: Point, along: &Vector5<f64>) -> Option<(Self, Spot)> {
         let touches: Vec<f64> = match self.of {
             BranchEvent::Grazing => {
                 let ahead = self.at_second(at[4], |corrector| touch_near(corrector, &point))?;
@@ -114,10 +111,8 @@ impl<'a> Curve<'a> {
             }
             _ => Vec::new(),
         };
-        let later = self.at_second(at[4], |corrector| corrector.clear_phase(&point, &touches));
-        let mut point = point;
-        if let Some(later) = later {
-            let phase = (self.corrector.phase + later).rem_euclid(1.0);
+        let phase = self.at_second(at[4], |corrector| corrector.clear_phase(&point, &touches));
+        if let Some(phase) = phase {
             let orbit =
                 self.at_second(at[4], |corrector| corrector.at_phase(&point.orbit, point.value, phase))?;
             self.corrector.phase = phase;
@@ -159,11 +154,10 @@ impl<'a> Curve<'a> {
     pub fn cleared(&self, spot: &Spot) -> Option<(Self, Spot)> {
         let Spot { at, point, along, .. } = spot;
         let touches = self.touch.as_ref().map(|touch| touch.at(first_four(at)).times(&self.corrector));
-        let touches = touches.as_ref().map_or(&[][..], |times| times);
+        let touches = touches.as_slice().as_flattened();
         self.at_second(at[4], |corrector| corrector.clear_phase(point, touches))?;
-        let corrector = self.corrector;
-        let strobe = with_fifth(&corrector.at(point.orbit.state, point.value), at[4]);
-        let curve = Self { corrector, path: self.path.clone(), touch: None, ..*self };
+        let strobe = with_fifth(&self.corrector.at(point.orbit.state, point.value), at[4]);
+        let curve = Self { path: self.path.clone(), touch: None, ..*self };
         curve.begun(strobe, point.clone(), along)
     }
 
@@ -264,10 +258,9 @@ impl<'a> Curve<'a> {
             self.at_second(at[4], |corrector| touch.residual(corrector))
         };
         let here = off(at)?;
-        let has_circuit = self.has_circuit;
         let mut slopes = [Vector5::zeros(), Vector5::zeros(), Vector5::zeros(), Vector5::ith(1, 1.0)];
         for axis in [0, 2, 3, 4] {
-            if axis == 2 && !has_circuit {
+            if axis == 2 && !self.has_circuit {
                 slopes[2][2] = -1.0;
                 continue;
             }

@@ -72,7 +72,7 @@ pub struct Locus {
 }
 
 /// One row per orbit: the number of the locus from 1, both fields, the columns of
-/// [`orbit_table`](super::orbit_table), and `event`.
+/// [`Orbit::table`], and `event`.
 pub fn loci_table(loci: &[Locus]) -> Table {
     let Some(first) = loci.first() else { return Table::new() };
     let numbers = loci.iter().enumerate().flat_map(|(i, locus)| vec![Some(i as u64 + 1); locus.orbits.len()]);

@@ -19,8 +19,7 @@ const SHORTEST: f64 = 1e-9;
 /// Cosine of the largest angle between the tangents at both ends of a step.
 const STRAIGHT: f64 = 0.9;
 
-/// The fields turn back at a cusp: smallest cosine, with its sign turned, of the angle between their changes
-/// before and after it.
+/// At a cusp the fields turn back: smallest cosine, its sign turned, of the angle between their changes.
 const OPPOSITE: f64 = 0.5;
 
 /// Largest component of the tangent by a field at a cusp.
@@ -105,15 +104,9 @@ impl Walk<'_> {
             let crossings = (0..2).filter_map(|place| {
                 let [low, high] = ends[place];
                 let (from, to) = (at[3 + place], to[3 + place]);
-                let end = if to < low {
-                    low
-                } else if to > high {
-                    high
-                } else {
-                    return None;
-                };
+                let end = to.clamp(low, high);
                 // the first point may lie at an end, and the locus continue inside
-                (to != from).then(|| (3 + place, end, (end - from) / (to - from)))
+                (end != to && to != from).then(|| (3 + place, end, (end - from) / (to - from)))
             });
             crossings.min_by(|a, b| a.2.total_cmp(&b.2))
         };
