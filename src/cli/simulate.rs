@@ -127,10 +127,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     if let Some(trace) = trace {
         let of = (&**model.mechanism(), model.mass());
         outputs.draw(picture, document, |ranges| match compared {
-            Some((measured, found)) => {
-                let quantity = measured.record.channels[1].quantity;
-                Ok(measured_chart(&trace, (found, quantity), inset, ranges))
-            }
+            Some((_, found)) => Ok(measured_chart(&trace, found, inset, ranges)),
             None => Ok(run_chart(&trace, &run.summary, of, &panels, ranges)),
         })?;
     }

@@ -149,7 +149,7 @@ impl Drawing<'_> {
         }
         let found = simulation.compared(&over.motion(Some(over.shift)), &self.progress)?;
         let (_, trace) = simulation.traced(&Keep::default(), None, &self.progress)?;
-        Ok(measured_chart(&trace, (&found, channel.quantity), None, ranges))
+        Ok(measured_chart(&trace, &found, None, ranges))
     }
 
     fn sweep(&self, subject: &Subject, quantity: &str, view: View) -> Result<Chart> {

@@ -10,6 +10,7 @@ use super::figure::Point;
 use super::quantity::Quantity;
 use crate::mechanics::Mechanism;
 use crate::numeric::short;
+use crate::questions::Simulation;
 use crate::scene::Scene;
 use crate::study::{Column, DIRECTION, Edges, Grid, Table, first_crossing, label_and_unit, release_line};
 
@@ -75,6 +76,21 @@ pub struct SweepPicture<'a> {
     pub ranges: Ranges,
     /// What the bands are, in one sentence; empty if there are none.
     pub draws: &'a str,
+}
+
+impl<'a> SweepPicture<'a> {
+    /// The picture of a column of the rows of a sweep of this grid: a line, or a map with the lines over it
+    /// that apply.
+    pub fn of(simulation: &'a Simulation, grid: &'a Grid, rows: &'a Table, quantity: &'a str) -> Self {
+        let scene = simulation.scene();
+        let mechanism = (!grid.changes_mechanism()).then(|| &**simulation.mechanism());
+        let overlay = match rows.column(DIRECTION) {
+            Some(_) => Overlay::default(),
+            None => Overlay::of(scene, mechanism, grid, rows),
+        };
+        let (view, ranges) = (View::Top, Ranges::default());
+        Self { rows, grid, scene, until_settled: None, quantity, overlay, view, ranges, draws: "" }
+    }
 }
 
 /// The cells with the quantity and their words, if their fields lie in `ranges`.
