@@ -28,6 +28,7 @@
 //! | [`Curve`] | force, potential and stiffness over displacement | [`Table`] |
 //! | [`Sweep`] | what the settled motion does in each cell of a grid; with `carry`, hysteresis | [`Table`] |
 //! | [`Section`] | states once per period or at impacts; over a field a bifurcation diagram | [`Table`] |
+//! | [`Simulation::thresholds`] | the amplitudes that release the mass and make it cross | [`Thresholds`] |
 //! | [`Threshold`] | the smallest value of a field that releases the mass or makes it cross | [`Table`] |
 //! | [`ProbableThreshold`] | the value of a field at which a share of runs under noise crosses | [`Table`] |
 //! | [`Escape`] | how often a motion under noise leaves its well, beside Kramers' rate | [`Table`] |
@@ -132,5 +133,5 @@ pub use crate::study::{
     Column, Comparison, Estimate, EvenRange, ExponentOptions, Exponents as ExponentsAnswer, FieldRange,
     Found, Grid, Identified, Identity, Locus as OneLocus, LocusEnd, LocusEvent, MeasuredMotion, Onset,
     Optimum, Orbit as OrbitAnswer, Rated, Recorded, Sampling, SectionAt, SectionOptions, Shares, Signal,
-    Spectrum as SpectrumAnswer, Spread, Table, Tried, Until, Values,
+    Spectrum as SpectrumAnswer, Spread, Table, Thresholds, Tried, Until, Values,
 };

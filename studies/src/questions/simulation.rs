@@ -5,13 +5,14 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::grid::check_until;
+use super::parts::thresholds;
 use super::{Error, Progress};
 use crate::dynamics::{Model, Outcome, Request, Run};
 use crate::mechanics::{ForceCurve, Mechanism};
 use crate::numeric::number_text;
 use crate::scene::{Axis, Document, Excitation, Files, Quantity, Scene};
 use crate::study::{
-    Comparison, Grid, Keep, MeasuredMotion, NoComparison, Recorded, Sampling, Table, Trace,
+    Comparison, Grid, Keep, MeasuredMotion, NoComparison, Recorded, Sampling, Table, Thresholds, Trace,
     can_cross, compare, contact, inspect, sample_times, simulate, simulate_with_trace,
 };
 
@@ -260,6 +261,37 @@ impl Simulation {
             NoComparison::Cancelled => Error::Cancelled,
             NoComparison::Apart { .. } => Error::unfit(&self.document, problem),
         })
+    }
+
+    /// The amplitudes in g of a harmonic drive that release the mass from its stop and let it cross, in one
+    /// call without a range; `None` for another drive, or without a barrier between the stops. They are those
+    /// of the window's status line. [`Threshold`](super::Threshold) searches any field, with a resolution.
+    ///
+    /// # Method
+    ///
+    /// The release has a closed form. For the crossing, amplitudes are run from rest in steps of a 50th of
+    /// the one whose inertial force equals the largest force of the mechanism, further up in steps of 2 %, up
+    /// to 30 times that amplitude, and the first change is bisected to three significant digits. The range up
+    /// to 1.5 times the threshold is searched for gaps.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Cancelled`].
+    ///
+    /// # Example
+    ///
+    /// ```
+    /// # use interwell_studies as interwell;
+    /// use interwell::questions::{Progress, Simulation};
+    ///
+    /// let found = Simulation::preset("paper")?.thresholds(&Progress::none())?.unwrap();
+    /// assert!((found.frees_at.unwrap() - 0.687_903_586_855).abs() < 1e-12);
+    /// assert_eq!(found.crossing.value, Some(0.718));
+    /// # Ok::<(), interwell::questions::Error>(())
+    /// ```
+    pub fn thresholds(&self, progress: &Progress) -> Result<Option<Thresholds>, Error> {
+        let found = thresholds(&self.document.scene, self.mechanism(), progress);
+        if progress.is_stopped() { Err(Error::Cancelled) } else { Ok(found) }
     }
 
     /// What the scene models and leaves out, how accurate its force curve is, and where it rests and leaves a
