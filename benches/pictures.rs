@@ -66,7 +66,8 @@ fn map(document: &Document) -> Chart {
     assert!(end.is_ok());
     let (grid, scene) = (sweep.grid(), &document.scene);
     let overlay = Overlay::of(scene, sweep.first_mechanism().ok().as_deref(), grid, &rows);
-    let picture = SweepPicture { overlay, ..SweepPicture::of(&rows, grid, scene, "rms_velocity_m_per_s") };
+    let picture =
+        SweepPicture { overlay, ..SweepPicture::of_rows(&rows, grid, scene, "rms_velocity_m_per_s") };
     sweep_chart(&picture).expect("a map can be shown")
 }
 

@@ -82,7 +82,12 @@ documents() {
     cp python/README.md "$1/python"
     cp docs/*.md "$1/docs"
     cp assets/*.png "$1/assets"
-    { cat studies/assets/fonts/LICENSE-*.txt; echo; "${python:-python3}" packaging/licences; } >"$1/LICENCES-OF-PARTS.txt"
+    licences interwell "$1/LICENCES-OF-PARTS.txt"
+}
+
+# licences PACKAGE FILE: those of the fonts, and of all crates that are linked into the package.
+licences() {
+    { cat studies/assets/fonts/LICENSE-*.txt; echo; "${python:-python3}" packaging/licences "$1"; } >"$2"
 }
 
 # papers BINARY FOLDER: scenes and documents beside a program that is not installed.

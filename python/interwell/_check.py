@@ -92,6 +92,7 @@ def _near(name: str, names: list[str]) -> str:
     """Return which of the names may be meant, as the end of a sentence."""
     last = name.rpartition(".")[2]
     found = [known for known in names if known.rpartition(".")[2] == last]
+    found = found or [known for known in names if last and known.rpartition(".")[2].startswith(last)]
     found = found or difflib.get_close_matches(name, names, n=3)
     if not found:
         near = difflib.get_close_matches(last, [known.rpartition(".")[2] for known in names], n=1)

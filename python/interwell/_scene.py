@@ -626,7 +626,7 @@ class Scene(Mapping[str, Any]):
         """
         times = None if at is None else _numbers("at", at).tolist()
         run = self._simulation.run(dt, times, until_settled)
-        return Run(run, 1e-3 * self["mass_g"])
+        return Run(run)
 
     def curve(self, positions: npt.ArrayLike | None = None) -> Table:
         """Return force, potential and stiffness of the mechanism.

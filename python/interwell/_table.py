@@ -307,8 +307,8 @@ class Table(Mapping[str, Array]):
         dark : bool
             Whether the colours are those of a dark page.
         width_mm, height_mm : float, optional
-            Size on paper in mm, each 40 to 2000; without a width, which a height needs, the picture is for a
-            screen.
+            Size on paper in mm: the width 68 to 2000, the height 40 to 2000, as a PNG at most 508; without a
+            width, which a height needs, the picture is for a screen.
 
         Returns
         -------
@@ -320,7 +320,7 @@ class Table(Mapping[str, Array]):
         SceneError
             If this table has no picture (an orbit, one threshold or one row of exponents, a best design,
             attractors, events), a grid is over more fields than can be drawn, there is no such quantity, a
-            range is empty, or the size is out of its range.
+            range is empty or, of a run, outside it, or the size is out of its range.
 
         Examples
         --------
@@ -487,9 +487,8 @@ class Run:
     'interwell'
     """
 
-    def __init__(self, run: _interwell.Run, mass_kg: float) -> None:
+    def __init__(self, run: _interwell.Run) -> None:
         self._run = run
-        self._mass_kg = mass_kg
         self._energy: Array | None = None
         self._summary: dict[str, Any] | None = None
         self._events: Array | None = None
@@ -532,7 +531,8 @@ class Run:
         left out.
         """
         if self._energy is None:
-            self._energy = 0.5 * self._mass_kg * self.v**2 + self._run.potential()
+            mass_kg = 1e-3 * self._run.mass_g
+            self._energy = 0.5 * mass_kg * self.v**2 + self._run.potential()
             self._energy.flags.writeable = False
         return self._energy
 

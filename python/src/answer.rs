@@ -3,7 +3,7 @@
 use std::sync::atomic::AtomicBool;
 
 use interwell_studies::output::{
-    Caption, Chart, Format, Ranges, Sheet, SheetError, SheetText, Theme, header, rows,
+    Caption, Chart, Format, NoPicture, Ranges, Sheet, SheetError, SheetText, Theme, header, rows,
 };
 use interwell_studies::questions::{Error, Table, Values};
 use interwell_studies::study::label_and_unit;
@@ -26,7 +26,15 @@ pub struct Asked<'a> {
 }
 
 /// Makes the chart of a table.
-type Charted = Box<dyn Fn(&Table, &Asked) -> Result<Chart, String> + Send + Sync>;
+type Charted = Box<dyn Fn(&Table, &Asked) -> Result<Chart, Error> + Send + Sync>;
+
+/// The error of a table that cannot be shown.
+pub fn no_picture(problem: NoPicture) -> Error {
+    match problem {
+        NoPicture::Quantity { name, problem } => Error::argument("quantity", name, problem),
+        other => Error::argument("plot", "", other),
+    }
+}
 
 /// The values of a column: numbers are an array of NumPy, which Python shares and cannot write to.
 enum Held {
@@ -39,13 +47,14 @@ enum Held {
 pub struct Answer {
     columns: Vec<(String, Held)>,
     chart: Option<Charted>,
-    caption: Caption,
+    caption: Box<dyn Fn() -> Caption + Send + Sync>,
     words: Vec<String>,
 }
 
 impl Answer {
-    /// An answer whose table has no picture.
-    pub fn new(py: Python<'_>, table: Table, caption: Caption) -> Self {
+    /// An answer whose table has no picture; `caption` is that of one.
+    pub fn new(py: Python<'_>, table: Table, caption: impl Fn() -> Caption + Send + Sync + 'static) -> Self {
+        let caption = Box::new(caption);
         let held = |values: Values| match values {
             Values::Numbers(numbers) => {
                 let array = PyArray1::from_vec(py, numbers);
@@ -61,7 +70,7 @@ impl Answer {
     /// The same with a picture.
     pub fn drawn(
         self,
-        chart: impl Fn(&Table, &Asked) -> Result<Chart, String> + Send + Sync + 'static,
+        chart: impl Fn(&Table, &Asked) -> Result<Chart, Error> + Send + Sync + 'static,
     ) -> Self {
         Self { chart: Some(Box::new(chart)), ..self }
     }
@@ -163,16 +172,20 @@ impl Answer {
             Sheet::read(&text, format == Format::Png)
         });
         let sheet = sheet.transpose();
-        let sheet = sheet.map_err(|SheetError { option, value, problem }| {
-            let name = if option == "plot-height-mm" { "height_mm" } else { "width_mm" };
-            raised(py, &wrong(name, &value, problem))
+        let sheet = sheet.map_err(|SheetError { argument, value, problem }| {
+            // text and resolution are no arguments here: the picture is too small or too large for them
+            let width = || width_mm.unwrap_or_default().to_string();
+            let error = match argument {
+                "height_mm" => wrong(argument, &value, problem),
+                "font_pt" => wrong("width_mm", &width(), format!("{problem}, and it has {value}")),
+                _ => wrong("width_mm", &width(), problem),
+            };
+            raised(py, &error)
         })?;
         let table = self.table(py)?;
         let bytes = work(py, &Way::default(), |progress| {
-            let shown = quantity.clone().unwrap_or_default();
             let asked = Asked { quantity, ranges: Ranges { x, y }, cancel: progress.stop() };
-            let chart = chart(&table, &asked).map_err(|problem| wrong("quantity", &shown, problem))?;
-            let figure = chart.figure(&self.caption, &Theme::of(dark, sheet));
+            let figure = chart(&table, &asked)?.figure(&(self.caption)(), &Theme::of(dark, sheet));
             format.bytes(&figure).map_err(|problem| wrong("kind", kind, problem.to_string()))
         })?;
         Ok(PyBytes::new(py, &bytes))

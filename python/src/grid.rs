@@ -1,7 +1,7 @@
 //! Questions that can be asked for every cell of a grid.
 
 use interwell_studies::output::{
-    Overlay, SweepPicture, escape_chart, exponents_chart, section_chart, sweep_chart, threshold_chart,
+    SweepPicture, escape_chart, exponents_chart, section_chart, sweep_chart, threshold_chart,
 };
 use interwell_studies::questions::{
     Carry, Error, Escape, ExponentOptions, Exponents, Grid, Onset, ProbableThreshold, Section, SectionAt,
@@ -9,7 +9,7 @@ use interwell_studies::questions::{
 };
 use pyo3::prelude::*;
 
-use crate::answer::Answer;
+use crate::answer::{Answer, no_picture};
 use crate::errors::{checked, named, raised};
 use crate::scene::Simulation;
 use crate::work::{Way, work};
@@ -48,13 +48,10 @@ pub fn sweep(
         Ok((shown, grid, about, table))
     })?;
     Ok(Answer::new(py, table, scene.caption()).drawn(move |rows, asked| {
-        let (scene, mechanism) = (shown.scene(), shown.mechanism());
-        let mechanism = (!grid.changes_mechanism()).then_some(&**mechanism);
-        let overlay = Overlay::of(scene, mechanism, &grid, rows);
         let quantity = asked.quantity.as_deref().unwrap_or("rms_velocity_m_per_s");
-        let picture = SweepPicture::of(rows, &grid, scene, quantity);
-        let picture = SweepPicture { until_settled, overlay, ranges: asked.ranges, draws: &about, ..picture };
-        sweep_chart(&picture).map_err(|problem| problem.to_string())
+        let picture = SweepPicture::of(&shown, &grid, rows, quantity);
+        let (ranges, draws) = (asked.ranges, about.as_str());
+        sweep_chart(&SweepPicture { until_settled, ranges, draws, ..picture }).map_err(no_picture)
     }))
 }
 
@@ -125,8 +122,7 @@ pub fn exponents(
     }
     let (grid, shown) = (checked(py, scene.inner.grid(&question.over))?, scene.inner.clone());
     Ok(answer.drawn(move |rows, asked| {
-        let chart = exponents_chart(rows, &grid, shown.scene(), asked.ranges);
-        chart.map_err(|problem| problem.to_string())
+        exponents_chart(rows, &grid, shown.scene(), asked.ranges).map_err(no_picture)
     }))
 }
 
@@ -150,11 +146,9 @@ pub fn escape(
     if question.over.is_empty() {
         return Ok(answer);
     }
-    let grid = checked(py, scene.inner.grid(&question.over))?;
-    let options = checked(py, question.options(scene.inner.document(), &grid))?;
+    let (grid, shown) = (checked(py, scene.inner.grid(&question.over))?, scene.inner.clone());
     Ok(answer.drawn(move |rows, asked| {
-        let chart = escape_chart(rows, &grid, &options, asked.ranges);
-        chart.map_err(|problem| problem.to_string())
+        escape_chart(rows, &grid, shown.scene(), &question, asked.ranges).map_err(no_picture)
     }))
 }
 
@@ -221,7 +215,6 @@ fn thresholds(
     }
     let (grid, shown) = (checked(py, scene.inner.grid(over))?, scene.inner.clone());
     Ok(answer.drawn(move |rows, asked| {
-        let chart = threshold_chart(rows, &grid, shown.scene(), &field, onset, asked.ranges);
-        chart.map_err(|problem| problem.to_string())
+        threshold_chart(rows, &grid, shown.scene(), &field, onset, asked.ranges).map_err(no_picture)
     }))
 }

@@ -100,7 +100,7 @@ pub fn spectrum(
         let quantity = match asked.quantity.as_deref() {
             None | Some("amplitude") => SpectrumQuantity::Amplitude,
             Some("psd") => SpectrumQuantity::Density,
-            Some(other) => return Err(format!("no column `{other}`; give amplitude or psd")),
+            Some(other) => return Err(Error::argument("quantity", other, "give amplitude or psd")),
         };
         Ok(spectrum_chart(&found, quantity, asked.ranges))
     }))
@@ -145,7 +145,7 @@ pub fn compare(
     threads: Option<usize>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Answer> {
-    let with = others.into_iter().map(|(name, other)| (name, other.get().inner.clone())).collect();
+    let with = others.into_iter().map(|(name, other)| (name, (*other.get().inner).clone())).collect();
     let question = Compare { with, name, environment: None, until_settled };
     let way = Way { threads, progress };
     let found = work(py, &way, |progress| question.run(&scene.inner, progress))?;

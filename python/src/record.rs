@@ -39,7 +39,7 @@ pub fn identify(
     let identities = answer.found.summary.iter().map(Identity::describe);
     let words = std::iter::once(answer.columns.clone()).chain(identities);
     let words = words.chain(answer.found.remarks.iter().cloned()).collect();
-    let rows = Answer::new(py, answer.found.rows.clone(), caption).told(words);
+    let rows = Answer::new(py, answer.found.rows.clone(), move || caption.clone()).told(words);
     let drawn = move |_: &Table, asked: &Asked| {
         let record = (&answer.across[..], &answer.values.values[..]);
         Ok(identified_chart(of.name(), &answer.found, record, answer.values.quantity, asked.ranges))

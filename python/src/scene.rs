@@ -1,17 +1,19 @@
 //! Scenes, their force curves and their runs.
 
+use std::sync::Arc;
+
 use interwell_kernel::dynamics::Summary;
 use interwell_kernel::mechanics::{FitReport, ForceCurve};
 use interwell_kernel::scene::{Document, Excitation, FieldPath, Files, PRESETS, all_fields, write};
-use interwell_studies::output::{Caption, Provenance, Ranges, RunPanel, curve_chart, run_chart, summary};
+use interwell_studies::output::{Caption, Provenance, RunPanel, RunPicture, curve_chart, summary};
 use interwell_studies::questions::{self, Curve, Error, Progress, Sampling, Table};
-use interwell_studies::study::{Keep, stop_positions};
+use interwell_studies::study::stop_positions;
 use numpy::PyArray1;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use crate::answer::{Answer, Asked};
-use crate::errors::raised;
+use crate::errors::{raised, renamed};
 use crate::function::Function;
 use crate::work::{Way, work, work_calling, work_here};
 
@@ -27,16 +29,18 @@ const SHORT: f64 = 3e6;
 /// A scene that has been checked, with its model.
 #[pyclass(frozen, module = "interwell._interwell")]
 pub struct Simulation {
-    pub inner: questions::Simulation,
+    pub inner: Arc<questions::Simulation>,
 }
 
 impl Simulation {
-    pub fn caption(&self) -> Caption {
-        Caption::new(self.inner.document(), VERSION)
+    /// Makes the caption of a picture.
+    pub fn caption(&self) -> impl Fn() -> Caption + use<> {
+        let simulation = Arc::clone(&self.inner);
+        move || Caption::new(simulation.document(), VERSION)
     }
 
     fn new(inner: questions::Simulation) -> Self {
-        Self { inner }
+        Self { inner: Arc::new(inner) }
     }
 
     /// Whether a run takes some milliseconds at most.
@@ -211,33 +215,21 @@ impl Simulation {
             true => work_here(py, question),
             false => work(py, &Way::default(), question),
         }?;
-        let caption = self.caption();
-        let shown = self.inner.clone();
+        let shown = Arc::clone(&self.inner);
         let drawn = move |_: &Table, asked: &Asked| {
             let panels = match &asked.quantity {
                 None => RunPanel::USUAL.to_vec(),
-                Some(names) => {
-                    let panel = |name: &str| {
-                        let known = || RunPanel::ALL.map(RunPanel::name).join(", ");
-                        RunPanel::named(name.trim())
-                            .ok_or_else(|| format!("no panel `{name}`; there are {}", known()))
-                    };
-                    names.split(',').map(panel).collect::<Result<Vec<_>, String>>()?
-                }
+                Some(names) => names.split(',').map(panel).collect::<Result<_, _>>()?,
             };
-            let keep = Keep { times: Vec::new(), events: false, until_settled };
+            let picture = RunPicture { panels, ranges: asked.ranges, until_settled };
             let progress = Progress::none().stopped_by(asked.cancel);
-            let found = shown.traced(&keep, asked.ranges.x, &progress);
-            let (run, trace) = found.map_err(|error| error.to_string())?;
-            let trace = RunPanel::complete(&panels, trace, shown.model(), asked.cancel);
-            let ranges = Ranges { x: None, y: asked.ranges.y };
-            Ok(run_chart(&trace, &run.summary, shown.model(), &panels, ranges))
+            picture.chart(&shown, &progress).map_err(|error| renamed(error, [["ranges", "x"]]))
         };
         Ok(Run {
-            samples: Py::new(py, Answer::new(py, found.samples, caption.clone()).drawn(drawn))?,
-            events: Py::new(py, Answer::new(py, found.events, caption))?,
+            samples: Py::new(py, Answer::new(py, found.samples, self.caption()).drawn(drawn))?,
+            events: Py::new(py, Answer::new(py, found.events, self.caption()))?,
             summary: found.summary,
-            simulation: self.inner.clone(),
+            simulation: Arc::clone(&self.inner),
         })
     }
 
@@ -252,6 +244,14 @@ impl Simulation {
     }
 }
 
+/// The panel of a run with this name.
+fn panel(name: &str) -> Result<RunPanel, Error> {
+    RunPanel::named(name.trim()).ok_or_else(|| {
+        let known = RunPanel::ALL.map(RunPanel::name).join(", ");
+        Error::argument("panels", name.trim(), format!("there is no such panel; there are {known}"))
+    })
+}
+
 /// One run.
 #[pyclass(frozen, module = "interwell._interwell")]
 pub struct Run {
@@ -260,7 +260,7 @@ pub struct Run {
     #[pyo3(get)]
     events: Py<Answer>,
     summary: Summary,
-    simulation: questions::Simulation,
+    simulation: Arc<questions::Simulation>,
 }
 
 #[pymethods]
@@ -268,6 +268,12 @@ impl Run {
     /// The summary as JSON, as the command line writes it.
     fn summary(&self) -> String {
         summary(&self.summary, self.simulation.scene(), &origin(self.summary.cpu_s))
+    }
+
+    /// Mass in g.
+    #[getter]
+    fn mass_g(&self) -> f64 {
+        self.simulation.scene().mass_g
     }
 
     /// Potential of the mechanism in J at each sample.

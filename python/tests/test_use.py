@@ -365,6 +365,12 @@ BAD = [
     (lambda: iw.Scene.preset("paper").curve().plot(y=(1, float("inf"))), "finite", "y"),
     (lambda: iw.Scene.preset("paper").run().plot(x=(1,)), "(low, high)", "x"),
     (lambda: iw.Scene.preset("paper").curve().plot(height_mm=60), "width_mm", "height_mm"),
+    (lambda: iw.Scene.preset("paper").curve().plot(width_mm=50), "room for text", "width_mm"),
+    (lambda: iw.Scene.preset("paper").run().plot(x=(8, 12)), "within the run", "x"),
+    (lambda: iw.Scene.preset("paper").run().plot("speed"), "no such panel", "panels"),
+    (lambda: iw.Scene.preset("paper").spectrum().plot("phase"), "amplitude or psd", "quantity"),
+    (lambda: iw.Scene.preset("paper").exponents({"mass_g": [1, 2], "damping.xi": [0.1, 0.2]}).plot(),
+     "over one field", "plot"),
 ]
 
 

@@ -55,13 +55,15 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let within = if_given("--within", options.within.as_deref(), "give a time in s, such as 100")?;
     let until = Until::named(&options.until).unwrap_or(Until::Well);
     let question = Escape { runs: options.runs, within, until, ..Escape::default() };
-    let settings = question.options(&document, &grid)?;
+    question.options(&document, &grid)?;
     mechanism_of_all(&document, &grid, common, &warnings)?;
     let mut outputs = outputs(&options.scene, &document, common)?.with_picture(picture)?;
     let table = ask("runs", common, |progress| question.in_cells(&document, &grid, progress))?;
     outputs.table(Output::DATA, &table)?;
     common.say(&format!("{}: {}", document.name, about(&table)));
-    outputs.draw(picture, &document, |ranges| Ok(escape_chart(&table, &grid, &settings, ranges)?))?;
+    outputs.draw(picture, &document, |ranges| {
+        Ok(escape_chart(&table, &grid, &document.scene, &question, ranges)?)
+    })?;
     outputs.finish_rows(&document, common.jobs())
 }
 

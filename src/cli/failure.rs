@@ -3,7 +3,7 @@
 use std::fmt;
 use std::process::ExitCode;
 
-use interwell::output::{NoPicture, OpenError};
+use interwell::output::OpenError;
 use interwell::questions::Error;
 use interwell::scene::lesson::LessonError;
 use interwell::scene::{ArgumentError, SceneError};
@@ -89,7 +89,7 @@ impl From<Error> for Failure {
 }
 
 arguments_are_wrong! {
-    SceneError, LessonError, ArgumentError, GridError, NoPicture
+    SceneError, LessonError, ArgumentError, GridError
 }
 
 impl From<OpenError> for Failure {

@@ -2,7 +2,10 @@
 
 use std::path::Path;
 
-use interwell::output::{Caption, Chart, Format, Ranges, Sheet, SheetText, Theme, picture_arguments};
+use interwell::output::{
+    Caption, Chart, Format, MAX_PICTURE_CELLS, MAX_SURFACE_CELLS, NoPicture, Ranges, Sheet, SheetError,
+    SheetText, Theme, picture_arguments,
+};
 use interwell::scene::Document;
 
 use super::support::{arguments, range};
@@ -118,7 +121,57 @@ fn sheet(options: &PlotOptions, format: Format) -> Result<Option<Sheet>, Failure
     let PlotOptions { plot_height_mm, font_pt, dpi, no_title, .. } = options;
     let (height_mm, dpi, titled) = (plot_height_mm.as_deref(), dpi.as_deref(), !no_title);
     let text = SheetText { width_mm, height_mm, font_pt, dpi, titled };
-    Sheet::read(&text, format == Format::Png).map(Some).map_err(|error| Failure::argument(error.to_string()))
+    Sheet::read(&text, format == Format::Png).map(Some).map_err(|SheetError { argument, value, problem }| {
+        let option = match argument {
+            "width_mm" => "plot-width-mm",
+            "height_mm" => "plot-height-mm",
+            "font_pt" => "font-pt",
+            other => other,
+        };
+        Failure::argument(format!("--{option} {value}: {problem}"))
+    })
+}
+
+impl From<NoPicture> for Failure {
+    fn from(error: NoPicture) -> Self {
+        Self::argument(match error {
+            NoPicture::Fields(count) => format!(
+                "--plot shows a sweep over one field (a line) or two (a map), not over {count}: take the \
+                 others out, or sweep without --plot"
+            ),
+            NoPicture::SingleThreshold => "--plot shows thresholds over another field (a line) or two (a \
+                                           map), and there is one threshold: add --over \
+                                           FIELD=FROM:TO:STEP, or leave --plot out"
+                .to_owned(),
+            NoPicture::OneField(what, count) => format!(
+                "--plot shows {what} over one field, not over {count}: name it with --over \
+                 FIELD=FROM:TO:STEP"
+            ),
+            NoPicture::Cells(count) => format!(
+                "--plot shows at most {MAX_PICTURE_CELLS} cells, not {count}: take longer steps, or sweep \
+                 without --plot"
+            ),
+            NoPicture::Starts(count) => format!(
+                "--plot shows at most {MAX_PICTURE_CELLS} starts, not {count}: take fewer, or leave --plot \
+                 out"
+            ),
+            NoPicture::NoMap => "--surface and --cut show a sweep over two fields, each of two values or \
+                                 more, without --carry: give two --over"
+                .to_owned(),
+            NoPicture::NoSuchCut(column, columns) => {
+                format!("--cut {column}: the map is over {columns}; cut it at a value of one of them")
+            }
+            NoPicture::FlatWords(quantity) => format!(
+                "--surface shows heights, and --quantity {quantity} has words: name a column of numbers"
+            ),
+            NoPicture::SurfaceCells(count) => format!(
+                "--surface shows at most {MAX_SURFACE_CELLS} cells, not {count}: take longer steps, or \
+                 leave it out"
+            ),
+            NoPicture::Quantity { name, problem } => format!("--quantity {name}: {problem}"),
+            NoPicture::NoSuchColumn(_) => error.to_string(),
+        })
+    }
 }
 
 /// The caption of a picture of this scene.

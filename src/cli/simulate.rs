@@ -125,10 +125,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let compared = record.as_ref().zip(compared.as_ref());
     if let Some(trace) = trace {
         outputs.draw(picture, document, |ranges| match compared {
-            Some((measured, found)) => {
-                let quantity = measured.record.channels[1].quantity;
-                Ok(measured_chart(&trace, (found, quantity), inset, ranges))
-            }
+            Some((_, found)) => Ok(measured_chart(&trace, found, inset, ranges)),
             None => Ok(run_chart(&trace, &run.summary, model, &panels, ranges)),
         })?;
     }

@@ -4,6 +4,9 @@
 #[path = "../../examples/force.rs"]
 mod force;
 #[allow(dead_code)]
+#[path = "../../examples/picture.rs"]
+mod picture;
+#[allow(dead_code)]
 #[path = "../../examples/run.rs"]
 mod run;
 #[allow(dead_code)]
@@ -20,7 +23,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use interwell::dynamics::Request;
 use interwell::scene::Damping;
-use interwell::{Error, Progress, Simulation};
+use interwell::{Error, Progress, Simulation, output};
 
 use crate::cli::stdout;
 use crate::support::near;
@@ -28,6 +31,16 @@ use crate::support::near;
 #[test]
 fn the_summary_of_a_run() {
     assert_eq!(run::run().unwrap(), "interwell, 420 impacts, RMS velocity 0.114698 m/s");
+}
+
+#[test]
+fn the_picture_of_a_run_has_the_numbers_of_the_command_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let [plot, data] = ["run.svg", "run.csv"].map(|name| folder.path().join(name).display().to_string());
+    let options = "--panels displacement,portrait --plot-time 9:10";
+    stdout(&format!("simulate nominal-cubic {options} --plot {plot} --plot-data {data}"));
+    let chart = picture::chart(&Simulation::preset("nominal-cubic").unwrap()).unwrap();
+    assert_eq!(output::csv(&chart.data), std::fs::read_to_string(data).unwrap());
 }
 
 #[test]

@@ -156,7 +156,7 @@ impl Drawing<'_> {
         }
         let found = simulation.compared(&over.motion(Some(over.shift)), &self.progress)?;
         let (_, trace) = simulation.traced(&Keep::default(), None, &self.progress)?;
-        Ok(measured_chart(&trace, (&found, channel.quantity), None, ranges))
+        Ok(measured_chart(&trace, &found, None, ranges))
     }
 
     fn sweep(&self, subject: &Subject, quantity: &str, view: View) -> Result<Chart> {
@@ -169,7 +169,11 @@ impl Drawing<'_> {
         can_show(grid, quantity, &view, &sweep.empty_table())?;
         let rows = cells.rows(&self.document, &self.progress)?;
         let overlay = Overlay::of(scene, sweep.first_mechanism().ok().as_deref(), grid, &rows);
-        Ok(sweep_chart(&SweepPicture { overlay, view, ..SweepPicture::of(&rows, grid, scene, quantity) })?)
+        Ok(sweep_chart(&SweepPicture {
+            overlay,
+            view,
+            ..SweepPicture::of_rows(&rows, grid, scene, quantity)
+        })?)
     }
 
     fn diagram(&self, subject: &Subject) -> Result<Chart> {

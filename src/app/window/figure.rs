@@ -102,7 +102,7 @@ impl Figures {
         let Self { width, font, titled, .. } = self;
         let text = SheetText { width_mm: width, height_mm: None, font_pt: font, dpi: None, titled: *titled };
         let sheet = Sheet::read(&text, format == Format::Png).map_err(|error| {
-            let name = if error.option == "font-pt" { "Text" } else { "Width" };
+            let name = if error.argument == "font_pt" { "Text" } else { "Width" };
             format!("{name} {}: {}", error.value, error.problem)
         })?;
         let data = self.data.then(|| path.with_extension("csv"));

@@ -4,17 +4,55 @@
 //! missing one as an empty cell (CSV) or `null` (JSON).
 //!
 //! [`csv()`] gives a table as text, [`csv_table`] reads it again; [`summary`] gives the summary of a run as
-//! JSON. A picture is made in three steps: one of the functions that end in `_chart` makes a [`Chart`] of an
-//! answer, [`Chart::figure`] lays it out for a screen or, by a [`Sheet`], for a width on paper in mm, and
+//! JSON. A picture is made in three steps: one of the functions below makes a [`Chart`] of an answer,
+//! [`Chart::figure`] lays it out for a screen or, by a [`Sheet`], for a width on paper in mm, and
 //! [`Format::bytes`] makes PNG, SVG or PDF of the [`Figure`]. [`Sink`] writes a file as a whole or not at
 //! all. A [`Manifest`] says what made a file, so that it can be made again.
 //!
 //! Tables are in SI units, as the names of their columns say; axes of pictures have the units of their
 //! labels.
 //!
+//! # Pictures
+//!
+//! | of the answer of | the chart |
+//! | --- | --- |
+//! | a run, by itself or with a measured motion over it | [`RunPicture`] |
+//! | [`Curve`], its flexures | [`curve_chart`], [`shapes_chart`] |
+//! | [`Simulation::impact`] | [`contact_chart`] |
+//! | [`Sweep`] | [`sweep_chart`] |
+//! | [`Section`] | [`section_chart`] |
+//! | [`Threshold`], [`ProbableThreshold`] | [`threshold_chart`] |
+//! | [`Escape`], [`Exponents`], over a field | [`escape_chart`], [`exponents_chart`] |
+//! | [`Branch`], [`Locus`] | [`branch_chart`], [`loci_chart`] |
+//! | [`Spectrum`] | [`spectrum_chart`] |
+//! | [`Basins`] | [`basins_chart`] |
+//! | [`Compare`], [`Distance`] | [`comparison_chart`], [`distance_chart`] |
+//! | [`Best`] | [`best_chart`] |
+//! | [`Identify`] | [`identified_chart`] |
+//!
+//! [`mechanism_chart`] draws the mechanism itself.
+//!
+//! [`Curve`]: crate::questions::Curve
+//! [`Simulation::impact`]: crate::questions::Simulation::impact
+//! [`Sweep`]: crate::questions::Sweep
+//! [`Section`]: crate::questions::Section
+//! [`Threshold`]: crate::questions::Threshold
+//! [`ProbableThreshold`]: crate::questions::ProbableThreshold
+//! [`Escape`]: crate::questions::Escape
+//! [`Exponents`]: crate::questions::Exponents
+//! [`Branch`]: crate::questions::Branch
+//! [`Locus`]: crate::questions::Locus
+//! [`Spectrum`]: crate::questions::Spectrum
+//! [`Basins`]: crate::questions::Basins
+//! [`Compare`]: crate::questions::Compare
+//! [`Distance`]: crate::questions::Distance
+//! [`Best`]: crate::questions::Best
+//! [`Identify`]: crate::questions::Identify
+//!
 //! # Errors
 //!
-//! [`NoPicture`] and [`SheetError`] say why there is no picture, [`OpenError`] why there is no file.
+//! [`NoPicture`], [`SheetError`] and [`StatesError`] say why there is no picture, [`OpenError`] why there is
+//! no file.
 //!
 //! # Example
 //!

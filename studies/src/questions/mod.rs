@@ -24,9 +24,11 @@
 //! | --- | --- | --- |
 //! | [`Simulation::run`] | how the mass moves from one start | `dynamics::Run` |
 //! | [`Simulation::record`] | the same, with samples and events as tables | [`Recorded`] |
+//! | [`Simulation::compared`] | how far a measured motion is from the run | [`Comparison`] |
 //! | [`Curve`] | force, potential and stiffness over displacement | [`Table`] |
 //! | [`Sweep`] | what the settled motion does in each cell of a grid; with `carry`, hysteresis | [`Table`] |
 //! | [`Section`] | states once per period or at impacts; over a field a bifurcation diagram | [`Table`] |
+//! | [`Simulation::thresholds`] | the amplitudes that release the mass and make it cross | [`Thresholds`] |
 //! | [`Threshold`] | the smallest value of a field that releases the mass or makes it cross | [`Table`] |
 //! | [`ProbableThreshold`] | the value of a field at which a share of runs under noise crosses | [`Table`] |
 //! | [`Escape`] | how often a motion under noise leaves its well, beside Kramers' rate | [`Table`] |
@@ -128,8 +130,8 @@ pub use crate::study::accuracy::methods::{Scheme, Statistics};
 pub use crate::study::accuracy::scene::{AtTolerance, Course, Lateness, StepSize, Tolerances, Trust};
 pub use crate::study::{
     Answer, Attractor, BestDesign, BestQuestion, Branch as BranchAnswer, BranchEnd, BranchEvent, Carry,
-    Column, Estimate, EvenRange, ExponentOptions, Exponents as ExponentsAnswer, FieldRange, Found, Grid,
-    Identified, Identity, Locus as OneLocus, LocusEnd, LocusEvent, Onset, Optimum, Orbit as OrbitAnswer,
-    Rated, Recorded, Sampling, SectionAt, SectionOptions, Shares, Signal, Spectrum as SpectrumAnswer, Spread,
-    Table, Tried, Until, Values,
+    Column, Comparison, Estimate, EvenRange, ExponentOptions, Exponents as ExponentsAnswer, FieldRange,
+    Found, Grid, Identified, Identity, Locus as OneLocus, LocusEnd, LocusEvent, MeasuredMotion, Onset,
+    Optimum, Orbit as OrbitAnswer, Rated, Recorded, Sampling, SectionAt, SectionOptions, Shares, Signal,
+    Spectrum as SpectrumAnswer, Spread, Table, Thresholds, Tried, Until, Values,
 };

@@ -5,14 +5,15 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::grid::check_until;
+use super::parts::thresholds;
 use super::{Error, Progress};
 use crate::dynamics::{Model, Outcome, Request, Run};
 use crate::mechanics::{ForceCurve, Mechanism};
 use crate::numeric::number_text;
-use crate::scene::{Axis, Document, Excitation, Files, Scene};
+use crate::scene::{Axis, Document, Excitation, Files, Quantity, Scene};
 use crate::study::{
-    Comparison, Grid, Keep, MeasuredMotion, NoComparison, Recorded, Sampling, Table, Trace, can_cross,
-    compare, contact, inspect, sample_times, simulate, simulate_with_trace,
+    Comparison, Grid, Keep, MeasuredMotion, NoComparison, Recorded, Sampling, Table, Thresholds, Trace,
+    can_cross, compare, contact, inspect, sample_times, simulate, simulate_with_trace,
 };
 
 /// A checked scene with its model, which every question takes.
@@ -222,12 +223,75 @@ impl Simulation {
     }
 
     /// Compares a measured motion with a run of the scene.
-    #[doc(hidden)]
+    /// [`RunPicture::chart_with_measured`](crate::output::RunPicture::chart_with_measured) draws both.
+    ///
+    /// # Method
+    ///
+    /// A shift that is not given is the one with the smallest mean square difference for which at least half
+    /// of the shorter of record and run overlaps, found on an even grid and, for a displacement, refined by
+    /// Gauss-Newton steps.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Argument`] for times that are fewer than two, do not ascend, or are not as many as the
+    /// values, and for numbers that are not finite; [`Error::Unfit`] if less than two samples lie within the
+    /// run; [`Error::Cancelled`].
+    ///
+    /// # Example
+    ///
+    /// ```
+    /// # use interwell_studies as interwell;
+    /// use interwell::questions::{MeasuredMotion, Progress, Sampling, Simulation};
+    /// use interwell::scene::{Channel, Quantity};
+    ///
+    /// // a record of the same motion that began 0.25 s later
+    /// let simulation = Simulation::preset("nominal-cubic")?;
+    /// let run = simulation.record(&Sampling::Every(0.01), None, &Progress::none())?;
+    /// let values = run.samples.numbers("x_m").unwrap()[..500].to_vec();
+    /// let times: Vec<f64> = run.samples.numbers("t_s").unwrap()[..500].iter().map(|t| t - 0.25).collect();
+    /// let channel = Channel { quantity: Quantity::Displacement, column: "x_m".to_owned(), values };
+    /// let motion = MeasuredMotion { shift: None, ..MeasuredMotion::of(&times, &channel) };
+    /// let found = simulation.compared(&motion, &Progress::none())?;
+    /// assert!((found.shift - 0.25).abs() < 1e-6 && found.rms.0 < 1e-6);
+    /// # Ok::<(), interwell::questions::Error>(())
+    /// ```
     pub fn compared(&self, motion: &MeasuredMotion, progress: &Progress) -> Result<Comparison, Error> {
+        check_motion(motion)?;
         compare(&self.document.scene, &self.model, motion, progress.stop()).map_err(|problem| match problem {
             NoComparison::Cancelled => Error::Cancelled,
             NoComparison::Apart { .. } => Error::unfit(&self.document, problem),
         })
+    }
+
+    /// The amplitudes in g of a harmonic drive that release the mass from its stop and let it cross, in one
+    /// call without a range; `None` for another drive, or without a barrier between the stops. They are those
+    /// of the window's status line. [`Threshold`](super::Threshold) searches any field, with a resolution.
+    ///
+    /// # Method
+    ///
+    /// The release has a closed form. For the crossing, amplitudes are run from rest in steps of a 50th of
+    /// the one whose inertial force equals the largest force of the mechanism, further up in steps of 2 %, up
+    /// to 30 times that amplitude, and the first change is bisected to three significant digits. The range up
+    /// to 1.5 times the threshold is searched for gaps.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Cancelled`].
+    ///
+    /// # Example
+    ///
+    /// ```
+    /// # use interwell_studies as interwell;
+    /// use interwell::questions::{Progress, Simulation};
+    ///
+    /// let found = Simulation::preset("paper")?.thresholds(&Progress::none())?.unwrap();
+    /// assert!((found.frees_at.unwrap() - 0.687_903_586_855).abs() < 1e-12);
+    /// assert_eq!(found.crossing.value, Some(0.718));
+    /// # Ok::<(), interwell::questions::Error>(())
+    /// ```
+    pub fn thresholds(&self, progress: &Progress) -> Result<Option<Thresholds>, Error> {
+        let found = thresholds(&self.document.scene, self.mechanism(), progress);
+        if progress.is_stopped() { Err(Error::Cancelled) } else { Ok(found) }
     }
 
     /// What the scene models and leaves out, how accurate its force curve is, and where it rests and leaves a
@@ -299,6 +363,33 @@ impl Simulation {
         };
         let axes = over.iter().map(axis).collect::<Result<Vec<Axis>, Error>>()?;
         Ok(Grid::new(self.document.check_axes(axes, "over")?)?)
+    }
+}
+
+/// Refuses a measured motion that is no motion over time.
+fn check_motion(motion: &MeasuredMotion) -> Result<(), Error> {
+    let MeasuredMotion { times, channel, offset, time_scale, shift } = motion;
+    let (count, values) = (times.len(), &channel.values);
+    if count < 2 || count != values.len() {
+        let problem = format!("give at least 2, as many as values, which are {}", values.len());
+        return Err(Error::argument("times", count, problem));
+    }
+    if let Some(pair) = times.windows(2).find(|pair| !(pair[0] < pair[1])) {
+        return Err(Error::argument("times", format!("{}, {}", pair[0], pair[1]), "times must ascend"));
+    }
+    if !matches!(channel.quantity, Quantity::Displacement | Quantity::Velocity | Quantity::Acceleration) {
+        let problem = "give a displacement, a velocity or an acceleration of the base";
+        return Err(Error::argument("channel", channel.quantity.name(), problem));
+    }
+    let numbers = [("times", times[0]), ("times", times[count - 1]), ("offset", *offset)];
+    let numbers = numbers.into_iter().chain(shift.map(|shift| ("shift", shift)));
+    let numbers = numbers.chain(values.iter().map(|value| ("values", *value)));
+    if let Some((name, number)) = numbers.into_iter().find(|(_, number)| !number.is_finite()) {
+        return Err(Error::number(name, number, "give a finite number"));
+    }
+    match *time_scale > 0.0 && time_scale.is_finite() {
+        true => Ok(()),
+        false => Err(Error::number("time_scale", *time_scale, "give a number above 0")),
     }
 }
 

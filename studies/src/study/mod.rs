@@ -86,10 +86,10 @@ pub(crate) use best::{INTERVALS, MOST_FIELDS, scan_places, scan_runs};
 pub use contact::yield_warning;
 pub(crate) use contact::{contact, yield_speed};
 pub use curve::{
-    CURVE_PICTURE_POINTS, CURVE_POINTS, curve, default_positions, even_positions, metres, states,
-    stop_positions,
+    CURVE_PICTURE_POINTS, CURVE_POINTS, OutsideCurve, StatesError, curve, default_positions, even_positions,
+    metres, states, stop_positions,
 };
-pub(crate) use curve::{StatesError, full_curve, shapes, small_amplitude_frequency, stress_warning};
+pub(crate) use curve::{full_curve, shapes, small_amplitude_frequency, stress_warning};
 pub use escape::{Chance, NoKramers, Until, depopulation, kramers_rate};
 pub(crate) use escape::{EscapeOptions, escape_table, probable_threshold_table};
 pub use exponents::{Estimate, ExponentOptions, Exponents, NoExponents, average_exponents, exponents};

@@ -106,10 +106,10 @@ pub fn samples_table(samples: &[Sample], output: impl Fn(&Sample) -> Option<Outp
         .each("v_m_per_s", samples, |sample| sample.v)
         .each("base_accel_m_per_s2", samples, |sample| sample.base_accel)
         .each("phase", samples, |sample| sample.phase.name());
-    let outputs: Vec<Option<Output>> = samples.iter().map(output).collect();
-    if outputs.iter().all(Option::is_none) {
+    if samples.iter().all(|sample| output(sample).is_none()) {
         return table;
     }
+    let outputs: Vec<Option<Output>> = samples.iter().map(output).collect();
     let column = |of: fn(&Output) -> f64| move |output: &Option<Output>| output.as_ref().map(of);
     table
         .each("voltage_v", &outputs, column(|output| output.voltage))
@@ -227,6 +227,9 @@ struct Fraction {
 }
 
 impl Fraction {
+    /// Whole numbers below this are exact as doubles.
+    const EXACT: u128 = 1 << 53;
+
     /// The shortest decimal that identifies `value`; `None` if it is not above 0 or has more than 38 digits.
     fn decimal(value: f64) -> Option<Self> {
         let Decimal { digits, exponent } = Decimal::shortest(value).filter(|decimal| decimal.digits > 0)?;
@@ -247,20 +250,26 @@ impl Fraction {
         Self { numerator: self.denominator, denominator: self.numerator }
     }
 
+    /// Its numerator and denominator, if they and `most` times the numerator are exact as doubles.
+    fn doubles(self, most: u64) -> Option<(f64, f64)> {
+        let product = self.numerator.checked_mul(u128::from(most))?;
+        let exact = [self.numerator, product, self.denominator].iter().all(|part| *part < Self::EXACT);
+        exact.then_some((self.numerator as f64, self.denominator as f64))
+    }
+
     /// The double nearest to `k` times this.
     fn times(self, k: u64) -> f64 {
-        const EXACT: u128 = 1 << 53;
         let Some(mut numerator) = self.numerator.checked_mul(u128::from(k)) else {
             return self.times(1) * k as f64;
         };
         let mut denominator = self.denominator;
-        if numerator >= EXACT || denominator >= EXACT {
+        if numerator >= Self::EXACT || denominator >= Self::EXACT {
             let divisor = greatest_common_divisor(numerator, denominator);
             (numerator, denominator) = (numerator / divisor, denominator / divisor);
         }
         // if both are exact, a single division is correctly rounded; otherwise the parser rounds correctly if
         // the denominator is a power of ten, and else the error is at most two units in the last place
-        if (numerator >= EXACT || denominator >= EXACT) && denominator.is_multiple_of(10) {
+        if (numerator >= Self::EXACT || denominator >= Self::EXACT) && denominator.is_multiple_of(10) {
             let zeros = denominator.ilog10();
             if 10_u128.checked_pow(zeros) == Some(denominator) {
                 return format!("{numerator}e-{zeros}").parse().unwrap_or(f64::NAN);
@@ -314,6 +323,11 @@ fn even_times(step: SamplingStep, duration: f64) -> Result<Vec<f64>, TimesError>
         let count = if count < 9e15 { format!("{count}") } else { format!("{count:.3e}") };
         return Err(TimesError::TooMany(dt, duration, count));
     }
+    if let Some((numerator, denominator)) = exact.and_then(|ratio| ratio.doubles(count as u64)) {
+        // as `times` has it, without whole numbers of 128 bits
+        let time = |k: u32| (f64::from(k) * numerator / denominator).min(duration);
+        return Ok((0..count as u32).map(time).collect());
+    }
     let time = |k: u64| exact.map_or(k as f64 * dt, |ratio| ratio.times(k)).min(duration);
     Ok((0..count as u64).map(time).collect())
 }
@@ -345,6 +359,20 @@ mod tests {
         assert_eq!(even_times(SamplingStep::part(2.0, 1), 1.0).unwrap(), [0.0]);
         let times = even_times(SamplingStep::part(0.3, 1), 1.0).unwrap();
         assert_eq!(times, [0.0, 0.3, 0.6, 0.9]);
+    }
+
+    #[test]
+    fn times_of_doubles_are_those_of_whole_numbers() {
+        for step in
+            [SamplingStep::period_of(3.0), SamplingStep::period_of(2.7), SamplingStep::part(0.3, 1000)]
+        {
+            let (ratio, times) = (step.exact.unwrap(), even_times(step, 10.0).unwrap());
+            assert!(ratio.doubles(times.len() as u64).is_some());
+            assert!((0..).zip(&times).all(|(k, time)| *time == ratio.times(k).min(10.0)));
+        }
+        let long = Fraction { numerator: 1 << 40, denominator: 3 };
+        assert_eq!(long.doubles(1 << 12).map(|found| found.0), Some(1.099_511_627_776e12));
+        assert_eq!(long.doubles(1 << 13), None);
     }
 
     #[test]

@@ -20,7 +20,7 @@ fn has(texts: &[String], words: &str) -> bool {
 
 /// The picture of the RMS velocity of a sweep of a scene.
 fn picture<'a>(rows: &'a Table, grid: &'a Grid, scene: &'a Scene, view: View) -> SweepPicture<'a> {
-    SweepPicture { view, ..SweepPicture::of(rows, grid, scene, "rms_velocity_m_per_s") }
+    SweepPicture { view, ..SweepPicture::of_rows(rows, grid, scene, "rms_velocity_m_per_s") }
 }
 
 #[test]

@@ -200,7 +200,7 @@ impl Map {
     pub fn chart(&self, quantity: &SummaryField, view: &View) -> Result<Chart, NoPicture> {
         let more = shown_columns(quantity.name, view, self.grid());
         let drawn = |rows: &Table, view: View| {
-            let picture = SweepPicture::of(rows, self.grid(), &self.question.scene, quantity.name);
+            let picture = SweepPicture::of_rows(rows, self.grid(), &self.question.scene, quantity.name);
             sweep_chart(&SweepPicture { overlay: self.overlay.clone(), view, ..picture })
         };
         let mut chart = drawn(&self.table(true, &more), view.clone())?;

@@ -22,7 +22,8 @@ const ROOM: f64 = 0.12;
 ///
 /// # Errors
 ///
-/// If the flexures of one have no solution at its displacement.
+/// [`StatesError::Outside`] for a displacement that is not on the curve of its flexures,
+/// [`StatesError::Unsolved`] if they have no solution there.
 pub fn mechanism_chart(of: &[(&Model, f64)]) -> Result<Chart, StatesError> {
     let task = Task { tick: &|| (), cancel: &AtomicBool::new(false) };
     let bend = |(model, x): &(&Model, f64)| match &model.mechanism().flexures {

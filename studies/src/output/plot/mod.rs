@@ -38,6 +38,7 @@ mod quantity;
 mod record;
 mod role;
 mod run;
+mod run_picture;
 mod section;
 mod shapes;
 mod sheet;
@@ -56,6 +57,8 @@ mod well;
 use std::path::Path;
 
 use crate::study::words;
+
+pub use crate::study::{OutsideCurve, StatesError};
 
 pub use accuracy::{accuracy_chart, cost_panel, scene_accuracy_chart, steps_panel};
 pub use assembly::{Assembly, MagnetPair};
@@ -87,13 +90,14 @@ pub use quantity::{RMS, quantities, suited_unit, words_of};
 pub use record::{identified_chart, measured_chart, measured_force_chart};
 pub use role::{Look, Role};
 pub use run::{RunPanel, run_chart};
+pub use run_picture::RunPicture;
 pub use section::section_chart;
 pub use shapes::shapes_chart;
 pub use sheet::{Sheet, SheetError, SheetText};
 pub use sketch::{DrawnPart, Sketch};
 pub use spectrum::{SpectrumQuantity, spectrum_chart};
 pub use style::{BLACK, Ink, TICK, Theme, is_fine, viridis};
-pub use surface::SurfaceFrame;
+pub use surface::{MAX_SURFACE_CELLS, SurfaceFrame};
 pub use sweep::{MAX_PICTURE_CELLS, NoPicture, can_show, sweep_about, sweep_chart};
 pub use swept::{Cut, Overlay, SweepPicture, View};
 pub use threshold::{can_show_thresholds, threshold_chart};

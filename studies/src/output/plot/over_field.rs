@@ -8,8 +8,9 @@ use super::role::Role;
 use super::sweep::{MAX_PICTURE_CELLS, NoPicture};
 use super::swept::{ascending, spans, swept_axis};
 use crate::numeric::{elementary, short};
+use crate::questions::Escape;
 use crate::scene::Scene;
-use crate::study::{EscapeOptions, Grid, Table, Until};
+use crate::study::{Grid, Table, Until};
 
 /// Checks that `what` can be shown over the field of this grid.
 #[doc(hidden)]
@@ -22,12 +23,16 @@ pub fn can_show_over_field(grid: &Grid, what: &'static str) -> Result<(), NoPict
 }
 
 /// The rate of escape over the field of the grid with its interval, on a logarithmic axis in 1/s, beside
-/// Kramers' rate; from all rows.
-#[doc(hidden)]
+/// Kramers' rate; from all rows of the answer to `question` about `scene`.
+///
+/// # Errors
+///
+/// [`NoPicture::OneField`] unless the grid has one field.
 pub fn escape_chart(
     rows: &Table,
     grid: &Grid,
-    options: &EscapeOptions,
+    scene: &Scene,
+    question: &Escape,
     ranges: Ranges,
 ) -> Result<Chart, NoPicture> {
     can_show_over_field(grid, "escapes")?;
@@ -56,11 +61,12 @@ pub fn escape_chart(
     let missing = ascending(places, |row| rate[row].is_nan()).into_iter().map(|row| places[row]);
     panel.layer_if_any(Role::Missing, "no value", Marks::Ticks(missing.collect(), Side::Bottom));
     let data = of_rows("escape", rows, &[&[x][..], &names].concat(), |row| panel.x.contains(places[row]));
-    let what = match options.until {
+    let what = match question.until {
         Until::Crossing => "first crossings of the barrier",
         Until::Well => "first arrivals in the well behind the barrier",
     };
-    let (runs, within) = (options.runs, short(options.within));
+    let within = short(question.within.unwrap_or(scene.run.duration_s));
+    let runs = question.runs;
     Ok(Chart::stack(vec![panel], format!("{what}, {runs} runs of {within} s at most each"), data))
 }
 

@@ -24,6 +24,7 @@ pub struct OverTime {
 
 impl RunPanel {
     /// Label of the axis of this quantity in a unit. With a load, power is that into the load.
+    #[doc(hidden)]
     pub fn label(self, unit: &str, has_load: bool) -> String {
         let name = match self {
             Self::Velocity => VELOCITY,
@@ -36,6 +37,7 @@ impl RunPanel {
     }
 
     /// The role of its line.
+    #[doc(hidden)]
     pub fn role(self, has_load: bool) -> Role {
         match self {
             Self::Velocity => Role::Second,
@@ -47,6 +49,7 @@ impl RunPanel {
 
     /// Its panel with these lines over this axis. The stops, the wells and the impacts on the stops stand in
     /// the panel of the displacement alone.
+    #[doc(hidden)]
     pub fn over_time(self, up: PlotAxis, lines: Vec<Layer>, beside: &OverTime) -> Panel {
         let mut panel = Panel::new(beside.time.clone(), up);
         panel.rests(beside);

@@ -317,16 +317,12 @@ fn parted(record: &[Point]) -> Vec<Point> {
     parts.flat_map(|part| part.iter().copied().chain([(f64::NAN, f64::NAN)])).collect()
 }
 
-/// The picture of a run from its trace, with the measured values of this quantity over it; `inset` are the
-/// times in s that a second panel shows closer, `ranges` those of the first.
+/// The picture of a run from its trace, with the measured values over it; `inset` are the times in s that a
+/// second panel shows closer, `ranges` those of the first.
 #[doc(hidden)]
-pub fn measured_chart(
-    trace: &Trace,
-    (found, quantity): (&Comparison, Quantity),
-    inset: Option<(f64, f64)>,
-    ranges: Ranges,
-) -> Chart {
+pub fn measured_chart(trace: &Trace, found: &Comparison, inset: Option<(f64, f64)>, ranges: Ranges) -> Chart {
     let column = |name: &str| trace.path.numbers(name).unwrap_or_default();
+    let quantity = found.quantity;
     let (scale, words, unit) = axis_of(quantity, &found.measured);
     let label = axis_name(words, unit);
     let name = match quantity {

@@ -20,7 +20,6 @@ use crate::study::{Table, Trace, words};
 
 words! {
     /// A panel of the picture of a run, in the order in which they stand.
-    #[doc(hidden)]
     RunPanel {
         /// Displacement over time.
         Displacement = "displacement",
@@ -44,6 +43,7 @@ impl RunPanel {
     pub const USUAL: [Self; 4] = [Self::Displacement, Self::Velocity, Self::Acceleration, Self::Portrait];
 
     /// The trace of a run of this model with the ledger, if one of these panels shows it.
+    #[doc(hidden)]
     pub fn complete(panels: &[Self], trace: Trace, model: &Model, cancel: &AtomicBool) -> Trace {
         if panels.contains(&Self::Ledger) { trace.with_ledger(model, Some(cancel)) } else { trace }
     }

@@ -41,10 +41,10 @@ pub struct SheetText<'a> {
 
 /// An invalid part of a sheet.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("--{option} {value}: {problem}")]
+#[error("{argument} = {value}: {problem}")]
 pub struct SheetError {
-    /// The option that gives it, without its dashes.
-    pub option: &'static str,
+    /// The field of [`SheetText`] that gives it.
+    pub argument: &'static str,
     /// The value that was given.
     pub value: String,
     /// What is wrong with the value.
@@ -58,16 +58,17 @@ impl Sheet {
     ///
     /// [`SheetError`] with the part that is no number or out of its range, and the range.
     pub fn read(text: &SheetText<'_>, has_pixels: bool) -> Result<Self, SheetError> {
-        let error = |option, value: &str, problem| SheetError { option, value: value.to_owned(), problem };
-        let within = |option, text: &str, (least, most): (f64, f64), what: &str, example: &str| {
+        let error =
+            |argument, value: &str, problem| SheetError { argument, value: value.to_owned(), problem };
+        let within = |argument, text: &str, (least, most): (f64, f64), what: &str, example: &str| {
             let number = text.trim().parse().ok().filter(|number: &f64| (least..=most).contains(number));
             let problem = format!("give {what}, {least} to {most}, such as {example}");
-            number.ok_or_else(|| error(option, text, problem))
+            number.ok_or_else(|| error(argument, text, problem))
         };
-        let width_mm = within("plot-width-mm", text.width_mm, Self::MM, "a width in mm", "85")?;
-        let height = |text| within("plot-height-mm", text, Self::MM, "a height in mm", "60");
+        let width_mm = within("width_mm", text.width_mm, Self::MM, "a width in mm", "85")?;
+        let height = |text| within("height_mm", text, Self::MM, "a height in mm", "60");
         let height_mm = text.height_mm.map(height).transpose()?;
-        let font_pt = within("font-pt", text.font_pt, Self::FONT_PT, "a size in points", "8")?;
+        let font_pt = within("font_pt", text.font_pt, Self::FONT_PT, "a size in points", "8")?;
         let dpi = text.dpi.map_or(Ok(300.0), |text| {
             within("dpi", text, Self::DPI, "a resolution in pixels an inch", "300")
         })?;
@@ -75,7 +76,7 @@ impl Sheet {
         if font_pt > most {
             let most = (10.0 * most).floor() / 10.0;
             let problem = format!("a picture {width_mm} mm wide has room for text of at most {most} points");
-            return Err(error("font-pt", text.font_pt, problem));
+            return Err(error("font_pt", text.font_pt, problem));
         }
         let sheet = Self { width_mm, height_mm, font_pt, dpi, titled: text.titled };
         let longest = width_mm.max(height_mm.unwrap_or(0.0));

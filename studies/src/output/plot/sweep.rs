@@ -15,52 +15,49 @@ use crate::study::{DIRECTION, Direction, Grid, SUMMARY_FIELDS, Table};
 /// Largest number of cells in a picture: more than its pixels can distinguish.
 pub const MAX_PICTURE_CELLS: u64 = 500_000;
 
-/// Why a table has no picture. The messages are those of the command line and name its options.
+/// Why a table has no picture.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum NoPicture {
     /// Neither a line nor a map.
     #[error(
-        "--plot shows a sweep over one field (a line) or two (a map), not over {0}: \
-         take the others out, or sweep without --plot"
+        "a picture shows a sweep over one field (a line) or two (a map), not over {0}: take the others out"
     )]
     Fields(usize),
     /// One threshold.
     #[error(
-        "--plot shows thresholds over another field (a line) or two (a map), and there is one threshold: add \
-         --over FIELD=FROM:TO:STEP, or leave --plot out"
+        "a picture shows thresholds over another field (a line) or two (a map), and there is one threshold: \
+         give `over` a field"
     )]
     SingleThreshold,
     /// Exponents or escapes of a single motion, or over several fields.
-    #[error("--plot shows {0} over one field, not over {1}: name it with --over FIELD=FROM:TO:STEP")]
+    #[error("a picture shows {0} over one field, not over {1}: give `over` one field")]
     OneField(&'static str, usize),
     /// Finer than a picture.
-    #[error(
-        "--plot shows at most {MAX_PICTURE_CELLS} cells, not {0}: take longer steps, or sweep without --plot"
-    )]
+    #[error("a picture shows at most {MAX_PICTURE_CELLS} cells, not {0}: take longer steps")]
     Cells(u64),
     /// More starts than a picture can distinguish.
-    #[error("--plot shows at most {MAX_PICTURE_CELLS} starts, not {0}: take fewer, or leave --plot out")]
+    #[error("a picture shows at most {MAX_PICTURE_CELLS} starts, not {0}: take fewer")]
     Starts(u64),
     /// A surface or a cut needs a map.
     #[error(
-        "--surface and --cut show a sweep over two fields, each of two values or more, without --carry: give \
-         two --over"
+        "a surface and cuts show a sweep over two fields, each of two values or more, without `carry`: give \
+         `over` two fields"
     )]
     NoMap,
     /// A cut along a column that the map does not have.
-    #[error("--cut {0}: the map is over {1}; cut it at a value of one of them")]
+    #[error("a cut at a value of {0}: the map is over {1}; cut it at a value of one of them")]
     NoSuchCut(String, String),
     /// Rows of another sweep.
     #[error("the rows have no column {0}, which is swept: draw them with the grid of their own sweep")]
     NoSuchColumn(String),
     /// Words instead of heights.
-    #[error("--surface shows heights, and --quantity {0} has words: name a column of numbers")]
+    #[error("a surface shows heights, and the quantity {0} has words: name a column of numbers")]
     FlatWords(String),
     /// More faces than can be distinguished.
-    #[error("--surface shows at most {MAX_SURFACE_CELLS} cells, not {0}: take longer steps, or leave it out")]
+    #[error("a surface shows at most {MAX_SURFACE_CELLS} cells, not {0}: take longer steps, or `View::Top`")]
     SurfaceCells(u64),
     /// No column that can be shown.
-    #[error("--quantity {name}: {problem}")]
+    #[error("quantity {name}: {problem}")]
     Quantity {
         /// The column as given.
         name: String,
@@ -130,6 +127,24 @@ const VISIBLE: f64 = 2e-3;
 /// [`NoPicture::Fields`] over more than two fields, [`NoPicture::Cells`] for more cells than a picture can
 /// show, [`NoPicture::Quantity`] for a column that is not there or has no picture, and the others for rows
 /// of another sweep and for a surface or cuts that the map does not allow.
+///
+/// # Example
+///
+/// ```
+/// # use interwell_studies as interwell;
+/// use interwell::output::{Caption, Format, SweepPicture, Theme, sweep_chart};
+/// use interwell::questions::{Progress, Simulation, Sweep};
+///
+/// let simulation = Simulation::preset("nominal-cubic")?.with("run.tolerance", 1e-6)?;
+/// let sweep = Sweep::over("stops.travel_limit_mm", 2.0..=6.0, 8);
+/// let sweep = sweep.and("excitation.amplitude_g", 0.5..=1.5, 8);
+/// let rows = sweep.run(&simulation, &Progress::none())?;
+/// let grid = simulation.grid(&sweep.over)?;
+/// let chart = sweep_chart(&SweepPicture::of(&simulation, &grid, &rows, "rms_velocity")).unwrap();
+/// let figure = chart.figure(&Caption::new(simulation.document(), "1.0"), &Theme::LIGHT);
+/// assert!(Format::Svg.bytes(&figure).unwrap().starts_with(b"<svg"));
+/// # Ok::<(), interwell::questions::Error>(())
+/// ```
 pub fn sweep_chart(picture: &SweepPicture) -> Result<Chart, NoPicture> {
     let SweepPicture { rows, grid, scene, until_settled, .. } = *picture;
     let quantity = can_show(grid, picture.quantity, &picture.view, rows)?;
@@ -334,5 +349,30 @@ fn difference(down: Cell, up: Cell, has_kinds: bool) -> Cell {
         (Cell::Missing | Cell::Blank, _) | (_, Cell::Missing | Cell::Blank) => Cell::Missing,
         (down, up) if has_kinds => Cell::Value(f64::from(u8::from(down != up))),
         (down, up) => Cell::Value(down.value().unwrap_or(0.0) - up.value().unwrap_or(0.0)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn messages_name_no_option_of_the_command_line() {
+        let [name, problem] = ["rms", "there are others"].map(str::to_owned);
+        for error in [
+            NoPicture::Fields(3),
+            NoPicture::SingleThreshold,
+            NoPicture::OneField("escapes", 2),
+            NoPicture::Cells(1_000_000),
+            NoPicture::Starts(1_000_000),
+            NoPicture::NoMap,
+            NoPicture::NoSuchCut(name.clone(), problem.clone()),
+            NoPicture::NoSuchColumn(name.clone()),
+            NoPicture::FlatWords(name.clone()),
+            NoPicture::SurfaceCells(100_000),
+            NoPicture::Quantity { name, problem },
+        ] {
+            assert!(!error.to_string().contains("--"), "{error}");
+        }
     }
 }

@@ -10,6 +10,7 @@ use super::figure::Point;
 use super::quantity::Quantity;
 use crate::mechanics::Mechanism;
 use crate::numeric::short;
+use crate::questions::Simulation;
 use crate::scene::Scene;
 use crate::study::{Column, DIRECTION, Edges, Grid, Table, first_crossing, label_and_unit, release_line};
 
@@ -81,8 +82,18 @@ pub struct SweepPicture<'a> {
 }
 
 impl<'a> SweepPicture<'a> {
+    /// The picture of a column of the rows of a sweep of this grid: a line, or a map with the lines over it
+    /// that apply.
+    pub fn of(simulation: &'a Simulation, grid: &'a Grid, rows: &'a Table, quantity: &'a str) -> Self {
+        let scene = simulation.scene();
+        let mechanism = (!grid.changes_mechanism()).then(|| &**simulation.mechanism());
+        let overlay = Overlay::of(scene, mechanism, grid, rows);
+        Self { overlay, ..Self::of_rows(rows, grid, scene, quantity) }
+    }
+
     /// The quantity of these rows from above, without lines over a map, over all values of the fields.
-    pub fn of(rows: &'a Table, grid: &'a Grid, scene: &'a Scene, quantity: &'a str) -> Self {
+    #[doc(hidden)]
+    pub fn of_rows(rows: &'a Table, grid: &'a Grid, scene: &'a Scene, quantity: &'a str) -> Self {
         let (overlay, view, ranges) = Default::default();
         Self { rows, grid, scene, until_settled: None, quantity, overlay, view, ranges, draws: "" }
     }

@@ -48,7 +48,7 @@ pub fn threshold_chart(
         ([x], _) => lines(rows, x, None, &least, ranges),
         ([_, _], Some((x, each))) => lines(rows, x, Some(each), &least, ranges),
         (columns, _) => {
-            let shown = SweepPicture { ranges, ..SweepPicture::of(rows, grid, scene, &least) };
+            let shown = SweepPicture { ranges, ..SweepPicture::of_rows(rows, grid, scene, &least) };
             map(&shown, (&columns[0], &columns[1]), &[])
         }
     };

@@ -29,11 +29,20 @@ pub struct MeasuredMotion<'a> {
     pub shift: Option<f64>,
 }
 
+impl<'a> MeasuredMotion<'a> {
+    /// A motion whose times are those of the run.
+    pub fn of(times: &'a [f64], channel: &'a Channel) -> Self {
+        Self { times, channel, offset: 0.0, time_scale: 1.0, shift: Some(0.0) }
+    }
+}
+
 /// Comparison of a measured motion with the computed one.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Comparison {
     /// `quantity,unit,measured,computed,difference,difference_percent`.
     pub table: Table,
+    /// The quantity that was measured.
+    pub quantity: Quantity,
     /// Times of the measured samples within the run, scaled and shifted.
     pub times: Vec<f64>,
     /// The measured values there, SI.
@@ -171,7 +180,8 @@ pub fn compare(
     let computed: Vec<f64> = samples.iter().map(of).collect();
     let table = numbers::table(scene, model, motion.channel.quantity, &times, &measured, &computed);
     let rms = (rms_apart, 100.0 * rms_apart / rms(&measured));
-    Ok(Comparison { table, times, measured, computed, shift, rms, remarks })
+    let quantity = motion.channel.quantity;
+    Ok(Comparison { table, quantity, times, measured, computed, shift, rms, remarks })
 }
 
 /// The value of a record at a time, by linear interpolation, and constant beyond its ends.
