@@ -21,7 +21,7 @@ use crate::scene::{FieldPath, Scene, Start, SweepAxis, arguments};
 use crate::system::files;
 
 use super::drawing::draw;
-use super::{WriteResult, quoted};
+use super::{WriteResult, line};
 
 /// What a figure shows, with the options of its command.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -353,8 +353,7 @@ impl FigureOrder {
     /// The command line that makes the same file without a window.
     pub fn command_line(&self) -> String {
         let (command, all) = self.command_with_arguments();
-        let words: Vec<String> = all.iter().flat_map(Argument::words).map(|word| quoted(&word)).collect();
-        format!("interwell --headless {command} {}", words.join(" "))
+        line(command, &all)
     }
 
     /// Draws the figure and writes its files. Returns a message with their names, or `None` if cancelled.
