@@ -176,20 +176,12 @@ impl Window {
             ),
         }
         if !self.waits_for_answer() && !ctx.text_edit_focused() {
-            let (mut copied, mut pasted) = (false, None);
-            ctx.input(|input| {
-                for event in &input.events {
-                    match event {
-                        egui::Event::Copy => copied = true,
-                        egui::Event::Paste(text) => pasted = Some(text.clone()),
-                        _ => {}
-                    }
-                }
-            });
-            if copied {
+            let events = ctx.input(|input| input.events.clone());
+            if events.contains(&egui::Event::Copy) {
                 self.copy_scene(ctx);
             }
-            if let Some(text) = pasted {
+            let pasted = |event| if let egui::Event::Paste(text) = event { Some(text) } else { None };
+            if let Some(text) = events.into_iter().rev().find_map(pasted) {
                 self.leave_for(ctx, Next::Text(text));
             }
         }
