@@ -160,7 +160,7 @@ impl Screen {
         });
         session.map.choose(axes);
         self.step();
-        assert!(self.window.session.wait_for_map(LONG), "{:?}", self.window.session.map.problem());
+        assert!(self.window.session.wait_for_map(LONG), "{:?}", self.window.session.map.problem);
     }
 
     /// A frame as the program does it, and its triangles.

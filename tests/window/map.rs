@@ -191,10 +191,10 @@ fn every_preset_has_a_map_or_says_why_not() {
         harness.run_steps(4);
         let mapping = &harness.state().session.map;
         assert!(
-            mapping.map().is_some() && mapping.problem().is_none(),
+            mapping.map().is_some() && mapping.problem.is_none(),
             "{}: {:?}",
             preset.name,
-            mapping.problem()
+            mapping.problem
         );
     }
 }

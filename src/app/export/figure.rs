@@ -285,7 +285,7 @@ impl Subject {
             // the figure sets the starts
             Self::Basins(..) => (scene.start, from.start) = (Start::Rest, Start::Rest),
             _ if !self.axes().is_empty() => {
-                scene = ground(&scene, session.remembered_stops(), self.axes());
+                scene = ground(&scene, session.remembered_stops, self.axes());
             }
             _ => {}
         }

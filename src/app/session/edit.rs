@@ -152,7 +152,7 @@ impl Session {
     fn with_stops_for(&self, path: &str) -> Scene {
         let mut scene = self.scene().clone();
         if scene.stops == Stops::None && path.starts_with("stops.") {
-            scene.stops = self.remembered_stops();
+            scene.stops = self.remembered_stops;
         }
         scene
     }
@@ -199,10 +199,6 @@ impl Session {
             self.remembered_stops = self.scene().stops;
         }
         self.edit_once(|scene| scene.stops = stops);
-    }
-
-    pub fn remembered_stops(&self) -> Stops {
-        self.remembered_stops
     }
 
     /// Goes back to the scene as it was opened or last saved, and plays it from its start.

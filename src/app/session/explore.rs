@@ -156,7 +156,7 @@ impl Session {
 
     fn walk_question(&self) -> Result<WalkQuestion, String> {
         let axis = self.walk_axis().ok_or("This scene has no field to walk over.")?;
-        let ground = ground(self.scene(), self.remembered_stops(), std::slice::from_ref(&axis));
+        let ground = ground(self.scene(), self.remembered_stops, std::slice::from_ref(&axis));
         let values = Axis::from_scene(&axis, &ground).map(|axis| axis.values);
         let values = values.map_err(|(part, problem)| format!("{part}: {problem}"))?;
         if !self.model().repeats() {
@@ -245,7 +245,7 @@ impl Session {
     /// m/s; to be called in every frame that shows them.
     pub fn want_basins(&mut self, (low, high): (f64, f64), v: (f64, f64)) {
         let still = self.stands_still();
-        let scene = ground(self.scene(), self.remembered_stops(), &[]);
+        let scene = ground(self.scene(), self.remembered_stops, &[]);
         let (of, x_mm) = (self.prepared(scene), (low * 1e3, high * 1e3));
         self.explore.basins.want(BasinsQuestion { of, x_mm, v, starts: STARTS }, still, &self.wake);
     }

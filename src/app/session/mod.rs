@@ -103,7 +103,7 @@ pub struct Session {
     /// Whether the motion was changed after its start, so that it is no run of the scene from its start.
     pub is_continued: bool,
     /// The stops that the scene gets when they are switched on.
-    remembered_stops: Stops,
+    pub(in crate::app) remembered_stops: Stops,
     /// The field of the current series of arrow key presses, and the time in s of the last press.
     presses: Option<(String, f64)>,
     /// Whether to withhold what it would take to cross the barrier, as the answer of a lesson.
@@ -112,7 +112,7 @@ pub struct Session {
     /// searched for, and Up and down has no coarse steps.
     pub is_lesson: bool,
     pub best: BestStops,
-    wake: Wake,
+    pub wake: Wake,
 }
 
 impl Session {
@@ -311,10 +311,6 @@ impl Session {
     /// Why the present scene cannot be run; the motion is then that of its last version that could.
     pub fn fault(&self) -> Option<&str> {
         self.fault.as_deref()
-    }
-
-    pub fn wake(&self) -> &Wake {
-        &self.wake
     }
 
     /// Whether the settled motion crosses the barrier; `None` until it is known.

@@ -307,7 +307,9 @@ impl Player {
     fn first(&self, kind: EventKind, after: f64) -> Option<Event> {
         let events = self.watch.events();
         let begin = events.partition_point(|event| event.t <= after);
-        events.range(begin..).find(|event| is_kind(event, kind)).copied()
+        // leaving a compliant stop counts as a release
+        let also = if kind == EventKind::Release { EventKind::Separate } else { kind };
+        events.range(begin..).find(|event| event.kind == kind || event.kind == also).copied()
     }
 
     fn follow(&mut self, goal: Goal) {
@@ -343,9 +345,4 @@ impl Player {
     fn arrive(&mut self, reached: Reached) {
         (self.goal, self.reached) = (None, Some(reached));
     }
-}
-
-/// Whether an event is of a kind; leaving a compliant stop counts as a release.
-fn is_kind(event: &Event, kind: EventKind) -> bool {
-    event.kind == kind || (kind == EventKind::Release && event.kind == EventKind::Separate)
 }

@@ -212,8 +212,6 @@ methods! {
     tray_stroke(style) -> Stroke = style.stroke(Role::Curve);
     /// The potential without the push.
     ghost_stroke(style) -> Stroke = style.stroke(Role::Reference);
-    /// The motion over time.
-    motion_stroke(style) -> Stroke = style.stroke(Role::Motion);
     /// The outline of a pinned motion's mass.
     ghost_mass_stroke(style) -> Stroke = Stroke::new(style.width(1.8), style.mass_ink());
     /// The height of the barrier where energies are compared with it.
@@ -222,8 +220,6 @@ methods! {
     focus_stroke(style) -> Stroke = Stroke::new(style.width(2.0), style.accent());
     /// Frame around the control or view that a lesson points at.
     pointing_stroke(style) -> Stroke = Stroke::new(style.width(3.0), style.mass_ink());
-    arrow_stroke(style) -> Stroke = Stroke::new(style.width(3.0), style.base());
-    flexure_stroke(style) -> Stroke = Stroke::new(style.width(2.0), style.ink());
     cursor_stroke(style) -> Stroke = Stroke::new(style.width(1.3), style.kind(Kind::Irregular));
     /// The lines over a view that is covered.
     hatching_stroke(style) -> Stroke = Stroke::new(style.width(1.0), style.border());
