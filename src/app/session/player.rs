@@ -80,11 +80,10 @@ impl Goal {
     }
 }
 
-/// How the way to a goal ended.
+/// How the way to a goal ended, if not at the event that was looked for.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Reached {
     Time,
-    Event(Event),
     /// No event of this kind came up to the time of the goal.
     Nothing(EventKind),
     Ended,
@@ -288,8 +287,7 @@ impl Player {
         if let (Goal::First(kind, _), Some(past)) = (goal, self.past)
             && let Some(event) = self.first(kind, past)
         {
-            self.seek(event.t);
-            return self.arrive(Reached::Event(event));
+            return self.seek(event.t);
         }
         (self.past, self.held, self.reached) = (None, false, None);
         self.goal = Some(goal);
@@ -322,8 +320,7 @@ impl Player {
             if let Goal::First(kind, _) = goal
                 && let Some(event) = self.first(kind, before)
             {
-                self.seek(event.t);
-                return self.arrive(Reached::Event(event));
+                return self.seek(event.t);
             }
             if self.watch.ended().is_some() {
                 return self.arrive(Reached::Ended);
