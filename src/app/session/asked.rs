@@ -140,9 +140,8 @@ mod tests {
             values: (0..200).map(|i| scale * (f64::from(i) * 0.01 + shift)).collect(),
         };
         let (across, values) = (channel(across, 1.0, -0.1), channel(values, 1e-3, 0.0));
-        let (path, name, units) = ("a.csv".into(), "a.csv".to_owned(), ["s", "m"]);
-        let (timing, range) = (None, (0.0, 2e-3));
-        MeasuredRecord { path, name, units, across, values, decimal_commas: false, timing, range }
+        let (path, units, range) = ("a.csv".into(), ["s", "m"], (0.0, 2e-3));
+        MeasuredRecord { path, units, across, values, decimal_commas: false, timing: None, range }
     }
 
     /// All questions about a scene that it can be asked.

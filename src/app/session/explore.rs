@@ -88,7 +88,6 @@ pub struct WalkQuestion {
     pub axis: SweepAxis,
     /// The scene, from rest, with its present value of the field.
     ground: Uncompared<Prepared>,
-    values: Uncompared<Vec<f64>>,
     /// The strides and directions of the walks, the coarse ones first.
     walks: Uncompared<Vec<(usize, Direction)>>,
 }
@@ -100,8 +99,9 @@ impl Question for WalkQuestion {
 
     fn answer(&self, cancel: &AtomicBool, each: Each<Self::Part>) -> Option<Self::Part> {
         let Prepared { of, mechanism, .. } = &self.ground.0;
+        let all = Axis::from_scene(&self.axis, of).ok()?.values;
         for stride in [COARSE, 1] {
-            let values: Vec<f64> = self.values.0.iter().step_by(stride).copied().collect();
+            let values: Vec<f64> = all.iter().step_by(stride).copied().collect();
             let of_stride = self.walks.0.iter().filter(|walk| walk.0 == stride);
             let directions: Vec<Direction> = of_stride.map(|walk| walk.1).collect();
             let (over, each) = ((&*self.axis.field, &*values), |visit| each((stride, visit)));
@@ -157,8 +157,7 @@ impl Session {
     fn walk_question(&self) -> Result<WalkQuestion, String> {
         let axis = self.walk_axis().ok_or("This scene has no field to walk over.")?;
         let ground = ground(self.scene(), self.remembered_stops, std::slice::from_ref(&axis));
-        let values = Axis::from_scene(&axis, &ground).map(|axis| axis.values);
-        let values = values.map_err(|(part, problem)| format!("{part}: {problem}"))?;
+        Axis::from_scene(&axis, &ground).map_err(|(part, problem)| format!("{part}: {problem}"))?;
         if !self.model().repeats() {
             return Err("Each run continues the one before, from phase 0 of the drive, which needs a drive \
                         that repeats, such as a sine."
@@ -167,11 +166,11 @@ impl Session {
         let mut scene = ground.clone();
         let is_set = FieldPath::new(&axis.field).set(&mut scene, axis.from);
         debug_assert!(is_set, "the axis is over a field of the scene");
-        let (ground, values) = (Uncompared(self.prepared(ground)), Uncompared(values));
+        let ground = Uncompared(self.prepared(ground));
         // coarse steps can lead to another motion, which would contradict the answer of a lesson
         let strides = if self.is_lesson { &[1][..] } else { &[COARSE, 1] };
         let walks = strides.iter().flat_map(|stride| Direction::ALL.map(|way| (*stride, way)));
-        Ok(WalkQuestion { scene, axis, ground, values, walks: Uncompared(walks.collect()) })
+        Ok(WalkQuestion { scene, axis, ground, walks: Uncompared(walks.collect()) })
     }
 
     /// Sets the field of the walks to a value, as part of a gesture.

@@ -20,9 +20,8 @@ use super::prepared::SharedModel;
 /// A measured record with its two chosen columns.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MeasuredRecord {
-    /// The path of its file, and the name of the file.
+    /// The path of its file.
     pub path: PathBuf,
-    pub name: String,
     /// The units of its two columns as their files have them; not a part of a question.
     #[serde(skip)]
     pub units: [&'static str; 2],
@@ -63,8 +62,8 @@ impl MeasuredRecord {
         let Measured { channels: [across, values], decimal_commas } = read;
         let timing = (across.quantity == Quantity::Time).then(|| Timing::of(&across.values));
         let range = extent(values.values.iter().copied());
-        let (name, path, units) = (file_name(path), path.to_owned(), chosen.map(|(_, unit)| unit.word()));
-        Ok(Self { path, name, units, across, values, decimal_commas, timing, range })
+        let (path, units) = (path.to_owned(), chosen.map(|(_, unit)| unit.word()));
+        Ok(Self { path, units, across, values, decimal_commas, timing, range })
     }
 
     pub fn describe(&self) -> String {

@@ -7,7 +7,7 @@ use std::sync::mpsc::channel;
 use eframe::egui::{self, Ui};
 
 use crate::app::session::editor::Editor;
-use crate::app::session::measured::MeasuredRecord;
+use crate::app::session::measured::{MeasuredRecord, file_name};
 use crate::app::ui::style::STATUS;
 use crate::app::views::View;
 use crate::questions::Error;
@@ -307,7 +307,8 @@ impl Window {
             MeasuredAnswer::Overlay(record) => self.overlay(*record),
             MeasuredAnswer::Shake(path, record) => match self.session.shake_with(&path, &record) {
                 Ok(warnings) => {
-                    let done = format!("The base is shaken with {}, from its start", record.name);
+                    let name = file_name(&record.path);
+                    let done = format!("The base is shaken with {name}, from its start");
                     match warnings.is_empty() {
                         true => self.messages.notify(done),
                         false => self.messages.alert(done, format!("The record {}.", warnings.join("; it "))),
