@@ -30,10 +30,8 @@ pub enum Subject {
     Run(Option<(f64, f64)>, Vec<RunPanel>),
     /// Force and potential of the mechanism.
     Curve,
-    /// The mechanism with the mass at a displacement in mm.
-    Mechanism(f64),
-    /// The mechanisms of this scene and of one given as a link, with the masses at displacements in mm.
-    SideBySide([f64; 2], String),
+    /// The mechanism with the mass at a displacement in mm, and beside it that of a scene given as a link.
+    Mechanism(f64, Option<(String, f64)>),
     /// Error over processor time, and the run by a method of fixed step in s, if one suits the scene.
     Accuracy(Option<(Scheme, f64)>),
     /// A record over the run or over the force curve.
@@ -114,15 +112,12 @@ impl Subject {
         let walks = &session.explore.walks;
         let problem = || walks.problem.clone().unwrap_or_else(|| NOT_SEEN.to_owned());
         let axis = session.walk_axis().filter(|_| walks.problem.is_none()).ok_or_else(problem)?;
-        Ok(match walks.quantity {
-            WalkQuantity::Strobes => Self::Diagram(axis),
-            WalkQuantity::LoadPower if session.model().has_transducer() => {
-                Self::Sweep(vec![axis], LOAD_POWER.to_owned(), View::Top)
-            }
-            WalkQuantity::RmsVelocity | WalkQuantity::LoadPower => {
-                Self::Sweep(vec![axis], RMS.to_owned(), View::Top)
-            }
-        })
+        let quantity = match walks.quantity {
+            WalkQuantity::Strobes => return Ok(Self::Diagram(axis)),
+            WalkQuantity::LoadPower if session.model().has_transducer() => LOAD_POWER,
+            WalkQuantity::RmsVelocity | WalkQuantity::LoadPower => RMS,
+        };
+        Ok(Self::Sweep(vec![axis], quantity.to_owned(), View::Top))
     }
 
     /// The map as a surface, or with cuts through the scene's place.
@@ -143,13 +138,14 @@ impl Subject {
 
     /// The mechanism with the mass at `x` in m.
     pub fn mechanism(x: f64) -> Self {
-        Self::Mechanism(tenths_of_um(x))
+        Self::Mechanism(tenths_of_um(x), None)
     }
 
     /// The mechanism beside that of the pin at this place, with the masses at these displacements in m.
     pub fn side_by_side(session: &Session, place: usize, x: [f64; 2]) -> Result<Self, String> {
         let pinned = session.pins.all().iter().map(|pin| &pin.scene).skip(place).take(1);
-        Ok(Self::SideBySide(x.map(tenths_of_um), links(session, pinned)?.remove(0)))
+        let ([here, there], link) = (x.map(tenths_of_um), links(session, pinned)?.remove(0));
+        Ok(Self::Mechanism(here, Some((link, there))))
     }
 
     pub fn accuracy(session: &Session) -> Self {
@@ -217,20 +213,15 @@ impl Subject {
                 "simulate"
             }
             Self::Curve => "curve",
-            Self::Mechanism(mm) => {
-                options.push(Argument::of("at-mm", mm.to_string()));
-                "curve"
-            }
-            Self::SideBySide([here, there], other) => {
-                options.push(Argument::of("at-mm", format!("{here},{there}")));
-                options.push(Argument::of("beside", other));
+            Self::Mechanism(here, beside) => {
+                let there = beside.as_ref().map_or_else(String::new, |(_, there)| format!(",{there}"));
+                options.push(Argument::of("at-mm", format!("{here}{there}")));
+                options.extend(beside.iter().map(|(other, _)| Argument::of("beside", other)));
                 "curve"
             }
             Self::Accuracy(stepped) => {
-                if let Some((scheme, step)) = stepped {
-                    options.push(Argument::of("step-s", step.to_string()));
-                    options.push(Argument::of("method", scheme.word()));
-                }
+                options.extend(stepped.map(|(_, step)| Argument::of("step-s", step.to_string())));
+                options.extend(stepped.map(|(scheme, _)| Argument::of("method", scheme.word())));
                 "accuracy"
             }
             Self::Measured(over) => {
@@ -336,7 +327,7 @@ impl FigureOrder {
         all.extend(options);
         let Place { path, sheet, data, .. } = &self.place;
         let plot = match self.subject {
-            Subject::Mechanism(_) | Subject::SideBySide(..) => "mechanism-plot",
+            Subject::Mechanism(..) => "mechanism-plot",
             _ => "plot",
         };
         all.push(Argument::of(plot, path.to_string_lossy()));
