@@ -109,10 +109,8 @@ const NOT_SEEN: &str = "Show this view first: the figure takes its ranges.";
 
 impl Subject {
     pub fn walks(session: &Session) -> Result<Self, String> {
-        let walks = &session.explore.walks;
-        let problem = || walks.problem.clone().unwrap_or_else(|| NOT_SEEN.to_owned());
-        let axis = session.walk_axis().filter(|_| walks.problem.is_none()).ok_or_else(problem)?;
-        let quantity = match walks.quantity {
+        let axis = session.walk_question()?.axis;
+        let quantity = match session.explore.walks.quantity {
             WalkQuantity::Strobes => return Ok(Self::Diagram(axis)),
             WalkQuantity::LoadPower if session.model().has_transducer() => LOAD_POWER,
             WalkQuantity::RmsVelocity | WalkQuantity::LoadPower => RMS,

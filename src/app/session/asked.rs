@@ -184,7 +184,7 @@ mod tests {
         let axes = [0, 1].map(|i| axis(&session, &fields[i]));
         if session.model().repeats() {
             session.explore.walks.chosen = Some(axes[0].clone());
-            session.want_walks();
+            session.want_walks().unwrap();
             compare(session.explore.walks.found.question(), true);
         }
         session.map.show(interwell_studies::study::SummaryField::find("work_j").unwrap());

@@ -128,7 +128,6 @@ pub struct Walks {
     pub quantity: WalkQuantity,
     /// The runs as they come, each with the stride of its walk.
     pub found: Background<WalkQuestion, (usize, Visit)>,
-    pub problem: Option<String>,
 }
 
 impl Session {
@@ -144,17 +143,15 @@ impl Session {
         Some(self.map_axis(path))
     }
 
-    /// Asks for the walks of the present scene; to be called in every frame that shows them.
-    pub fn want_walks(&mut self) {
-        let (still, question) = (self.stands_still(), self.walk_question());
-        let walks = &mut self.explore.walks;
-        walks.problem = question.as_ref().err().cloned();
-        if let Ok(question) = question {
-            walks.found.want(question, still, &self.wake);
-        }
+    /// Asks for the walks of the present scene, or says why there are none; to be called in every frame that
+    /// shows them.
+    pub fn want_walks(&mut self) -> Result<(), String> {
+        let (still, question) = (self.stands_still(), self.walk_question()?);
+        self.explore.walks.found.want(question, still, &self.wake);
+        Ok(())
     }
 
-    fn walk_question(&self) -> Result<WalkQuestion, String> {
+    pub(in crate::app) fn walk_question(&self) -> Result<WalkQuestion, String> {
         let axis = self.walk_axis().ok_or("This scene has no field to walk over.")?;
         let ground = ground(self.scene(), self.remembered_stops, std::slice::from_ref(&axis));
         Axis::from_scene(&axis, &ground).map_err(|(part, problem)| format!("{part}: {problem}"))?;

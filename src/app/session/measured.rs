@@ -211,7 +211,6 @@ pub struct MeasuredData {
     pub found: Background<MeasuredQuestion, Result<Differences, String>>,
     /// The shift in s that fits best, or why there is none.
     pub fit: Background<FitQuestion, Result<f64, String>>,
-    pub no_fit: Option<String>,
 }
 
 impl MeasuredData {
@@ -228,16 +227,14 @@ impl MeasuredData {
             over.shift = shift;
             over.centre = if typed { shift } else { over.centre };
             self.fit.clear();
-            self.no_fit = None;
         }
     }
 
     pub(super) fn poll(&mut self) {
         self.found.poll();
-        match self.fit.take() {
-            Some(Ok(shift)) => self.shift_to(shift, true),
-            Some(Err(why)) => self.no_fit = Some(why),
-            None => {}
+        self.fit.poll();
+        if let Some(Ok(shift)) = self.fit.answer().cloned() {
+            self.shift_to(shift, true);
         }
     }
 }
@@ -256,7 +253,7 @@ impl Session {
     /// Starts the search for the shift with which the record fits the run of the scene best.
     pub fn fit_shift(&mut self) {
         let Some(question) = self.measured_question() else { return };
-        self.measured.no_fit = None;
+        self.measured.fit.clear();
         self.measured.fit.ask(FitQuestion(question), &self.wake);
     }
 

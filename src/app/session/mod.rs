@@ -89,8 +89,6 @@ pub struct Session {
     is_coarse: bool,
     /// The tolerance with which the mechanism was solved.
     tolerance: f64,
-    /// Why the last change of the mechanism was refused.
-    refused: Option<String>,
     /// Live time in s of the last change: of the scene, or of the mass by hand.
     pub changed_at: f64,
     /// Whether the last change was a move of the mass by hand.
@@ -140,7 +138,6 @@ impl Session {
             mechanism_of: scene.mechanism.clone(),
             is_coarse: false,
             tolerance: FLEXURE_TOLERANCE,
-            refused: None,
             mechanism,
             changed_at: 0.0,
             by_hand: false,

@@ -45,7 +45,7 @@ pub fn measured_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
             }
             offset_ui(ui, context.session, &over);
         });
-        if let Some(why) = &context.session.measured.no_fit {
+        if let Some(Err(why)) = context.session.measured.fit.answer() {
             ui.label(format!("No shift was found. {why}"));
         }
         differences_ui(ui, context, &over);
