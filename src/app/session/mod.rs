@@ -28,7 +28,7 @@ use crate::dynamics::{Model, Outcome, Summary};
 use crate::mechanics::{FLEXURE_TOLERANCE, Mechanism};
 use crate::questions::Error;
 use crate::scene::{self, Scene, Stops};
-use interwell_studies::study::{self, Thresholds};
+use interwell_studies::study::{self, SummaryField, Thresholds};
 
 use accuracy::{Accuracy, LiveRun};
 use ask::{StopsQuestion, ThresholdsQuestion};
@@ -36,7 +36,7 @@ use best::BestStops;
 use build::{fault_message, first_stops, solve};
 use editor::Editor;
 use explore::Explore;
-use map::Mapping;
+use map::{LOAD_POWER, Mapping};
 use measured::MeasuredData;
 use pins::Pins;
 use player::{Player, opening_speed};
@@ -154,7 +154,7 @@ impl Session {
             wake,
         };
         session.map.trail.note(&session.built);
-        session.map.about_power = session.model.has_transducer();
+        session.map.quantity = SummaryField::find(LOAD_POWER).filter(|_| session.model.has_transducer());
         session.ask_settled();
         session.ask_thresholds();
         Ok(session)

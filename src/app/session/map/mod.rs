@@ -97,10 +97,8 @@ impl Question for CellsQuestion {
 
 #[derive(Default)]
 pub struct Mapping {
-    /// The quantity that the user has chosen.
-    quantity: Option<&'static SummaryField>,
-    /// Whether the map opens on the mean power into the load, and not on the RMS velocity.
-    pub about_power: bool,
+    /// The quantity that is shown; `None` for the RMS velocity.
+    pub(super) quantity: Option<&'static SummaryField>,
     pub trail: Trail,
     /// The axes that the user has chosen; `None` for the default axes.
     chosen: Option<[SweepAxis; 2]>,
@@ -159,8 +157,7 @@ impl Mapping {
     }
 
     pub fn quantity(&self) -> &'static SummaryField {
-        let power = || SummaryField::find(LOAD_POWER).filter(|_| self.about_power);
-        self.quantity.or_else(power).unwrap_or(&RMS_VELOCITY)
+        self.quantity.unwrap_or(&RMS_VELOCITY)
     }
 
     pub fn show(&mut self, quantity: &'static SummaryField) {
