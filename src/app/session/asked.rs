@@ -115,13 +115,13 @@ mod tests {
         let mut session = Session::new(Editor::new(document), Arc::new(|| ())).unwrap();
         session.player.speed = 1.0;
         session.player.set_playing(true);
-        (0..4).for_each(|_| session.player.tick(0.09));
+        (0..4).for_each(|_| _ = session.player.tick(0.09));
         let field = "excitation.frequency_hz";
         if let Some(hz) = session.number(field) {
             session.set_number(field, 1.1 * hz).unwrap();
             session.end_gesture();
         }
-        (0..4).for_each(|_| session.player.tick(0.07));
+        (0..4).for_each(|_| _ = session.player.tick(0.07));
         session.moved_by_hand();
         session
     }

@@ -42,7 +42,7 @@ impl Session {
         let (mechanism, _) = solved.map_err(|error| fault_message(&error, &document.scene))?;
         let wanted = document.scene.mechanism;
         (self.mechanism, self.mechanism_of) = (mechanism, wanted.clone());
-        (self.is_coarse, self.tolerance) = (true, GESTURE_TOLERANCE);
+        self.tolerance = GESTURE_TOLERANCE;
         Ok(self.edit(|scene| scene.mechanism = wanted))
     }
 
@@ -58,7 +58,7 @@ impl Session {
 
     /// Solves a coarsely solved mechanism with the full tolerance; if that fails, the coarse solution stays.
     fn solve_fully(&mut self) {
-        if !std::mem::take(&mut self.is_coarse) {
+        if self.tolerance != GESTURE_TOLERANCE {
             return;
         }
         let Ok((mechanism, model)) = solve(&self.editor.runnable(), FLEXURE_TOLERANCE) else { return };

@@ -85,9 +85,7 @@ pub struct Session {
     mechanism: Arc<Mechanism>,
     /// What the mechanism was built from, so that a table is fitted once and not at every move of a slider.
     mechanism_of: scene::Mechanism,
-    /// Whether the mechanism was solved with the coarse tolerance of a gesture, and is to be solved again.
-    is_coarse: bool,
-    /// The tolerance with which the mechanism was solved.
+    /// The tolerance with which the mechanism was solved: coarse during a gesture.
     tolerance: f64,
     /// Live time in s of the last change: of the scene, or of the mass by hand.
     pub changed_at: f64,
@@ -136,7 +134,6 @@ impl Session {
             measured: MeasuredData::default(),
             before: None,
             mechanism_of: scene.mechanism.clone(),
-            is_coarse: false,
             tolerance: FLEXURE_TOLERANCE,
             mechanism,
             changed_at: 0.0,

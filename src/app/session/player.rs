@@ -100,8 +100,6 @@ pub struct Player {
     /// Whether the mass is held by hand, which stops the clock.
     held: bool,
     goal: Option<Goal>,
-    /// How the last fast forward ended, until it is reported.
-    reached: Option<Reached>,
     /// Whether a view of this frame shows the energy ledger.
     wants_ledgers: bool,
 }
@@ -115,7 +113,6 @@ impl Player {
             past: None,
             held: false,
             goal: None,
-            reached: None,
             wants_ledgers: false,
         }
     }
@@ -131,13 +128,15 @@ impl Player {
         (self.playing, self.goal) = (playing, None);
     }
 
-    /// Plays for `seconds` of real time.
-    pub fn tick(&mut self, seconds: f64) {
+    /// Plays for `seconds` of real time. Returns how the way to a goal has ended, if it has.
+    pub fn tick(&mut self, seconds: f64) -> Option<Reached> {
         if let Some(goal) = self.goal {
-            self.follow(goal);
-        } else if self.is_playing() {
+            return self.follow(goal);
+        }
+        if self.is_playing() {
             self.go(seconds.clamp(0.0, LONGEST_FRAME) * self.speed);
         }
+        None
     }
 
     /// Pauses, and advances by a single step.
@@ -289,16 +288,11 @@ impl Player {
         {
             return self.seek(event.t);
         }
-        (self.past, self.held, self.reached) = (None, false, None);
-        self.goal = Some(goal);
+        (self.past, self.held, self.goal) = (None, false, Some(goal));
     }
 
     pub fn goal(&self) -> Option<Goal> {
         self.goal
-    }
-
-    pub fn take_reached(&mut self) -> Option<Reached> {
-        self.reached.take()
     }
 
     /// The first remembered event of a kind after a time in s.
@@ -310,7 +304,7 @@ impl Player {
         events.range(begin..).find(|event| event.kind == kind || event.kind == also).copied()
     }
 
-    fn follow(&mut self, goal: Goal) {
+    fn follow(&mut self, goal: Goal) -> Option<Reached> {
         let (begun, until) = (WallClock::start(), goal.until());
         let interval = if matches!(goal, Goal::First(..)) { CHECK_INTERVAL.1 } else { CHECK_INTERVAL.0 };
         let stretch = interval * self.watch.model_at(self.watch.time()).characteristic_time();
@@ -320,26 +314,25 @@ impl Player {
             if let Goal::First(kind, _) = goal
                 && let Some(event) = self.first(kind, before)
             {
-                return self.seek(event.t);
+                self.seek(event.t);
+                return None;
             }
             if self.watch.ended().is_some() {
-                return self.arrive(Reached::Ended);
+                self.goal = None;
+                return Some(Reached::Ended);
             }
             // also if the stretch is too short to change the time in floating point
             if self.watch.time() >= until || arrived && self.watch.time() <= before {
+                self.set_playing(matches!(goal, Goal::Settled(_)));
                 return match goal {
-                    Goal::Time(_) => self.arrive(Reached::Time),
-                    Goal::Settled(_) => self.set_playing(true),
-                    Goal::First(kind, _) => self.arrive(Reached::Nothing(kind)),
+                    Goal::Time(_) => Some(Reached::Time),
+                    Goal::Settled(_) => None,
+                    Goal::First(kind, _) => Some(Reached::Nothing(kind)),
                 };
             }
             if begun.elapsed() >= FRAME_SHARE {
-                return;
+                return None;
             }
         }
-    }
-
-    fn arrive(&mut self, reached: Reached) {
-        (self.goal, self.reached) = (None, Some(reached));
     }
 }

@@ -95,8 +95,8 @@ impl Window {
         if let Some(left) = self.session.follow_presses(ctx.input(|input| input.time)) {
             ctx.request_repaint_after_secs(left as f32);
         }
-        self.session.player.tick(self.pace.seconds(ctx));
-        if let Some(reached) = self.session.player.take_reached().filter(|_| !self.motion_is_covered()) {
+        let reached = self.session.player.tick(self.pace.seconds(ctx));
+        if let Some(reached) = reached.filter(|_| !self.motion_is_covered()) {
             self.messages.report_reached(reached, self.session.player.time());
         }
         self.session.follow_pins();
