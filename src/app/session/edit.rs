@@ -30,8 +30,8 @@ impl Session {
         changed
     }
 
-    /// Changes the mechanism as part of a gesture, if the changed one can be solved and run. Returns whether it
-    /// changed, or why the change was refused.
+    /// Changes the mechanism as part of a gesture, if the changed one can be solved and run. Returns whether
+    /// it changed, or why the change was refused.
     pub fn edit_mechanism(&mut self, change: impl FnOnce(&mut Mechanism)) -> Result<bool, String> {
         let mut document = self.editor.runnable();
         change(&mut document.scene.mechanism);
