@@ -211,9 +211,11 @@ impl BasinsQuestion {
         let Prepared { of, mechanism, .. } = &self.of;
         let begun = question.begin(question.starts()?, &of.document(), mechanism)?;
         let per_speed = suited_unit("m/s", [self.v.0, self.v.1].into_iter()).0;
-        let level = |basins: &_, answer: Answer| {
-            let (chart, words) = (basins_chart(basins, &answer), answer.words());
-            Level { chart, words, per_speed, answer, room: basins.room() }
+        let level = |basins: &_, answer: Answer| Level {
+            chart: basins_chart(basins, &answer),
+            per_speed,
+            answer,
+            room: basins.room(),
         };
         let coarse = |basins: &_, answer| each(level(basins, answer));
         let BasinsAnswer { basins, answer } = Basins::followed(begun, &progress(cancel), Some(&coarse))?;
@@ -226,8 +228,6 @@ impl BasinsQuestion {
 pub struct Level {
     /// The attractors, and the attractor that each start goes to.
     pub answer: Answer,
-    /// A description of each attractor that distinguishes it from the others.
-    pub words: Vec<String>,
     /// Their picture, in which a start that has not been run shows the answer of a neighbour.
     pub chart: Chart,
     /// 1 m/s in the unit of the chart's velocities.
