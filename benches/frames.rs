@@ -160,7 +160,7 @@ impl Screen {
         });
         session.map.choose(axes);
         self.step();
-        assert!(self.window.session.wait_for_map(LONG), "{:?}", self.window.session.map.problem());
+        assert!(self.window.session.wait_for_map(LONG), "{:?}", self.window.session.map.problem);
     }
 
     /// A frame as the program does it, and its triangles.
@@ -226,11 +226,12 @@ fn main() {
     }
     let shaken = |window: &mut Window, frame: usize| shake(window, 0.6 + 1e-3 * (frame % 500) as f64);
     let preloaded = |window: &mut Window, frame: usize| {
-        window.session.edit_mechanism(|mechanism| {
+        let changed = window.session.edit_mechanism(|mechanism| {
             if let Mechanism::Flexures { preload_mm, .. } = mechanism {
                 *preload_mm = 2.5 + 1e-3 * (frame % 400) as f64;
             }
         });
+        changed.unwrap();
     };
     for (open, what, allowed) in [
         (Open::Layout(Layout::Look), "Look", LOOK_MS),

@@ -105,15 +105,9 @@ impl<T> PartialEq for Uncompared<T> {
 }
 
 /// A shared value that is compared by its address, not by its content.
-#[derive(Debug, Serialize, Deserialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Identity<T>(pub Arc<T>);
-
-impl<T> Clone for Identity<T> {
-    fn clone(&self) -> Self {
-        Self(Arc::clone(&self.0))
-    }
-}
 
 impl<T> PartialEq for Identity<T> {
     fn eq(&self, other: &Self) -> bool {

@@ -7,6 +7,7 @@ use interwell::app::session::pins::PinKind;
 use interwell::app::ui::settings::{Setting, Settings};
 use interwell::app::views::View;
 use interwell::app::window::{Command, Window};
+use interwell::dynamics::EventKind;
 use interwell::scene::{Layout, PRESETS, Stops};
 
 use crate::screen::Screen;
@@ -337,8 +338,8 @@ fn a_command_that_is_grey_in_the_menu_does_nothing() {
     let window = harness.state();
     for (command, is_grey) in [
         (Command::Undo, true),
-        (Command::NextRelease, true),
-        (Command::NextCrossing, false),
+        (Command::GoTo(EventKind::Release), true),
+        (Command::GoTo(EventKind::Crossing), false),
         (Command::LeaveLesson, true),
         (Command::Pin(PinKind::Motion), false),
         (Command::Toggle(Setting::Dark), false),

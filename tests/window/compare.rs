@@ -49,7 +49,7 @@ fn a_pin_of_the_scene_lies_on_the_motion_to_the_bit() {
     harness.key_press(Key::K);
     harness.run_steps(30);
     // in steps of any length
-    command(&mut harness, Command::NextEvent);
+    command(&mut harness, Command::SeekEvent(true));
     command(&mut harness, Command::Step);
     command(&mut harness, Command::Speed(6));
     command(&mut harness, Command::PlayPause);
@@ -226,7 +226,7 @@ fn every_view_draws_pins() {
         }
         assert_eq!(harness.state().session.pins.all().len(), 3);
         harness.state_mut().session.wait_settled(LONG);
-        command(&mut harness, Command::PreviousEvent);
+        command(&mut harness, Command::SeekEvent(false));
     }
 }
 

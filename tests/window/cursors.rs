@@ -22,7 +22,7 @@ fn played(size: [f32; 2]) -> Harness<'static, Window> {
     let mut harness = window("paper", size);
     let player = &mut harness.state_mut().session.player;
     player.speed = 10.0;
-    (0..4).for_each(|_| player.tick(0.1));
+    (0..4).for_each(|_| _ = player.tick(0.1));
     player.set_playing(false);
     harness.run_steps(3);
     harness
@@ -187,7 +187,7 @@ fn distances_are_read_off_with_their_rate() {
     command(&mut harness, Command::Pin(PinKind::Twin));
     let session = &mut harness.state_mut().session;
     session.player.speed = 10.0;
-    (0..3).for_each(|_| session.player.tick(0.1));
+    (0..3).for_each(|_| _ = session.player.tick(0.1));
     while session.pins.are_behind(session.player.time()) {
         session.follow_pins();
     }

@@ -17,7 +17,7 @@ fn listed(preset: &str, size: [f32; 2], seconds: usize) -> Harness<'static, Wind
     let mut harness = window(preset, size);
     let player = &mut harness.state_mut().session.player;
     player.speed = 10.0;
-    (0..seconds).for_each(|_| player.tick(0.1));
+    (0..seconds).for_each(|_| _ = player.tick(0.1));
     player.set_playing(false);
     for view in View::ALL {
         command(&mut harness, Command::Show(view, view == View::Events));
@@ -65,7 +65,7 @@ fn a_compliant_contact_has_no_loss_of_one_instant() {
     let mut session =
         settled("paper", &["stops=Hertz(travel_limit_mm:1.5,radius_mm:5,young_gpa:69,loss_s_per_m:4.854)"]);
     session.player.speed = 10.0;
-    (0..20).for_each(|_| session.player.tick(0.1));
+    (0..20).for_each(|_| _ = session.player.tick(0.1));
     let watch = session.player.watch();
     let table = watched_events(watch, 0..usize::MAX);
     let touches = watch.events().iter().zip(table.numbers("lost_j").unwrap());

@@ -35,7 +35,7 @@ fn save(harness: &mut Harness<'static, Window>) {
     press_button(harness, "Save");
     wait_until("the figure", || {
         harness.run_steps(1);
-        assert_eq!(harness.state().figures.problem(), None);
+        assert_eq!(harness.state().figures.problem, None);
         harness.query_by_label("Save a figure").is_none()
     });
     assert!(harness.state().notice().is_some_and(|text| text.starts_with("Saved ")));
@@ -342,7 +342,7 @@ fn what_cannot_be_saved_is_said_and_loses_nothing() {
     press_button(&mut harness, "Save");
     wait_until("the refusal", || {
         harness.run_steps(1);
-        harness.state().figures.problem().is_some()
+        harness.state().figures.problem.is_some()
     });
     harness.get_by_label_contains("it is a folder");
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
@@ -396,7 +396,7 @@ fn a_pasted_scene_is_saved_first_and_a_changed_file_is_not_drawn_as_another() {
     press_button(&mut harness, "Save");
     wait_until("the refusal", || {
         harness.run_steps(1);
-        harness.state().figures.problem().is_some()
+        harness.state().figures.problem.is_some()
     });
     harness.get_by_label_contains("has changed since it was opened");
     assert!(!folder.path().join("a.svg").exists());

@@ -445,6 +445,7 @@ fn the_time_until_the_motion_has_settled_can_be_skipped() {
         harness.run_steps(3);
         assert!(harness.state().session.sentence().text.contains("will cross twice a period"));
         harness.get_by_label_contains("to go, skip").click();
+        harness.run_steps(1);
         arrive(&mut harness);
         let session = &harness.state().session;
         assert!(session.settling().is_none() && session.player.is_playing() && session.player.time() < 3.0);

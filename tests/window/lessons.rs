@@ -269,7 +269,7 @@ fn a_prediction_covers_every_result() {
             let seen: Vec<_> = painted(&harness).into_iter().filter(|label| label.0.contains(text)).collect();
             assert!(!is_anywhere(&harness, text), "{}: {text} {seen:?}", entry.name);
         }
-        for asked in [Command::CopyCommand, Command::SaveAs(Wanted::Run), Command::SaveAs(Wanted::Events)] {
+        for asked in [Command::CopyCommand, Command::Choose(Wanted::Run), Command::Choose(Wanted::Events)] {
             command(&mut harness, asked);
             assert_eq!(harness.state().notice(), Some("First choose what you expect"));
             let copied = |command: &OutputCommand| matches!(command, OutputCommand::CopyText(_));

@@ -191,10 +191,10 @@ fn every_preset_has_a_map_or_says_why_not() {
         harness.run_steps(4);
         let mapping = &harness.state().session.map;
         assert!(
-            mapping.map().is_some() && mapping.problem().is_none(),
+            mapping.map().is_some() && mapping.problem.is_none(),
             "{}: {:?}",
             preset.name,
-            mapping.problem()
+            mapping.problem
         );
     }
 }
@@ -206,7 +206,7 @@ fn a_map_that_cannot_be_made_says_of_which_scene() {
     // settled beyond the end of the run
     session.map.choose(Some([axis("run.settle_s", (1.0, 20.0, 1.0)), amplitude]));
     session.want_map(0.0);
-    let problem = session.map.problem().unwrap();
+    let problem = session.map.problem.clone().unwrap();
     assert!(problem.starts_with("built-in paper: "), "{problem}");
 }
 

@@ -49,7 +49,7 @@ fn frames_keep_nothing() {
     screen.steps(3);
     let player = &mut screen.window.session.player;
     player.speed = 100.0;
-    (0..400).for_each(|_| player.tick(0.1));
+    (0..400).for_each(|_| _ = player.tick(0.1));
     player.speed = 1.0;
     assert!(player.watch().samples().len() == 200_000 && player.watch().events().len() == 50_000);
     screen.window.session.wait(crate::support::LONG);

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use eframe::egui::{Color32, Pos2, Rect, Shape, Stroke, epaint::ColorMode, vec2};
+use eframe::egui::{Color32, Pos2, Rect, Shape, epaint::ColorMode, vec2};
 use egui_kittest::Harness;
 use interwell::app::views::View;
 use interwell::app::window::{Command, Window};
@@ -256,7 +256,7 @@ fn names_of_parts_keep_clear_of_what_is_drawn() {
             harness.run_steps(2);
             let (_, body) = masses(&harness);
             let all = shapes(&harness);
-            let ink = style(&harness).color;
+            let ink = interwell::app::ui::style::Style::of(&harness.ctx, false).ink();
             for (text, place, _) in painted(&harness) {
                 if names.iter().any(|name| text.starts_with(name)) && !text.contains(" from ") {
                     let inner = place.shrink(1.0);
@@ -268,11 +268,6 @@ fn names_of_parts_keep_clear_of_what_is_drawn() {
         }
         assert!(count > 17, "{preset}: {count}");
     }
-}
-
-/// The line of a flexure.
-fn style(harness: &Harness<'static, Window>) -> Stroke {
-    interwell::app::ui::style::Style::of(&harness.ctx, false).flexure_stroke()
 }
 
 #[test]

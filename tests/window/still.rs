@@ -4,6 +4,7 @@ use eframe::egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect, accesskit::
 use egui_kittest::kittest::Queryable as _;
 use interwell::app::views::View;
 use interwell::app::window::Command;
+use interwell::dynamics::EventKind;
 use interwell::scene::{Layout, PRESETS};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng as _, SeedableRng as _};
@@ -30,7 +31,13 @@ fn gesture(random: &mut ChaCha8Rng, screen: &mut Screen) -> (String, Vec<Vec<Eve
     if wanted == Role::Unknown {
         let (keys, commands) = (
             [Key::Space, Key::PageDown, Key::PageUp, Key::H, Key::Home, Key::K, Key::B, Key::C, Key::Num5],
-            [Command::Undo, Command::Redo, Command::BestStops, Command::Step, Command::NextCrossing],
+            [
+                Command::Undo,
+                Command::Redo,
+                Command::BestStops,
+                Command::Step,
+                Command::GoTo(EventKind::Crossing),
+            ],
         );
         let at = below(keys.len() + commands.len());
         let Some(key) = keys.get(at) else {

@@ -33,7 +33,7 @@ pub fn wait_until(what: &str, mut condition: impl FnMut() -> bool) {
 /// Waits until no thread works for a window: each holds its wake to the end, as the window and its session
 /// do.
 pub fn wait_for_threads(window: &Window) {
-    wait_until("threads end", || Arc::strong_count(window.session.wake()) == 2);
+    wait_until("threads end", || Arc::strong_count(&window.session.wake) == 2);
 }
 
 /// A window on a built-in scene, with its first answers there.

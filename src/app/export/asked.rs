@@ -92,10 +92,4 @@ mod tests {
             compare(&RunQuestion { model, path: path.clone() }, std::slice::from_ref(&path));
         }
     }
-
-    #[test]
-    fn an_unknown_name_is_an_error() {
-        let asked = answer("weather", &[], &AtomicBool::new(false), &|_| ());
-        assert_eq!(asked.unwrap_err(), "no question is called weather");
-    }
 }

@@ -44,9 +44,8 @@ fn figure(order: &FigureOrder, cancel: &AtomicBool) -> Result<Figure> {
     let chart = match &order.subject {
         Subject::Run(times, panels) => drawing.run(*times, panels),
         Subject::Curve => drawing.curve(),
-        Subject::Mechanism(mm) => drawing.mechanism_at(*mm),
+        Subject::Mechanism(mm, beside) => drawing.mechanism_at(*mm, beside.as_ref(), &mut caption),
         Subject::Well(mm, accel_g) => drawing.well(*mm, *accel_g),
-        Subject::SideBySide(mm, other) => drawing.side_by_side(*mm, other, &mut caption),
         Subject::Accuracy(stepped) => drawing.accuracy(*stepped),
         Subject::Measured(over) => drawing.measured(over),
         Subject::Sweep(_, quantity, view) => drawing.sweep(&order.subject, quantity, view.clone()),
@@ -113,10 +112,6 @@ impl Drawing<'_> {
         Ok(curve_chart(&table, mechanism, stop_positions(scene), Ranges::default()))
     }
 
-    fn mechanism_at(&self, mm: f64) -> Result<Chart> {
-        Ok(mechanism_chart(&[(self.simulation()?.model(), metres(mm))])?)
-    }
-
     fn well(&self, mm: f64, accel_g: f64) -> Result<Chart> {
         let simulation = self.simulation()?;
         let ends = default_positions(simulation.scene(), simulation.mechanism(), 2);
@@ -124,11 +119,13 @@ impl Drawing<'_> {
         Ok(well_chart(simulation.model(), x, base_accel, (ends[0], ends[1])))
     }
 
-    fn side_by_side(&self, mm: [f64; 2], other: &str, caption: &mut Caption) -> Result<Chart> {
-        let simulations = [self.simulation()?, self.beside(other)?];
-        *caption = std::mem::take(caption).with_others([simulations[1].document()]);
-        let [here, there] = [0, 1].map(|i| (simulations[i].model(), metres(mm[i])));
-        Ok(mechanism_chart(&[here, there])?)
+    fn mechanism_at(&self, mm: f64, beside: Option<&(String, f64)>, caption: &mut Caption) -> Result<Chart> {
+        let simulation = self.simulation()?;
+        let here = (simulation.model(), metres(mm));
+        let Some((link, mm)) = beside else { return Ok(mechanism_chart(&[here])?) };
+        let other = self.beside(link)?;
+        *caption = std::mem::take(caption).with_others([other.document()]);
+        Ok(mechanism_chart(&[here, (other.model(), metres(*mm))])?)
     }
 
     /// The simulation of the scene of a link.

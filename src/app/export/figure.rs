@@ -22,7 +22,7 @@ use crate::scene::{FieldPath, Scene, Start, SweepAxis, arguments};
 use crate::system::files;
 
 use super::drawing::draw;
-use super::{WriteResult, quoted};
+use super::{WriteResult, line};
 
 /// What a figure shows, with the options of its command.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -31,13 +31,11 @@ pub enum Subject {
     Run(Option<(f64, f64)>, Vec<RunPanel>),
     /// Force and potential of the mechanism.
     Curve,
-    /// The mechanism with the mass at a displacement in mm.
-    Mechanism(f64),
+    /// The mechanism with the mass at a displacement in mm, and beside it that of a scene given as a link.
+    Mechanism(f64, Option<(String, f64)>),
     /// The potential with the mass at a displacement in mm, tipped by the push of the base at an acceleration
     /// in g.
     Well(f64, f64),
-    /// The mechanisms of this scene and of one given as a link, with the masses at displacements in mm.
-    SideBySide([f64; 2], String),
     /// Error over processor time, and the run by a method of fixed step in s, if one suits the scene.
     Accuracy(Option<(Scheme, f64)>),
     /// A record over the run or over the force curve.
@@ -115,18 +113,13 @@ const NOT_SEEN: &str = "Show this view first: the figure takes its ranges.";
 
 impl Subject {
     pub fn walks(session: &Session) -> Result<Self, String> {
-        let walks = &session.explore.walks;
-        let problem = || walks.problem.clone().unwrap_or_else(|| NOT_SEEN.to_owned());
-        let axis = session.walk_axis().filter(|_| walks.problem.is_none()).ok_or_else(problem)?;
-        Ok(match walks.quantity {
-            WalkQuantity::Strobes => Self::Diagram(axis),
-            WalkQuantity::LoadPower if session.model().has_transducer() => {
-                Self::Sweep(vec![axis], LOAD_POWER.to_owned(), View::Top)
-            }
-            WalkQuantity::RmsVelocity | WalkQuantity::LoadPower => {
-                Self::Sweep(vec![axis], RMS.to_owned(), View::Top)
-            }
-        })
+        let axis = session.walk_question()?.axis;
+        let quantity = match session.explore.walks.quantity {
+            WalkQuantity::Strobes => return Ok(Self::Diagram(axis)),
+            WalkQuantity::LoadPower if session.model().has_transducer() => LOAD_POWER,
+            WalkQuantity::RmsVelocity | WalkQuantity::LoadPower => RMS,
+        };
+        Ok(Self::Sweep(vec![axis], quantity.to_owned(), View::Top))
     }
 
     /// The map as a surface, or with cuts through the scene's place.
@@ -147,7 +140,7 @@ impl Subject {
 
     /// The mechanism with the mass at `x` in m.
     pub fn mechanism(x: f64) -> Self {
-        Self::Mechanism(tenths_of_um(x))
+        Self::Mechanism(tenths_of_um(x), None)
     }
 
     /// The potential with the mass at `x` in m and the base's acceleration in m/s^2.
@@ -158,7 +151,8 @@ impl Subject {
     /// The mechanism beside that of the pin at this place, with the masses at these displacements in m.
     pub fn side_by_side(session: &Session, place: usize, x: [f64; 2]) -> Result<Self, String> {
         let pinned = session.pins.all().iter().map(|pin| &pin.scene).skip(place).take(1);
-        Ok(Self::SideBySide(x.map(tenths_of_um), links(session, pinned)?.remove(0)))
+        let ([here, there], link) = (x.map(tenths_of_um), links(session, pinned)?.remove(0));
+        Ok(Self::Mechanism(here, Some((link, there))))
     }
 
     pub fn accuracy(session: &Session) -> Self {
@@ -226,25 +220,20 @@ impl Subject {
                 "simulate"
             }
             Self::Curve => "curve",
-            Self::Mechanism(mm) => {
-                options.push(Argument::of("at-mm", mm.to_string()));
-                "curve"
-            }
             Self::Well(mm, accel_g) => {
                 options.push(Argument::of("at-mm", mm.to_string()));
                 options.push(Argument::of("base-accel-g", accel_g.to_string()));
                 "curve"
             }
-            Self::SideBySide([here, there], other) => {
-                options.push(Argument::of("at-mm", format!("{here},{there}")));
-                options.push(Argument::of("beside", other));
+            Self::Mechanism(here, beside) => {
+                let there = beside.as_ref().map_or_else(String::new, |(_, there)| format!(",{there}"));
+                options.push(Argument::of("at-mm", format!("{here}{there}")));
+                options.extend(beside.iter().map(|(other, _)| Argument::of("beside", other)));
                 "curve"
             }
             Self::Accuracy(stepped) => {
-                if let Some((scheme, step)) = stepped {
-                    options.push(Argument::of("step-s", step.to_string()));
-                    options.push(Argument::of("method", scheme.word()));
-                }
+                options.extend(stepped.map(|(_, step)| Argument::of("step-s", step.to_string())));
+                options.extend(stepped.map(|(scheme, _)| Argument::of("method", scheme.word())));
                 "accuracy"
             }
             Self::Measured(over) => {
@@ -299,7 +288,7 @@ impl Subject {
             // the figure sets the starts
             Self::Basins(..) => (scene.start, from.start) = (Start::Rest, Start::Rest),
             _ if !self.axes().is_empty() => {
-                scene = ground(&scene, session.remembered_stops(), self.axes());
+                scene = ground(&scene, session.remembered_stops, self.axes());
             }
             _ => {}
         }
@@ -350,7 +339,7 @@ impl FigureOrder {
         all.extend(options);
         let Place { path, sheet, data, .. } = &self.place;
         let plot = match self.subject {
-            Subject::Mechanism(_) | Subject::SideBySide(..) => "mechanism-plot",
+            Subject::Mechanism(..) => "mechanism-plot",
             Subject::Well(..) => "well-plot",
             _ => "plot",
         };
@@ -368,8 +357,7 @@ impl FigureOrder {
     /// The command line that makes the same file without a window.
     pub fn command_line(&self) -> String {
         let (command, all) = self.command_with_arguments();
-        let words: Vec<String> = all.iter().flat_map(Argument::words).map(|word| quoted(&word)).collect();
-        format!("interwell --headless {command} {}", words.join(" "))
+        line(command, &all)
     }
 
     /// Draws the figure and writes its files. Returns a message with their names, or `None` if cancelled.

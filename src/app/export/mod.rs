@@ -12,13 +12,13 @@ use eframe::egui::ColorImage;
 use serde::{Deserialize, Serialize};
 
 use crate::app::session::Session;
-use crate::app::session::editor::keep_start_inside;
+use crate::app::session::editor::{Editor, keep_start_inside};
 use crate::app::session::map::over;
 use crate::app::session::measured::file_name;
 use crate::app::session::player::Player;
 use crate::app::session::prepared::SharedModel;
 use crate::app::task::{Each, Question, progress, told};
-use crate::output::{csv, write_file};
+use crate::output::{Argument, csv, write_file};
 use crate::questions::{Curve, Error, Sampling};
 use crate::scene::{FieldPath, Scene, arguments};
 use interwell_studies::study::{continued_scene, events_table, samples_table, watched_events};
@@ -85,7 +85,6 @@ pub fn png(image: &ColorImage) -> Result<Vec<u8>, String> {
 /// scene that is not built in and has not been saved to a file.
 pub fn command_line(session: &Session) -> Option<(String, &'static str)> {
     let editor = &session.editor;
-    let mut line = format!("interwell --headless simulate {}", quoted(&editor.origin()?));
     let here = || continued_scene(editor.scene(), &session.player.watch().from_here()?);
     let is_continued = session.is_continued && session.fault().is_none();
     let from_start = match is_continued {
@@ -97,34 +96,36 @@ pub fn command_line(session: &Session) -> Option<(String, &'static str)> {
         None => (editor.scene().clone(), from_start),
     };
     keep_start_inside(&mut scene);
-    line += &settings(editor.named(), &scene);
-    Some((line, runs))
+    Some((line("simulate", &scene_arguments(editor, editor.named(), &scene)?), runs))
 }
 
 /// The command that makes the map without a window. Returns `None` if there is no map, and for a scene that
 /// is not built in and has not been saved to a file.
 pub fn map_command_line(session: &Session) -> Option<String> {
     let (question, editor) = (&session.map.map()?.question, &session.editor);
-    let mut line = format!("interwell --headless sweep {}", quoted(&editor.origin()?));
     let mut from = editor.named().clone();
     // the fields of the axes need no `--set`
     for axis in &question.axes {
         let known = FieldPath::new(&axis.field).set(&mut from, axis.from);
         debug_assert!(known || editor.named().stops != question.scene.stops);
     }
-    line += &settings(&from, &question.scene);
-    for axis in &question.axes {
-        line += &format!(" --over {}", quoted(&over(axis)));
-    }
-    if let Some(columns) = session.map.columns() {
-        line += &format!(" --columns {}", columns.join(","));
-    }
-    Some(line)
+    let mut all = scene_arguments(editor, &from, &question.scene)?;
+    all.extend(question.axes.iter().map(|axis| Argument::of("over", over(axis))));
+    all.extend(session.map.columns().map(|columns| Argument::of("columns", columns.join(","))));
+    Some(line("sweep", &all))
 }
 
-/// The `--set` options that change one scene into another.
-fn settings(from: &Scene, to: &Scene) -> String {
-    arguments(from, to).iter().map(|argument| format!(" --set {}", quoted(argument))).collect()
+/// The name of the open scene, and the `--set` options that change one scene into another.
+fn scene_arguments(editor: &Editor, from: &Scene, to: &Scene) -> Option<Vec<Argument>> {
+    let origin = Argument { option: None, value: Some(editor.origin()?) };
+    let settings = arguments(from, to).into_iter().map(|setting| Argument::of("set", setting));
+    Some(std::iter::once(origin).chain(settings).collect())
+}
+
+/// A command line of the program without a window.
+fn line(command: &str, arguments: &[Argument]) -> String {
+    let words: Vec<String> = arguments.iter().flat_map(Argument::words).map(|word| quoted(&word)).collect();
+    format!("interwell --headless {command} {}", words.join(" "))
 }
 
 /// A word quoted for a shell.
@@ -140,23 +141,13 @@ fn quoted(word: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::session::editor::Editor;
 
     #[test]
-    fn the_command_says_what_was_changed() {
-        let editor = Editor::open("first-look").unwrap();
-        let mut session = Session::new(editor, std::sync::Arc::new(|| ())).unwrap();
-        let from_start = "this motion, from its start";
-        let expected = "interwell --headless simulate first-look";
-        assert_eq!(command_line(&session).unwrap(), (expected.to_owned(), from_start));
-        session.edit_once(|scene| scene.stops = scene.app.as_ref().unwrap().stops_when_on.unwrap());
-        session.poll();
-        session.restart();
-        let expected = "interwell --headless simulate first-look --set \
-                   'stops=Rigid(travel_limit_mm:1.5,restitution:0.36)'";
-        assert_eq!(command_line(&session).unwrap(), (expected.to_owned(), from_start));
-        assert_eq!(quoted("it's"), r"'it'\''s'");
-        assert_eq!(quoted("excitation.amplitude_g=0:2:0.02"), "excitation.amplitude_g=0:2:0.02");
+    fn words_that_a_shell_would_change_are_quoted() {
+        let words = ["it's", "stops=Rigid(travel_limit_mm:1.5)", "", "excitation.amplitude_g=0:2:0.02"];
+        let arguments = words.map(|word| Argument { option: None, value: Some(word.to_owned()) });
+        let expected = r"'it'\''s' 'stops=Rigid(travel_limit_mm:1.5)' '' excitation.amplitude_g=0:2:0.02";
+        assert_eq!(line("simulate", &arguments), format!("interwell --headless simulate {expected}"));
     }
 
     #[test]

@@ -6,7 +6,7 @@ use eframe::egui::{
 };
 
 use crate::app::session::lesson::{OpenLesson, Outcome};
-use crate::app::ui::widgets::{close_ui, dialog_ui, prose, prose_ui};
+use crate::app::ui::widgets::{close_ui, dialog_ui, prose_height, prose_ui};
 use crate::app::words::lesson::{letter, plain, script};
 use crate::app::words::meanings::{GLOSSARY, meaning};
 use crate::scene::Scene;
@@ -39,11 +39,7 @@ pub fn notes_ui(ui: &mut Ui, scene: &Scene, is_changed: bool, bottom: f32) -> bo
     }
     ui.label(RichText::new(heading).heading());
     let width = ui.available_width();
-    let fits = |text: &str| {
-        let mut job = prose(ui, text);
-        job.wrap.max_width = width;
-        ui.fonts_mut(|fonts| fonts.layout_job(job)).size().y <= room - HEADING - MORE
-    };
+    let fits = |text: &str| prose_height(ui, text, width) <= room - HEADING - MORE;
     let shown = [2, 1].map(|count| beginning(notes, count)).into_iter().find(|text| fits(text));
     if let Some(text) = shown {
         prose_ui(ui, text);

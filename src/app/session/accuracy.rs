@@ -73,7 +73,7 @@ impl Question for PathQuestion {
 
 /// A model whose runs at several tolerances are compared.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(super) struct TolerancesQuestion(SharedModel);
+pub(super) struct TolerancesQuestion(pub SharedModel);
 
 impl Question for TolerancesQuestion {
     const NAME: &'static str = "tolerances";
@@ -87,9 +87,9 @@ impl Question for TolerancesQuestion {
 /// A model, and a method of fixed step with its step in s.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct StepQuestion {
-    model: SharedModel,
-    scheme: Scheme,
-    step: f64,
+    pub model: SharedModel,
+    pub scheme: Scheme,
+    pub step: f64,
 }
 
 impl Question for StepQuestion {
@@ -194,14 +194,6 @@ impl Accuracy {
         // for a run that ended early its end is reported instead
         trust.short(from)?;
         Some((short(trust, from, is_regular), long(trust, from)))
-    }
-
-    /// Asks for the cost of digits and steps in `model`; to be called by a view in every frame. Unless the
-    /// scene is `still` the answers for an earlier one stay.
-    pub(super) fn want(&mut self, model: &SharedModel, still: bool, wake: &Wake) {
-        self.tolerances.want(TolerancesQuestion(model.clone()), still, wake);
-        let question = StepQuestion { model: model.clone(), scheme: self.scheme, step: self.step };
-        self.stepped.want(question, still, wake);
     }
 
     /// The cost of each digit, and whether it was computed for `model`.

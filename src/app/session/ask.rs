@@ -14,7 +14,7 @@ use crate::scene::{Scene, Start};
 use interwell_studies::study::{Thresholds, can_cross};
 
 use super::Session;
-use super::accuracy::LiveRun;
+use super::accuracy::{LiveRun, StepQuestion, TolerancesQuestion};
 use super::prepared::{Prepared, SceneWithFiles};
 
 /// Number of thresholds that are kept.
@@ -163,9 +163,13 @@ impl Session {
         self.pins.stop_working();
     }
 
-    /// Asks for the cost of digits and steps in the scene; to be called by a view in every frame.
+    /// Asks for the cost of digits and steps in the scene; to be called by a view in every frame. While the
+    /// scene is being changed the answers for an earlier one stay.
     pub fn want_accuracy(&mut self) {
-        self.accuracy.want(&self.model, self.stands_still(), &self.wake);
+        let (model, still, accuracy) = (self.model.clone(), self.stands_still(), &mut self.accuracy);
+        accuracy.tolerances.want(TolerancesQuestion(model.clone()), still, &self.wake);
+        let question = StepQuestion { model, scheme: accuracy.scheme, step: accuracy.step };
+        accuracy.stepped.want(question, still, &self.wake);
     }
 
     /// Whether the scene can be run and the user is changing neither it nor its motion.

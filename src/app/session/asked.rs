@@ -115,13 +115,13 @@ mod tests {
         let mut session = Session::new(Editor::new(document), Arc::new(|| ())).unwrap();
         session.player.speed = 1.0;
         session.player.set_playing(true);
-        (0..4).for_each(|_| session.player.tick(0.09));
+        (0..4).for_each(|_| _ = session.player.tick(0.09));
         let field = "excitation.frequency_hz";
         if let Some(hz) = session.number(field) {
             session.set_number(field, 1.1 * hz).unwrap();
             session.end_gesture();
         }
-        (0..4).for_each(|_| session.player.tick(0.07));
+        (0..4).for_each(|_| _ = session.player.tick(0.07));
         session.moved_by_hand();
         session
     }
@@ -140,9 +140,8 @@ mod tests {
             values: (0..200).map(|i| scale * (f64::from(i) * 0.01 + shift)).collect(),
         };
         let (across, values) = (channel(across, 1.0, -0.1), channel(values, 1e-3, 0.0));
-        let (path, name, units) = ("a.csv".into(), "a.csv".to_owned(), ["s", "m"]);
-        let (timing, range) = (None, (0.0, 2e-3));
-        MeasuredRecord { path, name, units, across, values, decimal_commas: false, timing, range }
+        let (path, units, range) = ("a.csv".into(), ["s", "m"], (0.0, 2e-3));
+        MeasuredRecord { path, units, across, values, decimal_commas: false, timing: None, range }
     }
 
     /// All questions about a scene that it can be asked.
@@ -185,7 +184,7 @@ mod tests {
         let axes = [0, 1].map(|i| axis(&session, &fields[i]));
         if session.model().repeats() {
             session.explore.walks.chosen = Some(axes[0].clone());
-            session.want_walks();
+            session.want_walks().unwrap();
             compare(session.explore.walks.found.question(), true);
         }
         session.map.show(interwell_studies::study::SummaryField::find("work_j").unwrap());
@@ -232,17 +231,6 @@ mod tests {
             }
         }
         assert!(asked.0 > 0 && asked.1 > 0, "{asked:?}");
-    }
-
-    #[test]
-    fn numbers_keep_their_bits() {
-        let numbers = vec![0.1 + 0.2, -0.0, 5e-324, 1.7e308, -1.0 / 3.0, f64::INFINITY, f64::NEG_INFINITY];
-        let again: Vec<f64> = from_message(&to_message(&numbers).unwrap()).unwrap();
-        assert_eq!(
-            again.iter().map(|x| x.to_bits()).collect::<Vec<_>>(),
-            numbers.iter().map(|x| x.to_bits()).collect::<Vec<_>>()
-        );
-        assert!(from_message::<f64>(&to_message(&f64::NAN).unwrap()).unwrap().is_nan());
     }
 
     #[test]

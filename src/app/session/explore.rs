@@ -88,7 +88,6 @@ pub struct WalkQuestion {
     pub axis: SweepAxis,
     /// The scene, from rest, with its present value of the field.
     ground: Uncompared<Prepared>,
-    values: Uncompared<Vec<f64>>,
     /// The strides and directions of the walks, the coarse ones first.
     walks: Uncompared<Vec<(usize, Direction)>>,
 }
@@ -100,8 +99,9 @@ impl Question for WalkQuestion {
 
     fn answer(&self, cancel: &AtomicBool, each: Each<Self::Part>) -> Option<Self::Part> {
         let Prepared { of, mechanism, .. } = &self.ground.0;
+        let all = Axis::from_scene(&self.axis, of).ok()?.values;
         for stride in [COARSE, 1] {
-            let values: Vec<f64> = self.values.0.iter().step_by(stride).copied().collect();
+            let values: Vec<f64> = all.iter().step_by(stride).copied().collect();
             let of_stride = self.walks.0.iter().filter(|walk| walk.0 == stride);
             let directions: Vec<Direction> = of_stride.map(|walk| walk.1).collect();
             let (over, each) = ((&*self.axis.field, &*values), |visit| each((stride, visit)));
@@ -128,7 +128,6 @@ pub struct Walks {
     pub quantity: WalkQuantity,
     /// The runs as they come, each with the stride of its walk.
     pub found: Background<WalkQuestion, (usize, Visit)>,
-    pub problem: Option<String>,
 }
 
 impl Session {
@@ -144,21 +143,18 @@ impl Session {
         Some(self.map_axis(path))
     }
 
-    /// Asks for the walks of the present scene; to be called in every frame that shows them.
-    pub fn want_walks(&mut self) {
-        let (still, question) = (self.stands_still(), self.walk_question());
-        let walks = &mut self.explore.walks;
-        walks.problem = question.as_ref().err().cloned();
-        if let Ok(question) = question {
-            walks.found.want(question, still, &self.wake);
-        }
+    /// Asks for the walks of the present scene, or says why there are none; to be called in every frame that
+    /// shows them.
+    pub fn want_walks(&mut self) -> Result<(), String> {
+        let (still, question) = (self.stands_still(), self.walk_question()?);
+        self.explore.walks.found.want(question, still, &self.wake);
+        Ok(())
     }
 
-    fn walk_question(&self) -> Result<WalkQuestion, String> {
+    pub(in crate::app) fn walk_question(&self) -> Result<WalkQuestion, String> {
         let axis = self.walk_axis().ok_or("This scene has no field to walk over.")?;
-        let ground = ground(self.scene(), self.remembered_stops(), std::slice::from_ref(&axis));
-        let values = Axis::from_scene(&axis, &ground).map(|axis| axis.values);
-        let values = values.map_err(|(part, problem)| format!("{part}: {problem}"))?;
+        let ground = ground(self.scene(), self.remembered_stops, std::slice::from_ref(&axis));
+        Axis::from_scene(&axis, &ground).map_err(|(part, problem)| format!("{part}: {problem}"))?;
         if !self.model().repeats() {
             return Err("Each run continues the one before, from phase 0 of the drive, which needs a drive \
                         that repeats, such as a sine."
@@ -167,11 +163,11 @@ impl Session {
         let mut scene = ground.clone();
         let is_set = FieldPath::new(&axis.field).set(&mut scene, axis.from);
         debug_assert!(is_set, "the axis is over a field of the scene");
-        let (ground, values) = (Uncompared(self.prepared(ground)), Uncompared(values));
+        let ground = Uncompared(self.prepared(ground));
         // coarse steps can lead to another motion, which would contradict the answer of a lesson
         let strides = if self.is_lesson { &[1][..] } else { &[COARSE, 1] };
         let walks = strides.iter().flat_map(|stride| Direction::ALL.map(|way| (*stride, way)));
-        Ok(WalkQuestion { scene, axis, ground, values, walks: Uncompared(walks.collect()) })
+        Ok(WalkQuestion { scene, axis, ground, walks: Uncompared(walks.collect()) })
     }
 
     /// Sets the field of the walks to a value, as part of a gesture.
@@ -215,9 +211,11 @@ impl BasinsQuestion {
         let Prepared { of, mechanism, .. } = &self.of;
         let begun = question.begin(question.starts()?, &of.document(), mechanism)?;
         let per_speed = suited_unit("m/s", [self.v.0, self.v.1].into_iter()).0;
-        let level = |basins: &_, answer: Answer| {
-            let (chart, words) = (basins_chart(basins, &answer), answer.words());
-            Level { chart, words, per_speed, answer, room: basins.room() }
+        let level = |basins: &_, answer: Answer| Level {
+            chart: basins_chart(basins, &answer),
+            per_speed,
+            answer,
+            room: basins.room(),
         };
         let coarse = |basins: &_, answer| each(level(basins, answer));
         let BasinsAnswer { basins, answer } = Basins::followed(begun, &progress(cancel), Some(&coarse))?;
@@ -230,8 +228,6 @@ impl BasinsQuestion {
 pub struct Level {
     /// The attractors, and the attractor that each start goes to.
     pub answer: Answer,
-    /// A description of each attractor that distinguishes it from the others.
-    pub words: Vec<String>,
     /// Their picture, in which a start that has not been run shows the answer of a neighbour.
     pub chart: Chart,
     /// 1 m/s in the unit of the chart's velocities.
@@ -245,7 +241,7 @@ impl Session {
     /// m/s; to be called in every frame that shows them.
     pub fn want_basins(&mut self, (low, high): (f64, f64), v: (f64, f64)) {
         let still = self.stands_still();
-        let scene = ground(self.scene(), self.remembered_stops(), &[]);
+        let scene = ground(self.scene(), self.remembered_stops, &[]);
         let (of, x_mm) = (self.prepared(scene), (low * 1e3, high * 1e3));
         self.explore.basins.want(BasinsQuestion { of, x_mm, v, starts: STARTS }, still, &self.wake);
     }

@@ -20,9 +20,8 @@ use super::prepared::SharedModel;
 /// A measured record with its two chosen columns.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MeasuredRecord {
-    /// The path of its file, and the name of the file.
+    /// The path of its file.
     pub path: PathBuf,
-    pub name: String,
     /// The units of its two columns as their files have them; not a part of a question.
     #[serde(skip)]
     pub units: [&'static str; 2],
@@ -63,8 +62,8 @@ impl MeasuredRecord {
         let Measured { channels: [across, values], decimal_commas } = read;
         let timing = (across.quantity == Quantity::Time).then(|| Timing::of(&across.values));
         let range = extent(values.values.iter().copied());
-        let (name, path, units) = (file_name(path), path.to_owned(), chosen.map(|(_, unit)| unit.word()));
-        Ok(Self { path, name, units, across, values, decimal_commas, timing, range })
+        let (path, units) = (path.to_owned(), chosen.map(|(_, unit)| unit.word()));
+        Ok(Self { path, units, across, values, decimal_commas, timing, range })
     }
 
     pub fn describe(&self) -> String {
@@ -212,7 +211,6 @@ pub struct MeasuredData {
     pub found: Background<MeasuredQuestion, Result<Differences, String>>,
     /// The shift in s that fits best, or why there is none.
     pub fit: Background<FitQuestion, Result<f64, String>>,
-    pub no_fit: Option<String>,
 }
 
 impl MeasuredData {
@@ -229,16 +227,14 @@ impl MeasuredData {
             over.shift = shift;
             over.centre = if typed { shift } else { over.centre };
             self.fit.clear();
-            self.no_fit = None;
         }
     }
 
     pub(super) fn poll(&mut self) {
         self.found.poll();
-        match self.fit.take() {
-            Some(Ok(shift)) => self.shift_to(shift, true),
-            Some(Err(why)) => self.no_fit = Some(why),
-            None => {}
+        self.fit.poll();
+        if let Some(Ok(shift)) = self.fit.answer().cloned() {
+            self.shift_to(shift, true);
         }
     }
 }
@@ -257,7 +253,7 @@ impl Session {
     /// Starts the search for the shift with which the record fits the run of the scene best.
     pub fn fit_shift(&mut self) {
         let Some(question) = self.measured_question() else { return };
-        self.measured.no_fit = None;
+        self.measured.fit.clear();
         self.measured.fit.ask(FitQuestion(question), &self.wake);
     }
 

@@ -28,7 +28,7 @@ use crate::dynamics::{Model, Outcome, Summary};
 use crate::mechanics::{FLEXURE_TOLERANCE, Mechanism};
 use crate::questions::Error;
 use crate::scene::{self, Scene, Stops};
-use interwell_studies::study::{self, Thresholds};
+use interwell_studies::study::{self, SummaryField, Thresholds};
 
 use accuracy::{Accuracy, LiveRun};
 use ask::{StopsQuestion, ThresholdsQuestion};
@@ -36,7 +36,7 @@ use best::BestStops;
 use build::{fault_message, first_stops, solve};
 use editor::Editor;
 use explore::Explore;
-use map::Mapping;
+use map::{LOAD_POWER, Mapping};
 use measured::MeasuredData;
 use pins::Pins;
 use player::{Player, opening_speed};
@@ -85,12 +85,8 @@ pub struct Session {
     mechanism: Arc<Mechanism>,
     /// What the mechanism was built from, so that a table is fitted once and not at every move of a slider.
     mechanism_of: scene::Mechanism,
-    /// Whether the mechanism was solved with the coarse tolerance of a gesture, and is to be solved again.
-    is_coarse: bool,
-    /// The tolerance with which the mechanism was solved.
+    /// The tolerance with which the mechanism was solved: coarse during a gesture.
     tolerance: f64,
-    /// Why the last change of the mechanism was refused.
-    refused: Option<String>,
     /// Live time in s of the last change: of the scene, or of the mass by hand.
     pub changed_at: f64,
     /// Whether the last change was a move of the mass by hand.
@@ -103,7 +99,7 @@ pub struct Session {
     /// Whether the motion was changed after its start, so that it is no run of the scene from its start.
     pub is_continued: bool,
     /// The stops that the scene gets when they are switched on.
-    remembered_stops: Stops,
+    pub(in crate::app) remembered_stops: Stops,
     /// The field of the current series of arrow key presses, and the time in s of the last press.
     presses: Option<(String, f64)>,
     /// Whether to withhold what it would take to cross the barrier, as the answer of a lesson.
@@ -112,7 +108,7 @@ pub struct Session {
     /// searched for, and Up and down has no coarse steps.
     pub is_lesson: bool,
     pub best: BestStops,
-    wake: Wake,
+    pub wake: Wake,
 }
 
 impl Session {
@@ -138,9 +134,7 @@ impl Session {
             measured: MeasuredData::default(),
             before: None,
             mechanism_of: scene.mechanism.clone(),
-            is_coarse: false,
             tolerance: FLEXURE_TOLERANCE,
-            refused: None,
             mechanism,
             changed_at: 0.0,
             by_hand: false,
@@ -157,7 +151,7 @@ impl Session {
             wake,
         };
         session.map.trail.note(&session.built);
-        session.map.about_power = session.model.has_transducer();
+        session.map.quantity = SummaryField::find(LOAD_POWER).filter(|_| session.model.has_transducer());
         session.ask_settled();
         session.ask_thresholds();
         Ok(session)
@@ -311,10 +305,6 @@ impl Session {
     /// Why the present scene cannot be run; the motion is then that of its last version that could.
     pub fn fault(&self) -> Option<&str> {
         self.fault.as_deref()
-    }
-
-    pub fn wake(&self) -> &Wake {
-        &self.wake
     }
 
     /// Whether the settled motion crosses the barrier; `None` until it is known.

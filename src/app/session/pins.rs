@@ -157,7 +157,7 @@ impl Session {
             PinKind::Motion => {}
             PinKind::OtherStops => {
                 let off = scene.stops == Stops::None;
-                scene.stops = if off { self.remembered_stops() } else { Stops::None };
+                scene.stops = if off { self.remembered_stops } else { Stops::None };
                 keep_start_inside(&mut scene);
                 model = self.model_of(&scene)?;
                 watch.change(&model);

@@ -80,11 +80,10 @@ impl Goal {
     }
 }
 
-/// How the way to a goal ended.
+/// How the way to a goal ended, if not at the event that was looked for.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Reached {
     Time,
-    Event(Event),
     /// No event of this kind came up to the time of the goal.
     Nothing(EventKind),
     Ended,
@@ -101,8 +100,6 @@ pub struct Player {
     /// Whether the mass is held by hand, which stops the clock.
     held: bool,
     goal: Option<Goal>,
-    /// How the last fast forward ended, until it is reported.
-    reached: Option<Reached>,
     /// Whether a view of this frame shows the energy ledger.
     wants_ledgers: bool,
 }
@@ -116,7 +113,6 @@ impl Player {
             past: None,
             held: false,
             goal: None,
-            reached: None,
             wants_ledgers: false,
         }
     }
@@ -132,13 +128,15 @@ impl Player {
         (self.playing, self.goal) = (playing, None);
     }
 
-    /// Plays for `seconds` of real time.
-    pub fn tick(&mut self, seconds: f64) {
+    /// Plays for `seconds` of real time. Returns how the way to a goal has ended, if it has.
+    pub fn tick(&mut self, seconds: f64) -> Option<Reached> {
         if let Some(goal) = self.goal {
-            self.follow(goal);
-        } else if self.is_playing() {
+            return self.follow(goal);
+        }
+        if self.is_playing() {
             self.go(seconds.clamp(0.0, LONGEST_FRAME) * self.speed);
         }
+        None
     }
 
     /// Pauses, and advances by a single step.
@@ -288,29 +286,25 @@ impl Player {
         if let (Goal::First(kind, _), Some(past)) = (goal, self.past)
             && let Some(event) = self.first(kind, past)
         {
-            self.seek(event.t);
-            return self.arrive(Reached::Event(event));
+            return self.seek(event.t);
         }
-        (self.past, self.held, self.reached) = (None, false, None);
-        self.goal = Some(goal);
+        (self.past, self.held, self.goal) = (None, false, Some(goal));
     }
 
     pub fn goal(&self) -> Option<Goal> {
         self.goal
     }
 
-    pub fn take_reached(&mut self) -> Option<Reached> {
-        self.reached.take()
-    }
-
     /// The first remembered event of a kind after a time in s.
     fn first(&self, kind: EventKind, after: f64) -> Option<Event> {
         let events = self.watch.events();
         let begin = events.partition_point(|event| event.t <= after);
-        events.range(begin..).find(|event| is_kind(event, kind)).copied()
+        // leaving a compliant stop counts as a release
+        let also = if kind == EventKind::Release { EventKind::Separate } else { kind };
+        events.range(begin..).find(|event| event.kind == kind || event.kind == also).copied()
     }
 
-    fn follow(&mut self, goal: Goal) {
+    fn follow(&mut self, goal: Goal) -> Option<Reached> {
         let (begun, until) = (WallClock::start(), goal.until());
         let interval = if matches!(goal, Goal::First(..)) { CHECK_INTERVAL.1 } else { CHECK_INTERVAL.0 };
         let stretch = interval * self.watch.model_at(self.watch.time()).characteristic_time();
@@ -321,31 +315,24 @@ impl Player {
                 && let Some(event) = self.first(kind, before)
             {
                 self.seek(event.t);
-                return self.arrive(Reached::Event(event));
+                return None;
             }
             if self.watch.ended().is_some() {
-                return self.arrive(Reached::Ended);
+                self.goal = None;
+                return Some(Reached::Ended);
             }
             // also if the stretch is too short to change the time in floating point
             if self.watch.time() >= until || arrived && self.watch.time() <= before {
+                self.set_playing(matches!(goal, Goal::Settled(_)));
                 return match goal {
-                    Goal::Time(_) => self.arrive(Reached::Time),
-                    Goal::Settled(_) => self.set_playing(true),
-                    Goal::First(kind, _) => self.arrive(Reached::Nothing(kind)),
+                    Goal::Time(_) => Some(Reached::Time),
+                    Goal::Settled(_) => None,
+                    Goal::First(kind, _) => Some(Reached::Nothing(kind)),
                 };
             }
             if begun.elapsed() >= FRAME_SHARE {
-                return;
+                return None;
             }
         }
     }
-
-    fn arrive(&mut self, reached: Reached) {
-        (self.goal, self.reached) = (None, Some(reached));
-    }
-}
-
-/// Whether an event is of a kind; leaving a compliant stop counts as a release.
-fn is_kind(event: &Event, kind: EventKind) -> bool {
-    event.kind == kind || (kind == EventKind::Release && event.kind == EventKind::Separate)
 }

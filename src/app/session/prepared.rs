@@ -160,14 +160,10 @@ impl TryFrom<(Arc<Prepared>, Beginning)> for SharedModel {
 
     fn try_from((of, beginning): (Arc<Prepared>, Beginning)) -> Result<Self, String> {
         let built = Model::build(&of.of, Arc::clone(&of.mechanism));
-        let built = built.map_err(|faults| first_problem(&faults))?;
-        Ok(Self { model: Identity(Arc::new(built.begun_at(&beginning))), of })
+        let first =
+            |faults: Vec<Fault>| faults.into_iter().next().map_or_else(String::new, |fault| fault.problem);
+        Ok(Self { model: Identity(Arc::new(built.map_err(first)?.begun_at(&beginning))), of })
     }
-}
-
-/// The problem of the first fault; empty without faults.
-fn first_problem(faults: &[Fault]) -> String {
-    faults.first().map_or_else(String::new, |fault| fault.problem.clone())
 }
 
 impl PartialEq for SharedModel {

@@ -46,7 +46,7 @@ pub fn reach(control: &Control, session: &Session) -> Reach {
 
 /// The range of the slider of a travel limit: from near the middle to beyond the well.
 fn travel(session: &Session) -> Reach {
-    let (saved, limits) = (session.editor.saved(), [session.remembered_stops(), session.scene().stops]);
+    let (saved, limits) = (session.editor.saved(), [session.remembered_stops, session.scene().stops]);
     let well = well_distance_mm(&session.opened);
     let furthest = |stops: &Stops| stops.limits_mm().into_iter().flatten().map(f64::abs).reduce(f64::max);
     let stops = || furthest(&saved.stops).or_else(|| limits.iter().find_map(furthest));

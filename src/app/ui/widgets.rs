@@ -21,7 +21,7 @@ pub fn dialog_ui<R>(
 ) -> (R, bool) {
     let frame = egui::Frame::popup(&ui.ctx().global_style()).inner_margin(16.0);
     let answer = egui::Modal::new(egui::Id::unique(id)).frame(frame).show(ui.ctx(), |ui| {
-        ui.set_max_width(dialog_width(ui, width));
+        ui.set_max_width((ui.ctx().content_rect().width() - 60.0).clamp(60.0, width));
         ui.label(heading.into().heading().size(STATUS));
         ui.add_space(space);
         contents(ui)
@@ -52,21 +52,20 @@ pub fn bare(panel: egui::Panel, x: i8, y: i8) -> egui::Panel {
     panel.frame(panel_frame(x, y)).show_separator_line(false)
 }
 
-/// A text for a label: code between backticks has letters of one width, and lines are not broken between a
-/// number and its unit.
-pub fn prose(ui: &Ui, text: &str) -> LayoutJob {
-    let (mut job, ink) = (LayoutJob::default(), ui.visuals().text_color());
-    for (i, part) in text.split('`').enumerate() {
-        let font = if i % 2 == 0 { FontId::proportional(BODY) } else { FontId::monospace(BODY) };
-        job.append(&unbroken(part), 0.0, TextFormat::simple(font, ink));
-    }
-    job
+/// A text in parts: code between backticks has letters of one width.
+fn prose(text: &str) -> Vec<(&str, FontFamily)> {
+    let family = |i: usize| if i % 2 == 0 { FontFamily::Proportional } else { FontFamily::Monospace };
+    text.split('`').enumerate().map(|(i, part)| (part, family(i))).collect()
 }
 
-/// A label with `text` as [`prose`]; a screen reader is told its words.
+/// A label of a text with code between backticks.
 pub fn prose_ui(ui: &mut Ui, text: &str) {
-    let response = ui.add(egui::Label::new(prose(ui, text)).wrap());
-    tell(&response, egui::Role::Label, &text.replace('`', ""));
+    parts_ui(ui, &prose(text), BODY);
+}
+
+/// The height in points that such a label takes.
+pub fn prose_height(ui: &Ui, text: &str, width: f32) -> f32 {
+    taken(ui, &prose(text), BODY, width).y
 }
 
 /// Gives a widget its role and its name for screen readers.
@@ -74,7 +73,14 @@ pub fn tell(response: &Response, role: egui::Role, name: &str) {
     response.widget_info(|| egui::WidgetInfo::labeled(role, true, name));
 }
 
-/// Texts one after another, in these fonts.
+/// The width and the height in points of texts one after another, wrapped at `width`.
+fn taken(ui: &Ui, texts: &[(&str, FontFamily)], size: f32, width: f32) -> Vec2 {
+    let mut job = job(texts, size, Color32::PLACEHOLDER);
+    job.wrap.max_width = width;
+    ui.fonts_mut(|fonts| fonts.layout_job(job)).size()
+}
+
+/// Texts one after another, in these fonts; lines are not broken between a number and its unit.
 fn job(parts: &[(&str, FontFamily)], size: f32, ink: Color32) -> LayoutJob {
     let mut job = LayoutJob::default();
     for (text, family) in parts {
@@ -95,25 +101,15 @@ pub fn parts_ui(ui: &mut Ui, parts: &[(&str, FontFamily)], size: f32) -> Respons
 ///
 /// Returns the size, and the height in points that they take.
 pub fn fitting(ui: &Ui, texts: &[(&str, FontFamily)], room: Vec2, largest: f32) -> (f32, f32) {
-    let taken = |size: f32, width: f32| {
-        let mut job = job(texts, size, Color32::PLACEHOLDER);
-        job.wrap.max_width = width;
-        ui.fonts_mut(|fonts| fonts.layout_job(job)).size()
-    };
-    let in_a_row = taken(largest, f32::INFINITY);
+    let in_a_row = taken(ui, texts, largest, f32::INFINITY);
     if in_a_row.x <= room.x {
         return (largest, in_a_row.y);
     }
     let mut size = BODY.min(largest);
-    while size > LEAST && taken(size, room.x).y > room.y {
+    while size > LEAST && taken(ui, texts, size, room.x).y > room.y {
         size -= 0.5;
     }
-    (size, taken(size, room.x).y)
-}
-
-/// Width in points of a dialog: `wanted`, or less in a narrow window.
-pub fn dialog_width(ui: &Ui, wanted: f32) -> f32 {
-    (ui.ctx().content_rect().width() - 60.0).clamp(60.0, wanted)
+    (size, taken(ui, texts, size, room.x).y)
 }
 
 /// Shows a hover text beside its widget where the window has a column of controls, since below it would cover

@@ -82,10 +82,11 @@ fn pointer_ui(ui: &Ui, context: &mut ViewContext<'_>, pane: &Pane, level: &Level
     if !(x >= level.room.0 && x <= level.room.1) {
         return; // nothing begins beyond the stops
     }
-    let words = || -> Option<&String> {
+    let words = || {
         let cells = pane.chart.panels().next()?.cells()?;
         let cell = cells.at(cells.across.cell(x_mm)?, cells.up.cell(speed)?);
-        level.words.get(if let Cell::Value(place) = cell { place as usize } else { return None })
+        let Cell::Value(place) = cell else { return None };
+        level.answer.words().into_iter().nth(place as usize)
     };
     let target = words().map_or("to no known attractor".to_owned(), |words| format!("to {words}"));
     let coarse = if is_whole { "" } else { " (coarse)" };

@@ -8,7 +8,9 @@ use eframe::egui::{self, Align, Align2, Layout, Rect, RichText, Sense, Stroke, U
 use crate::app::ui::style::Style;
 use crate::app::words::numbers::UNKNOWN;
 use crate::dynamics::LiveLedger;
-use crate::output::{LedgerTerm, ledger_bars, ledger_decimals, ledger_number, share_of_work, three_digits};
+use crate::output::{
+    LedgerTerm, ledger_bars, ledger_decimals, ledger_number, share_of_work, suited_unit, three_digits,
+};
 use interwell_studies::study::Watch;
 
 use super::ViewContext;
@@ -34,9 +36,6 @@ const COUNT: f32 = 10.0;
 /// Height in points of the names below the bar of the present energy.
 const LEGEND: f32 = 11.0;
 
-/// Units of energy in J, with their names.
-const UNITS: [(f64, &str); 5] = [(1.0, "J"), (1e-3, "mJ"), (1e-6, "µJ"), (1e-9, "nJ"), (1e-12, "pJ")];
-
 const OF_WORK: &str = "The share of the work of the base that is taken so.";
 
 /// What a row of the ledger means, in the order of [`LedgerTerm::ALL`].
@@ -50,9 +49,10 @@ const MEANINGS: [&str; LedgerTerm::ALL.len()] = [
     "The energy left in the mass and its mechanism.",
 ];
 
-/// The largest unit not above `energy`, which callers take from the speed scale so that the unit stays.
+/// The unit in J that suits `energy`, which callers take from the speed scale so that the unit stays.
 pub fn unit_of(energy: f64) -> (f64, &'static str) {
-    UNITS.into_iter().find(|unit| energy >= unit.0).unwrap_or(UNITS[4])
+    let (per_joule, name) = suited_unit("J", std::iter::once(energy));
+    (1.0 / per_joule, name)
 }
 
 /// Percentage of the energy that the ledger accounts for, without decimals if it is 100.
@@ -242,8 +242,7 @@ mod tests {
 
     #[test]
     fn numbers_are_written_with_their_unit() {
-        assert_eq!(unit_of(6.9e-3), (1e-3, "mJ"));
-        assert_eq!(unit_of(0.0), (1e-12, "pJ"));
+        assert_eq!([6.9e-3, 2e-6, 1e-15].map(unit_of), [(1e-3, "mJ"), (1e-6, "µJ"), (1e-12, "pJ")]);
         assert_eq!([0.0, 1e-9, 3e-4, 2.0].map(accounted), ["100", "100", "99.97", "0.00"]);
     }
 }

@@ -23,7 +23,7 @@ use super::labels::Taken;
 use super::overlay::measured_force;
 use super::pane::{Pane, Place, kept_pane_ui};
 use super::ranges::{axis_end, room_for_push};
-use super::stops::{WALL, stops_ui};
+use super::stops::{sides, stops_ui, wall};
 use super::view::Axis;
 use super::{Span, View, ViewContext};
 
@@ -107,7 +107,7 @@ fn still(model: &Model, span: Span, axes: (PlotAxis, PlotAxis), measured: Option
     // the legend names the lines before the marks
     let named = |role, name: &str| Layer::new(role, name, Marks::Path(Vec::new()));
     let push = model.is_shaken().then(|| named(Role::Push, "push"));
-    let has_press = sides(model).into_iter().any(|(x, side)| is_pressed(model, x, side));
+    let has_press = sides(model).any(|(x, side)| is_pressed(model, x, side));
     let release = has_press.then(|| named(Role::Stop, "frees the mass"));
     let lines = [named(Role::Curve, "holds the mass there")].into_iter().chain(push).chain(release);
     let first = lines.chain(measured);
@@ -145,12 +145,6 @@ fn lines(pane: &Pane) -> Vec<Vec<Pos2>> {
     layers.map(on_screen).collect()
 }
 
-/// The stops, each with the direction from the middle to it.
-fn sides(model: &Model) -> Vec<(f64, f32)> {
-    let (left, right) = model.stop_positions();
-    [(left, -1.0), (right, 1.0)].into_iter().filter_map(|(x, side)| Some((x?, side))).collect()
-}
-
 /// Whether the mechanism presses the mass onto the stop at `x`.
 fn is_pressed(model: &Model, x: f64, side: f32) -> bool {
     model.mechanism().curve.force(x) * f64::from(side) < 0.0
@@ -160,17 +154,12 @@ fn is_pressed(model: &Model, x: f64, side: f32) -> bool {
 /// beside the stop, clear of the lines of the curve.
 fn releases(painter: &Painter, context: &ViewContext<'_>, pane: &Pane, rect: Rect) {
     let (style, model) = (context.style, context.session.shown());
-    let sides = sides(model);
     let place = |x: f64, force: f64| pane.place(0, (x * 1e3, force)).unwrap_or(rect.min);
-    let wall = |(x, side): &(f64, f32)| {
-        let face = place(*x, 0.0).x;
-        Rect::from_two_pos(pos2(face, rect.top()), pos2(face + side * WALL, rect.bottom()))
-    };
-    let places = sides.iter().map(wall).collect();
+    let places = sides(model).map(|(x, side)| wall(rect, place(x, 0.0).x, side)).collect();
     let mut taken = Taken { lines: lines(pane), places, plate: Some(style.ground()) };
     let zero = place(0.0, 0.0).y;
     taken.lines.push(vec![pos2(rect.left(), zero), pos2(rect.right(), zero)]);
-    for (x, side) in sides {
+    for (x, side) in sides(model) {
         if !is_pressed(model, x, side) {
             continue;
         }

@@ -29,7 +29,6 @@ const CIRCLE_SEGMENTS: usize = 32;
 pub(super) struct Ghost {
     /// Index of its letter.
     pub place: usize,
-    letter: char,
     pub state: Sample,
     /// The model by which it moves.
     pub model: Arc<Model>,
@@ -46,7 +45,6 @@ pub(super) fn ghosts(context: &ViewContext<'_>) -> Vec<Ghost> {
     let t = session.player.time();
     let ghost = |(pin, aside): (&Pin, f32)| Ghost {
         place: pin.place(),
-        letter: pin.letter,
         state: pin.watch.state_at(t),
         model: Arc::clone(pin.watch.model_at(t)),
         aside,
@@ -103,7 +101,7 @@ impl Ghost {
         painter.add(Shape::line(path.to_vec(), Stroke::new(4.0, style.ground().gamma_multiply(0.7))));
         painter.extend(dashed(path, self.place, style.ghost_mass_stroke()));
         let at = (top + vec2(self.aside, -2.0), Align2::CENTER_BOTTOM);
-        haloed(painter, style, at, &self.letter.to_string(), (style.small(), style.mass_ink()));
+        haloed(painter, style, at, PINNED[self.place], (style.small(), style.mass_ink()));
     }
 
     /// Draws its stops as dashed lines over the height of `rect`, where they differ from the present ones.

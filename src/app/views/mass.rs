@@ -44,7 +44,8 @@ pub fn body_ui(ui: &mut Ui, context: &mut ViewContext<'_>, (at, grab): (Pos2, Re
     if response.drag_started() {
         ui.data_mut(|data| data.insert_temp(dragged(), true));
     }
-    if response.drag_stopped() {
+    let is_left = response.lost_focus() && context.session.player.is_held() && !response.dragged();
+    if response.drag_stopped() || is_left {
         context.session.player.let_go();
         context.session.moved_by_hand();
     } else if !response.dragged() && response.has_focus() {
@@ -59,9 +60,6 @@ pub fn body_ui(ui: &mut Ui, context: &mut ViewContext<'_>, (at, grab): (Pos2, Re
         if ui.input(|input| input.key_pressed(egui::Key::Enter)) {
             response.surrender_focus();
         }
-    } else if response.lost_focus() && context.session.player.is_held() && !response.dragged() {
-        context.session.player.let_go();
-        context.session.moved_by_hand();
     }
     ui.is_enabled() && (response.hovered() || response.dragged())
 }

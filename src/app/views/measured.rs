@@ -3,7 +3,7 @@
 use eframe::egui::{self, Button, Grid, Id, RichText, Ui};
 
 use crate::app::session::Session;
-use crate::app::session::measured::{Differences, MeasuredData, Overlay, sentence};
+use crate::app::session::measured::{Differences, MeasuredData, Overlay, file_name, sentence};
 use crate::app::ui::knob::{How, Knob};
 use crate::app::ui::style::Style;
 use crate::app::words::fields::Reach;
@@ -45,7 +45,7 @@ pub fn measured_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
             }
             offset_ui(ui, context.session, &over);
         });
-        if let Some(why) = &context.session.measured.no_fit {
+        if let Some(Err(why)) = context.session.measured.fit.answer() {
             ui.label(format!("No shift was found. {why}"));
         }
         differences_ui(ui, context, &over);
@@ -68,7 +68,7 @@ fn alone_ui(ui: &mut Ui, knob: Knob<'_>, value: f64) -> Option<f64> {
 fn head_ui(ui: &mut Ui, context: &mut ViewContext<'_>, over: &Overlay) {
     let record = &over.record;
     ui.horizontal(|ui| {
-        let name = egui::Label::new(RichText::new(&record.name).heading()).truncate();
+        let name = egui::Label::new(RichText::new(file_name(&record.path)).heading()).truncate();
         ui.scope(|ui| {
             ui.set_max_width((ui.available_width() - 180.0).max(60.0));
             let [across, values] = [&record.across, &record.values]

@@ -242,8 +242,7 @@ fn ghost_trails(layers: &mut Vec<Layer>, context: &ViewContext<'_>, pane: &Pane)
         let mut points: Vec<State> = Vec::with_capacity(2 * path.len());
         for pair in path.windows(2) {
             let (a, b) = (pair[0], pair[1]);
-            let count = if a.t == b.t { 1 } else { pieces(pane, watch.model_at(a.t), (&a, &b)) };
-            let count = count.min(pieces_left);
+            let count = pieces(pane, watch.model_at(a.t), (&a, &b)).min(pieces_left);
             pieces_left -= count;
             points.push(state((a.x, a.v)));
             points.extend(between(watch.model_at(a.t), &a, &b, count).into_iter().map(state));

@@ -8,6 +8,7 @@ use crate::app::ui::style::{BALL, GRAB};
 use crate::app::ui::widgets::arrows;
 use crate::app::words::fields::info;
 use crate::app::words::numbers::{decimal, decimals, shown, with_minus};
+use crate::dynamics::Model;
 use crate::output::Role;
 use crate::scene::Stops;
 
@@ -28,6 +29,17 @@ pub(super) const BEST_STOPS: &str = "best stops";
 
 /// Thickness of a wall in points.
 pub(super) const WALL: f32 = 10.0;
+
+/// The stops of a model in m, each with the direction from the middle to it.
+pub(super) fn sides(model: &Model) -> impl Iterator<Item = (f64, f32)> {
+    let (left, right) = model.stop_positions();
+    [(left, -1.0), (right, 1.0)].into_iter().filter_map(|(x, side)| Some((x?, side)))
+}
+
+/// The wall of a stop on this side, with its face at `x`, over the height of `rect`.
+pub(super) fn wall(rect: Rect, x: f32, side: f32) -> Rect {
+    Rect::from_two_pos(pos2(x, rect.top()), pos2(x + side * WALL, rect.bottom()))
+}
 
 /// Displacements in mm of the stops of the motion shown, and whether they can be moved: not those of a pinned
 /// motion, nor those of the past if they differed then.
@@ -57,16 +69,12 @@ fn limit_number(session: &Session, mm: f64) -> String {
 pub(super) fn travel_limits(painter: &Painter, context: &ViewContext<'_>, rect: Rect, taken: &mut Taken) {
     let look = (context.style.small(), context.style.ink());
     let (stops, _) = shown_stops(context.session, context.drawn);
-    let limits = stops.into_iter().zip([-1.0_f32, 1.0]).filter_map(|(mm, side)| {
-        let place = context.span.screen_from_world(mm? / 1e3, rect);
-        Some((place, side, limit_number(context.session, mm?)))
-    });
-    let limits: Vec<(f32, f32, String)> = limits.collect();
+    let screen = |mm: f64| context.span.screen_from_world(mm / 1e3, rect);
+    let limit =
+        |(mm, side): (Option<f64>, f32)| Some((screen(mm?), side, limit_number(context.session, mm?)));
+    let limits: Vec<(f32, f32, String)> = stops.into_iter().zip([-1.0, 1.0]).filter_map(limit).collect();
     let best = best_stops(context).into_iter().flat_map(|mm| [(-mm, -1.0), (mm, 1.0)]);
-    taken.places.extend(best.map(|(mm, side)| {
-        let x = context.span.screen_from_world(mm / 1e3, rect);
-        Rect::from_two_pos(pos2(x, rect.top()), pos2(x + side * WALL, rect.bottom()))
-    }));
+    taken.places.extend(best.map(|(mm, side)| wall(rect, screen(mm), side)));
     for (x, ..) in &limits {
         taken.lines.push(vec![pos2(*x, rect.top()), pos2(*x, rect.bottom())]);
     }

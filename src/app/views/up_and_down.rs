@@ -36,7 +36,7 @@ type Shown = (WalkQuantity, f64);
 
 pub fn up_and_down_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let area = ui.max_rect();
-    context.session.want_walks();
+    let wanted = context.session.want_walks();
     let Some(axis) = context.session.walk_axis() else {
         ui.label("This scene has no field to walk over.");
         return;
@@ -44,7 +44,7 @@ pub fn up_and_down_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let tools = Rect::from_min_size(area.min, vec2(area.width(), TOOLS));
     ui.scope_builder(UiBuilder::new().max_rect(tools), |ui| tools_ui(ui, context, &axis));
     let below = area.with_min_y(tools.bottom());
-    if let Some(problem) = context.session.explore.walks.problem.clone() {
+    if let Err(problem) = wanted {
         let place = below.shrink2(vec2(0.15 * below.width(), 0.4 * below.height()));
         ui.scope_builder(UiBuilder::new().max_rect(place), |ui| {
             ui.vertical_centered(|ui| ui.label(RichText::new(problem).color(context.style.faint())));

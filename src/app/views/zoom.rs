@@ -122,21 +122,4 @@ mod tests {
         axes.zoom(UP, 6.0, 0.5);
         assert_eq!(axes.chosen(UP), None);
     }
-
-    #[test]
-    fn what_is_held_stays_and_what_is_chosen_does_not() {
-        let mut axes = Axes::default();
-        axes.ends(Axis::Time, (0.0, 2.0));
-        axes.ends(UP, (-1.0, 1.0));
-        axes.hold(View::Velocity);
-        assert!(axes.is_held(View::Velocity) && !axes.is_held(View::Power));
-        axes.ends(Axis::Up(View::Power), (0.0, 1.0));
-        axes.pan(Axis::Up(View::Power), 0.5);
-        let mut other = axes.held();
-        assert_eq!(other.ends(UP, (-9.0, 9.0)), (-1.0, 1.0));
-        assert_eq!(other.ends(Axis::Time, (5.0, 6.0)), (0.0, 2.0));
-        assert_eq!(other.ends(Axis::Up(View::Power), (0.0, 1.0)), (0.0, 1.0));
-        other.hold(View::Velocity);
-        assert_eq!(other.ends(UP, (-9.0, 9.0)), (-9.0, 9.0));
-    }
 }

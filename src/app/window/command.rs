@@ -5,6 +5,7 @@ use eframe::egui::{Key, KeyboardShortcut, Modifiers};
 use crate::app::session::pins::PinKind;
 use crate::app::ui::settings::Setting;
 use crate::app::views::View;
+use crate::dynamics::EventKind;
 use crate::scene::Layout;
 
 use super::wanted::Wanted;
@@ -15,10 +16,10 @@ pub enum Command {
     OpenPreset(&'static str),
     OpenRecent(String),
     Open,
-    OpenMeasured,
     RemoveMeasured,
     Save,
-    SaveAs(Wanted),
+    /// Choose a file to open or to save.
+    Choose(Wanted),
     Figure(Option<View>),
     CopyScene,
     CopyLink,
@@ -31,10 +32,10 @@ pub enum Command {
     BackToStart,
     PlayPause,
     Step,
-    PreviousEvent,
-    NextEvent,
-    NextRelease,
-    NextCrossing,
+    /// Go to the next event (true) or to the previous one.
+    SeekEvent(bool),
+    /// Go to the next event of a kind.
+    GoTo(EventKind),
     RunToEnd,
     Speed(usize),
     Arrange(Layout),
@@ -62,7 +63,6 @@ pub enum Command {
     Ways,
     BestStops,
     OpenLesson(&'static str),
-    OpenLessonFile,
     LeaveLesson,
     LessonAnew,
     CopyAnswers,
@@ -79,7 +79,7 @@ impl Command {
         use Wanted::{Events, Map, Motion, Run};
         matches!(
             self,
-            Self::SaveAs(Motion | Run | Events | Map)
+            Self::Choose(Motion | Run | Events | Map)
                 | Self::Figure(_)
                 | Self::CopyCommand
                 | Self::CopyMapCommand
@@ -88,10 +88,8 @@ impl Command {
                 | Self::BackToStart
                 | Self::PlayPause
                 | Self::Step
-                | Self::PreviousEvent
-                | Self::NextEvent
-                | Self::NextRelease
-                | Self::NextCrossing
+                | Self::SeekEvent(_)
+                | Self::GoTo(_)
                 | Self::RunToEnd
                 | Self::Grab
                 | Self::Ways
@@ -163,20 +161,20 @@ pub(super) static MENUS: [(&str, &[Part]); 6] = [
         Part::Recent,
         Line,
         Item("Save", control(Key::S), C::Save, Joined),
-        Item("Save as...", control_shift(Key::S), C::SaveAs(Wanted::Save), No),
+        Item("Save as...", control_shift(Key::S), C::Choose(Wanted::Save), No),
         Line,
-        Item("Open measured data...", control(Key::M), C::OpenMeasured,
+        Item("Open measured data...", control(Key::M), C::Choose(Wanted::Measured),
             As("Scene", "open measured data, drawn over the computed")),
         Item("Remove the measured data", None, C::RemoveMeasured, No),
         Line,
         Item("Save a figure of a view...", control(Key::E), C::Figure(None),
             As("Scene", "save a figure of the view under the pointer")),
-        Item("Save the motion seen as CSV...", None, C::SaveAs(Wanted::Motion), No),
-        Item("Save the whole run as CSV...", None, C::SaveAs(Wanted::Run), No),
-        Item("Save the events as CSV...", None, C::SaveAs(Wanted::Events), No),
-        Item("Save the force curve as CSV...", None, C::SaveAs(Wanted::Curve), No),
-        Item("Save a picture of the window...", None, C::SaveAs(Wanted::Picture), No),
-        Item("Save the map as CSV...", None, C::SaveAs(Wanted::Map), No),
+        Item("Save the motion seen as CSV...", None, C::Choose(Wanted::Motion), No),
+        Item("Save the whole run as CSV...", None, C::Choose(Wanted::Run), No),
+        Item("Save the events as CSV...", None, C::Choose(Wanted::Events), No),
+        Item("Save the force curve as CSV...", None, C::Choose(Wanted::Curve), No),
+        Item("Save a picture of the window...", None, C::Choose(Wanted::Picture), No),
+        Item("Save the map as CSV...", None, C::Choose(Wanted::Map), No),
         Item("Copy the map's command line", None, C::CopyMapCommand, No),
         #[cfg(not(target_arch = "wasm32"))]
         Line,
@@ -254,13 +252,13 @@ pub(super) static MENUS: [(&str, &[Part]); 6] = [
         Item("Play, pause", plain(Key::Space), C::PlayPause, As("Time", "play, pause")),
         Item("A single step", plain(Key::Period), C::Step, No),
         Row("Time", ".", "a single step"),
-        Item("To the event before", plain(Key::PageUp), C::PreviousEvent,
+        Item("To the event before", plain(Key::PageUp), C::SeekEvent(false),
             As("Time", "to the event before, after")),
-        Item("To the event after", plain(Key::PageDown), C::NextEvent, Joined),
+        Item("To the event after", plain(Key::PageDown), C::SeekEvent(true), Joined),
         Line,
-        Item("To the next release", plain(Key::R), C::NextRelease,
+        Item("To the next release", plain(Key::R), C::GoTo(EventKind::Release),
             As("Time", "to the next release, the next crossing")),
-        Item("To the next crossing", plain(Key::X), C::NextCrossing, Joined),
+        Item("To the next crossing", plain(Key::X), C::GoTo(EventKind::Crossing), Joined),
         Item("To the end of the run", plain(Key::End), C::RunToEnd, As("Time", "to the end of the run")),
         Line,
         Item("Pin this motion", plain(Key::K), C::Pin(PinKind::Motion),
@@ -284,7 +282,7 @@ pub(super) static MENUS: [(&str, &[Part]); 6] = [
     ]),
     ("Lessons", &[
         Part::Lessons,
-        Item("Open a lesson...", None, C::OpenLessonFile, No),
+        Item("Open a lesson...", None, C::Choose(Wanted::Lesson), No),
         Line,
         Item("Begin this lesson anew", None, C::LessonAnew, No),
         Item("Leave lesson", None, C::LeaveLesson, No),

@@ -39,7 +39,7 @@ pub struct Figures {
     /// Width and text size when the dialog was opened.
     before: [String; 2],
     /// Why the last figure was not saved.
-    pub(super) problem: Option<String>,
+    pub problem: Option<String>,
     /// Where the mass was when the dialog was opened, in m, and that of the pinned motion beside it.
     x: [f64; 2],
     /// The base's acceleration then, in m/s^2.
@@ -62,10 +62,6 @@ impl Figures {
 
     pub(super) fn choose(&mut self, path: &Path) {
         self.path = path.to_string_lossy().into_owned();
-    }
-
-    pub fn problem(&self) -> Option<&str> {
-        self.problem.as_deref()
     }
 
     /// Opens the dialog for a figure of `view`, with a suggested file.

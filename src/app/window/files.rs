@@ -7,7 +7,7 @@ use std::sync::mpsc::channel;
 use eframe::egui::{self, Ui};
 
 use crate::app::session::editor::Editor;
-use crate::app::session::measured::MeasuredRecord;
+use crate::app::session::measured::{MeasuredRecord, file_name};
 use crate::app::ui::style::STATUS;
 use crate::app::views::View;
 use crate::questions::Error;
@@ -176,20 +176,12 @@ impl Window {
             ),
         }
         if !self.waits_for_answer() && !ctx.text_edit_focused() {
-            let (mut copied, mut pasted) = (false, None);
-            ctx.input(|input| {
-                for event in &input.events {
-                    match event {
-                        egui::Event::Copy => copied = true,
-                        egui::Event::Paste(text) => pasted = Some(text.clone()),
-                        _ => {}
-                    }
-                }
-            });
-            if copied {
+            let events = ctx.input(|input| input.events.clone());
+            if events.contains(&egui::Event::Copy) {
                 self.copy_scene(ctx);
             }
-            if let Some(text) = pasted {
+            let pasted = |event| if let egui::Event::Paste(text) = event { Some(text) } else { None };
+            if let Some(text) = events.into_iter().rev().find_map(pasted) {
                 self.leave_for(ctx, Next::Text(text));
             }
         }
@@ -315,7 +307,8 @@ impl Window {
             MeasuredAnswer::Overlay(record) => self.overlay(*record),
             MeasuredAnswer::Shake(path, record) => match self.session.shake_with(&path, &record) {
                 Ok(warnings) => {
-                    let done = format!("The base is shaken with {}, from its start", record.name);
+                    let name = file_name(&record.path);
+                    let done = format!("The base is shaken with {name}, from its start");
                     match warnings.is_empty() {
                         true => self.messages.notify(done),
                         false => self.messages.alert(done, format!("The record {}.", warnings.join("; it "))),

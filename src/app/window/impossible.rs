@@ -2,6 +2,7 @@
 
 use crate::app::session::map::Map;
 use crate::app::ui::settings::Setting;
+use crate::dynamics::EventKind;
 
 use super::Window;
 use super::command::Command;
@@ -26,7 +27,7 @@ impl Window {
             // a pinned motion may be the answer to a lesson's question, as the ways to cross may
             C::Pin(_) => (in_lesson, "In a lesson no motion is pinned: leave the lesson first"),
             C::Ways => (in_lesson, "There is no hint here: a task has one, until it is done"),
-            C::OpenMeasured => (in_lesson, "Leave the lesson first"),
+            C::Choose(Wanted::Measured) => (in_lesson, "Leave the lesson first"),
             C::BestStops if in_lesson => (true, "The best stops may be an answer: leave the lesson first"),
             C::BestStops => (!session.model().is_shaken(), "Nothing shakes the mass: shake it first."),
             C::LeaveLesson | C::LessonAnew | C::LecturerNotes => (!in_lesson, "No lesson is open"),
@@ -46,14 +47,14 @@ impl Window {
                 (is_saved, "Nothing was changed since the file was opened or saved")
             }
             C::RemoveMeasured => (session.measured.over.is_none(), "No measured data is shown"),
-            C::SaveAs(Wanted::Map) => (!has_whole_map, "There is no whole map yet: show the Map first"),
+            C::Choose(Wanted::Map) => (!has_whole_map, "There is no whole map yet: show the Map first"),
             C::Unpin(letter) => (session.pins.get(*letter).is_none(), "No motion is pinned as this letter"),
             C::CopyMapCommand => (session.map.map().is_none(), "There is no map yet: show the Map first"),
             C::PasteScene => (cfg!(target_arch = "wasm32"), "A page cannot paste by itself: press Ctrl+V"),
             C::Undo => (!session.editor.can_undo(), "There is nothing to undo"),
             C::Redo => (!session.editor.can_redo(), "There is nothing to redo"),
-            C::NextRelease => (!has_stops, "No release can come: there are no stops"),
-            C::NextCrossing => (!has_barrier, "No crossing can come: there is no barrier"),
+            C::GoTo(EventKind::Release) => (!has_stops, "No release can come: there are no stops"),
+            C::GoTo(EventKind::Crossing) => (!has_barrier, "No crossing can come: there is no barrier"),
             C::Notes => (!in_lesson && session.scene().notes.trim().is_empty(), "This scene has no notes"),
             C::Toggle(Setting::Dark) => (self.settings.projector, "The projector is light: P leaves it"),
             _ => return None,

@@ -34,7 +34,6 @@ pub(super) fn is_measured(path: &Path) -> bool {
 /// A file of measured data whose columns are being chosen.
 pub struct MeasuredDialog {
     path: PathBuf,
-    name: String,
     text: Background<(), Result<Arc<MeasuredText>, String>>,
     chosen: Option<[ChosenColumn; 2]>,
     /// The record of two columns, each with its unit.
@@ -50,7 +49,6 @@ pub(super) enum MeasuredAnswer {
 
 impl MeasuredDialog {
     pub fn new(path: &Path, wake: &Wake) -> Self {
-        let name = file_name(path);
         let mut text = Background::default();
         let file = path.to_owned();
         text.ask_job((), wake, move |(), _, _| {
@@ -58,7 +56,7 @@ impl MeasuredDialog {
             Some(read.map_err(|problem| sentence(&format!("the file {problem}"))))
         });
         let record = Background::default();
-        Self { path: path.to_owned(), name, text, chosen: None, record, refused: None }
+        Self { path: path.to_owned(), text, chosen: None, record, refused: None }
     }
 
     pub fn refuse(&mut self, why: String) {
@@ -104,7 +102,7 @@ impl MeasuredDialog {
 
     pub(super) fn ui(&mut self, ui: &Ui, wake: &Wake) -> Option<MeasuredAnswer> {
         self.poll(wake);
-        let heading = format!("Measured data: {}", self.name);
+        let heading = format!("Measured data: {}", file_name(&self.path));
         let (answer, is_closed) = dialog_ui(ui, ("measured", WIDTH), (heading, 4.0), |ui| {
             ui.set_min_width(ui.available_width());
             if let Some(Ok(text)) = self.text.answer().cloned() {

@@ -49,11 +49,10 @@ impl Messages {
         }
     }
 
-    /// Reports that the motion has reached its goal, or why it stopped, at `time` in s.
+    /// Reports that the motion has reached its goal, or why it stopped, at `time` in s. An event that was
+    /// looked for is named in the transport bar.
     pub fn report_reached(&mut self, reached: Reached, time: f64) {
         match reached {
-            // the transport bar names the event
-            Reached::Event(_) => {}
             Reached::Time => self.notify(format!("The end of the run, {time:.2} s")),
             Reached::Nothing(kind) => self.notify(format!("No {} up to {time:.2} s", kind.name())),
             Reached::Ended => self.notify(format!("The run ended at {time:.3} s")),

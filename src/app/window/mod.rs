@@ -78,7 +78,7 @@ impl Window {
         let is_close = |a: f32, b: f32| (a - b).abs() < 0.01 * b;
         if !zoom.zip(self.zoom).map_or(zoom == self.zoom, |(zoom, applied)| is_close(zoom, applied)) {
             self.zoom = zoom;
-            self.deferred.scale = ctx.zoom_factor() / zoom.unwrap_or(1.0);
+            self.deferred.scale = Some(ctx.zoom_factor() / zoom.unwrap_or(1.0));
             ctx.set_zoom_factor(zoom.unwrap_or(1.0));
         }
         self.window_size.follow(ctx);
@@ -95,8 +95,8 @@ impl Window {
         if let Some(left) = self.session.follow_presses(ctx.input(|input| input.time)) {
             ctx.request_repaint_after_secs(left as f32);
         }
-        self.session.player.tick(self.pace.seconds(ctx));
-        if let Some(reached) = self.session.player.take_reached().filter(|_| !self.motion_is_covered()) {
+        let reached = self.session.player.tick(self.pace.seconds(ctx));
+        if let Some(reached) = reached.filter(|_| !self.motion_is_covered()) {
             self.messages.report_reached(reached, self.session.player.time());
         }
         self.session.follow_pins();
@@ -139,7 +139,9 @@ impl Window {
         self.memory.grab = false;
         commands.extend(self.memory.pin.take().map(Command::Pin));
         commands.extend(self.memory.figure.take().map(|view| Command::Figure(Some(view))));
-        commands.extend(std::mem::take(&mut self.memory.open_measured).then_some(Command::OpenMeasured));
+        commands.extend(
+            std::mem::take(&mut self.memory.open_measured).then_some(Command::Choose(Wanted::Measured)),
+        );
         self.session.end_frame();
         for command in commands {
             self.carry_out(&ctx, command);
@@ -166,14 +168,12 @@ impl Window {
     fn bars_ui(&mut self, ui: &mut Ui, style: &Style, compact: bool) -> Vec<Command> {
         let around = if compact { AROUND_BAR.1 } else { AROUND_BAR.0 };
         let covered = self.motion_is_covered();
-        let chosen = match self.filled {
-            None => self.head_ui(ui, style, compact),
-            Some(_) if covered => Vec::new(),
-            Some(_) => {
-                self.announcer.say(ui, &self.session.sentence());
-                Vec::new()
-            }
-        };
+        let mut chosen = Vec::new();
+        if self.filled.is_none() {
+            chosen = self.head_ui(ui, style, compact);
+        } else if !covered {
+            self.announcer.say(ui, &self.session.sentence());
+        }
         let height = if compact { TRANSPORT.1 } else { TRANSPORT.0 };
         bare(Panel::bottom("transport"), 12, around).exact_size(height).show(ui, |ui| {
             if self.lesson_covers() {
@@ -407,25 +407,19 @@ pub fn begin(creation: &CreationContext<'_>, spec: Option<&str>, dark: bool) -> 
 /// All events between two frames arrive together in the next frame, and a slider takes the last position of
 /// the pointer as the one at which it was released. If a frame takes long, a pointer that moves on after the
 /// release would drag the slider along.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 struct DeferredInput {
     events: Vec<egui::Event>,
-    /// The zoom before over that of the next frame; 1 where it stays.
-    scale: f32,
-}
-
-impl Default for DeferredInput {
-    fn default() -> Self {
-        Self { events: Vec::new(), scale: 1.0 }
-    }
+    /// The zoom before over that of the next frame, if it changes.
+    scale: Option<f32>,
 }
 
 impl DeferredInput {
     /// After a change of the zoom puts the pointer, which was at this place in points, where it is now: egui
     /// keeps its place until it is moved.
     fn rescale(&mut self, pointer: Option<egui::Pos2>, input: &mut egui::RawInput) {
-        let scale = std::mem::replace(&mut self.scale, 1.0);
-        if let Some(at) = pointer.filter(|_| scale != 1.0) {
+        let scale = self.scale.take().filter(|scale| *scale != 1.0);
+        if let Some((scale, at)) = scale.zip(pointer) {
             input.events.insert(0, egui::Event::PointerMoved((scale * at.to_vec2()).to_pos2()));
         }
     }
@@ -475,7 +469,7 @@ mod tests {
 
     #[test]
     fn after_a_change_of_the_zoom_the_pointer_is_where_it_was_on_the_screen() {
-        let mut deferred = DeferredInput { scale: 0.8, ..DeferredInput::default() };
+        let mut deferred = DeferredInput { scale: Some(0.8), ..DeferredInput::default() };
         let mut input = RawInput::default();
         deferred.rescale(Some(pos2(100.0, 50.0)), &mut input);
         assert_eq!(input.events, [Event::PointerMoved(pos2(80.0, 40.0))]);

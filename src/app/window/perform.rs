@@ -18,7 +18,6 @@ use super::command::{Command, UNDO};
 use super::keys;
 use super::layouts::{Arrangement, Room};
 use super::leave::Next;
-use super::wanted::Wanted;
 
 /// Number of characteristic times of the motion within which an event is searched.
 const TIMES_AHEAD: f64 = 300.0;
@@ -57,10 +56,9 @@ impl Window {
             Command::OpenPreset(name) => self.leave_for(ctx, Next::Open(name.to_owned())),
             Command::OpenRecent(path) => self.leave_for(ctx, Next::Open(path)),
             Command::Open => self.leave_for(ctx, Next::Choose),
-            Command::OpenMeasured => self.choose(Wanted::Measured),
             Command::RemoveMeasured => self.session.measured = MeasuredData::default(),
             Command::Save => self.save(ctx),
-            Command::SaveAs(wanted) => self.choose(wanted),
+            Command::Choose(wanted) => self.choose(wanted),
             Command::Figure(view) => {
                 let view = view.unwrap_or_else(|| self.active_view());
                 self.figures.open(view, &self.session, &self.memory);
@@ -76,10 +74,8 @@ impl Window {
             Command::BackToStart => self.back_to_start(ctx),
             Command::PlayPause => self.session.play_or_pause(),
             Command::Step => self.session.player.step(),
-            Command::PreviousEvent => self.seek_event(false),
-            Command::NextEvent => self.seek_event(true),
-            Command::NextRelease => self.go_to_first(EventKind::Release),
-            Command::NextCrossing => self.go_to_first(EventKind::Crossing),
+            Command::SeekEvent(later) => self.seek_event(later),
+            Command::GoTo(kind) => self.go_to_first(kind),
             Command::RunToEnd => match self.session.end_of_run() {
                 end if end > self.session.player.time() => self.session.player.go_to(Goal::Time(end)),
                 end => self.messages.notify(format!("The run ended at {end:.2} s, before the time shown")),
@@ -142,7 +138,6 @@ impl Window {
                 }
             }
             Command::OpenLesson(name) => self.open_lesson(name),
-            Command::OpenLessonFile => self.choose(Wanted::Lesson),
             Command::LeaveLesson => self.leave_lesson(),
             Command::LessonAnew => self.begin_lesson_anew(),
             Command::CopyAnswers => self.copy_answers(ctx),

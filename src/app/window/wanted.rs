@@ -41,10 +41,6 @@ impl Wanted {
         }
     }
 
-    fn verb(self) -> &'static str {
-        if self.is_read() { "Open" } else { "Save" }
-    }
-
     pub(super) fn is_read(self) -> bool {
         matches!(self, Self::Open | Self::Lesson | Self::Measured)
     }
@@ -129,7 +125,8 @@ impl PathDialog {
                 field.request_focus();
             }
             ui.horizontal(|ui| {
-                let done = ui.add_enabled(taken, primary(ui, self.wanted.verb())).clicked();
+                let verb = if self.wanted.is_read() { "Open" } else { "Save" };
+                let done = ui.add_enabled(taken, primary(ui, verb)).clicked();
                 let cancelled = ui.button("Cancel").clicked();
                 if taken && (done || entered) {
                     Some(PathAnswer::Chosen(PathBuf::from(self.path.trim())))

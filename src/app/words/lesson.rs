@@ -94,9 +94,6 @@ fn lacking(asked: &Condition, found: &Value, on_stops: bool) -> String {
         _ => "the condition holds",
     };
     match asked {
-        Condition::All(parts) => {
-            parts.first().map_or_else(String::new, |part| lacking(part, found, on_stops))
-        }
         Condition::Any(_) => "none of the conditions holds".to_owned(),
         Condition::Not(part) => match part.as_ref() {
             Condition::Is(field, word) if field.ends_with(REGIME) => still(field, word, on_stops),

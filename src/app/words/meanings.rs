@@ -149,46 +149,18 @@ pub fn meaning(label: &str) -> Option<&'static str> {
 }
 
 /// The terms of the glossary in alphabetical order; each has a meaning.
+#[rustfmt::skip]
 pub const GLOSSARY: [&str; 22] = [
-    "barrier",
-    "basin",
-    "bulge",
-    "chaotic",
-    "hopping",
-    "impact",
-    "interwell",
-    "intrawell",
-    "irregular",
-    "once a period",
-    "path error",
-    "period",
-    "phase portrait",
-    "potential",
-    "preload",
-    "push",
-    "reach",
-    "release",
-    "restitution",
-    "RMS velocity",
-    "separatrix",
-    "settling",
+    "barrier", "basin", "bulge", "chaotic", "hopping", "impact", "interwell", "intrawell", "irregular",
+    "once a period", "path error", "period", "phase portrait", "potential", "preload", "push", "reach",
+    "release", "restitution", "RMS velocity", "separatrix", "settling",
 ];
 
 /// The terms that are underlined in a text; those with a second meaning are left out.
+#[rustfmt::skip]
 pub const UNDERLINED: [&str; 13] = [
-    "barrier",
-    "basin",
-    "chaotic",
-    "interwell",
-    "intrawell",
-    "period",
-    "phase portrait",
-    "potential",
-    "preload",
-    "release",
-    "restitution",
-    "RMS velocity",
-    "separatrix",
+    "barrier", "basin", "chaotic", "interwell", "intrawell", "period", "phase portrait", "potential",
+    "preload", "release", "restitution", "RMS velocity", "separatrix",
 ];
 
 /// The byte ranges of glossary terms in a text, each with its term.

@@ -97,10 +97,8 @@ impl Question for CellsQuestion {
 
 #[derive(Default)]
 pub struct Mapping {
-    /// The quantity that the user has chosen.
-    quantity: Option<&'static SummaryField>,
-    /// Whether the map opens on the mean power into the load, and not on the RMS velocity.
-    pub about_power: bool,
+    /// The quantity that is shown; `None` for the RMS velocity.
+    pub(super) quantity: Option<&'static SummaryField>,
     pub trail: Trail,
     /// The axes that the user has chosen; `None` for the default axes.
     chosen: Option<[SweepAxis; 2]>,
@@ -116,7 +114,8 @@ pub struct Mapping {
     pub version: u64,
     /// A question that waits for a pause in the gesture, and the time in s since which it has not changed.
     waiting: Option<(MapQuestion, f64)>,
-    problem: Option<String>,
+    /// Why there is no map.
+    pub problem: Option<String>,
 }
 
 impl Mapping {
@@ -142,10 +141,6 @@ impl Mapping {
         self.cells.is_running()
     }
 
-    pub fn problem(&self) -> Option<&str> {
-        self.problem.as_deref()
-    }
-
     pub fn stop(&mut self) {
         self.cells.stop();
         self.take();
@@ -162,8 +157,7 @@ impl Mapping {
     }
 
     pub fn quantity(&self) -> &'static SummaryField {
-        let power = || SummaryField::find(LOAD_POWER).filter(|_| self.about_power);
-        self.quantity.or_else(power).unwrap_or(&RMS_VELOCITY)
+        self.quantity.unwrap_or(&RMS_VELOCITY)
     }
 
     pub fn show(&mut self, quantity: &'static SummaryField) {
@@ -213,22 +207,22 @@ impl Session {
     /// The axes of the map; `None` if the scene has fewer than two fields for them.
     pub fn map_axes(&self) -> Option<[SweepAxis; 2]> {
         let mut known = self.map.chosen().into_iter().chain(&self.map.default_axes);
-        let usual = || axes::default_axes(self.scene(), self.remembered_stops(), self.well_mm());
+        let usual = || axes::default_axes(self.scene(), self.remembered_stops, self.well_mm());
         known.find(|axes| self.has_fields_of(*axes)).cloned().or_else(usual)
     }
 
     /// Whether the scene, with its stops switched on if need be, has the fields of these axes.
     pub(super) fn has_fields_of(&self, axes: &[SweepAxis]) -> bool {
-        let ground = ground(self.scene(), self.remembered_stops(), axes);
+        let ground = ground(self.scene(), self.remembered_stops, axes);
         axes.iter().all(|axis| FieldPath::new(&axis.field).get(&ground).is_some())
     }
 
     pub fn map_fields(&self) -> Vec<String> {
-        axes::fields(self.scene(), self.remembered_stops())
+        axes::fields(self.scene(), self.remembered_stops)
     }
 
     pub fn map_axis(&self, field: &str) -> SweepAxis {
-        axes::axis(field, self.scene(), self.remembered_stops(), self.well_mm())
+        axes::axis(field, self.scene(), self.remembered_stops, self.well_mm())
     }
 
     fn well_mm(&self) -> Option<f64> {
@@ -285,7 +279,7 @@ impl Session {
 
     /// The question of the map over these axes; `None` if the first value of an axis cannot be set.
     fn map_question(&self, axes: [SweepAxis; 2]) -> Option<MapQuestion> {
-        let mut scene = ground(self.scene(), self.remembered_stops(), &axes);
+        let mut scene = ground(self.scene(), self.remembered_stops, &axes);
         if !axes.iter().all(|axis| FieldPath::new(&axis.field).set(&mut scene, axis.from)) {
             return None;
         }
@@ -311,7 +305,7 @@ impl Session {
 
     /// Why a map cannot have these axes: the index of the faulty axis, its faulty part, and a sentence.
     pub fn map_problem(&self, axes: &[SweepAxis; 2]) -> Option<(usize, &'static str, String)> {
-        let ground = ground(self.scene(), self.remembered_stops(), axes);
+        let ground = ground(self.scene(), self.remembered_stops, axes);
         let mut cells = 1;
         for (i, axis) in axes.iter().enumerate() {
             match Axis::from_scene(axis, &ground) {

@@ -47,7 +47,7 @@ pub fn map_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         ui.ctx().request_repaint_after(std::time::Duration::from_millis(100));
     }
     tools::tools_ui(ui, context);
-    if let Some(problem) = context.session.map.problem() {
+    if let Some(problem) = &context.session.map.problem {
         ui.label(format!("  No map: {}", problem.lines().next().unwrap_or_default()));
     }
     let area = ui.available_rect_before_wrap();
@@ -119,7 +119,7 @@ pub fn map_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     if !current {
         // a veil over a map that is not that of the scene
         painter.rect_filled(rect, 0.0, style.veil());
-        let has_problem = context.session.map.problem().is_some();
+        let has_problem = context.session.map.problem.is_some();
         let words = if has_problem { "not of this scene" } else { "of the scene before" };
         let at = rect.center_top() + vec2(0.0, 8.0);
         painter.text(at, Align2::CENTER_TOP, words, style.body(), style.ink());

@@ -168,11 +168,8 @@ pub fn driven(facts: &DrivenMotion) -> Sentence {
         ),
         Regime::Interwell | Regime::Crossing => interwell(facts, crosses, &rms, &range),
     };
-    let kind = match summary.regime {
-        Regime::Crossing => Kind::Interwell,
-        regime => Kind::from(regime),
-    };
-    let mut sentence = Sentence::new(kind, format!("{text}{}{}", facts.unsettled(), untouched(facts)));
+    let text = format!("{text}{}{}", facts.unsettled(), untouched(facts));
+    let mut sentence = Sentence::new(Kind::from(summary.regime), text);
     if let Some(found) = facts.thresholds {
         sentence.remedy = remedy(scene, summary, found);
     }

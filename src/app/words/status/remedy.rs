@@ -5,7 +5,7 @@ use crate::scene::{Scene, Stops};
 use interwell_studies::study::{Found, Thresholds};
 
 use super::super::capital;
-use super::super::numbers::{grams, grams_apart, grams_beside, grams_up};
+use super::super::numbers::{exact, grams, grams_apart, grams_beside, grams_up};
 
 /// Amplitude in g of a drive that is harmonic.
 pub(super) fn amplitude(scene: &Scene) -> Option<f64> {
@@ -83,7 +83,7 @@ pub(super) fn remedy(scene: &Scene, summary: &Summary, found: &Thresholds) -> St
 /// What it would take to cross in every period: more shaking, or stops with the travel limit `stops_mm`.
 pub fn ways(scene: &Scene, settled: &Summary, thresholds: &Thresholds, stops_mm: Option<f64>) -> String {
     let Some(g) = amplitude(scene) else { return String::new() };
-    let stops = stops_mm.map(|limit| format!("with stops at ±{} mm", at_least_one_decimal(limit)));
+    let stops = stops_mm.map(|limit| format!("with stops at ±{} mm", exact(limit, 1)));
     match settled.regime {
         Regime::OneWell => "There is no barrier, so nothing to cross.".to_owned(),
         Regime::Interwell | Regime::Crossing => {
@@ -109,12 +109,6 @@ pub fn ways(scene: &Scene, settled: &Summary, thresholds: &Thresholds, stops_mm:
             }
         }
     }
-}
-
-/// A number with all of its decimals, and at least one.
-fn at_least_one_decimal(mm: f64) -> String {
-    let text = format!("{mm}");
-    if text.contains('.') { text } else { format!("{mm:.1}") }
 }
 
 #[cfg(test)]
