@@ -329,7 +329,7 @@ fn the_tools_of_a_map_are_whole_and_its_quantities_are_in_groups() {
         let has_rows = harness.query_by_label("Options").is_none();
         assert_eq!(has_rows, size == WIDE);
         let names = match has_rows {
-            true => &["From above", "Surface", "Cuts", "Range", "Trail", "Recompute"][..],
+            true => &["Flat", "Surface", "Cuts", "Range", "Trail", "Recompute"][..],
             false => &["map of RMS velocity", "Options"],
         };
         let role = |name: &str| match name {
@@ -347,7 +347,7 @@ fn the_tools_of_a_map_are_whole_and_its_quantities_are_in_groups() {
         if !has_rows {
             click_on(&mut harness, "Options");
             let inside = harness.ctx.content_rect();
-            for name in ["From above", "Surface", "Cuts", "Show where the scene has been", "Recompute"] {
+            for name in ["Flat", "Surface", "Cuts", "Show where the scene has been", "Recompute"] {
                 let place = harness.get_by_label(name).rect();
                 assert!(inside.contains_rect(place), "{size:?}: {name} {place:?}");
             }

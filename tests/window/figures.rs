@@ -162,7 +162,7 @@ fn of_every_view_of_a_survey_the_copied_command_makes_the_same_bytes() {
         harness.run_steps(1);
         harness.state().session.map.map().is_some_and(|map| map.is_whole())
     });
-    for label in ["From above", "Cuts"] {
+    for label in ["Flat", "Cuts"] {
         harness.get_by_label(label).click();
         harness.run_steps(3);
     }

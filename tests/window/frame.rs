@@ -444,13 +444,13 @@ fn the_time_until_the_motion_has_settled_can_be_skipped() {
         harness.state_mut().session.wait_settled(LONG);
         harness.run_steps(3);
         assert!(harness.state().session.sentence().text.contains("will cross twice a period"));
-        harness.get_by_label_contains("to go, skip").click();
+        harness.get_by_label_contains("skip settling").click();
         harness.run_steps(1);
         arrive(&mut harness);
         let session = &harness.state().session;
         assert!(session.settling().is_none() && session.player.is_playing() && session.player.time() < 3.0);
         assert!(session.sentence().text.contains("crosses twice a period"), "{}", session.sentence().text);
-        assert!(harness.query_by_label_contains("to go, skip").is_none());
+        assert!(harness.query_by_label_contains("skip settling").is_none());
         assert_eq!(harness.state().notice(), None);
     }
 }

@@ -173,7 +173,7 @@ fn it_fits() {
         assert!(place.right() <= size[0] && place.bottom() <= size[1], "{place}");
         assert!(place.width() > 0.3 * size[0] && place.height() > 0.35 * size[1], "{size:?}: {place}");
         open_options(&mut harness);
-        for label in ["From above", "Recompute"] {
+        for label in ["Flat", "Recompute"] {
             let rect = harness.get_by_label(label).rect();
             assert!(rect.right() <= size[0] && rect.left() >= 0.0, "{label}: {rect}");
         }

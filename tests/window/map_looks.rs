@@ -305,7 +305,7 @@ fn the_cost_of_a_frame_does_not_grow_with_the_map() {
 fn nothing_is_cut_in_any_look() {
     for size in [WIDE, [1920.0, 1080.0], PROJECTED] {
         let mut harness = open(size, (0.25, 0.25));
-        for label in ["Cuts", "Surface", "From above"] {
+        for label in ["Cuts", "Surface", "Flat"] {
             open_options(&mut harness);
             click_on(&mut harness, label);
             if harness.query_by_label("Options").is_some() {

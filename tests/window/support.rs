@@ -74,7 +74,7 @@ pub fn click_on(harness: &mut Harness<'_, Window>, label: &str) {
 
 /// Opens the menu with the choices of a map, where these have no rows of their own.
 pub fn open_options(harness: &mut Harness<'_, Window>) {
-    if harness.query_by_label("Options").is_some() && harness.query_by_label("From above").is_none() {
+    if harness.query_by_label("Options").is_some() && harness.query_by_label("Flat").is_none() {
         click_on(harness, "Options");
     }
 }

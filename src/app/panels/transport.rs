@@ -287,7 +287,7 @@ fn skip_ui(ui: &mut Ui, session: &mut Session, covered: bool) -> bool {
     let Some((gone, whole)) = settling else { return false };
     let hover = "What is left until the motion has settled after your last change. A click goes on to there \
                  at once.";
-    let text = RichText::new(format!("settling: {:.1} s to go, skip", whole - gone)).small();
+    let text = RichText::new(format!("skip settling ({:.1} s)", whole - gone)).small();
     if ui.link(text).on_hover_text(hover).clicked() {
         let until = session.player.watch().time() + whole - gone;
         session.player.go_to(Goal::Settled(until));

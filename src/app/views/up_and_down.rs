@@ -158,7 +158,7 @@ fn chart(
 ) -> Chart {
     let mut panel = Panel::new(axes.0, axes.1);
     let differing = differing(fine, panel.y.high - panel.y.low);
-    panel.layer(Role::Closer, "the two differ", Marks::Spans(differing));
+    panel.layer(Role::Closer, "hysteresis", Marks::Spans(differing));
     panel.draw(Role::Drive, Marks::Verticals(here.into_iter().collect()));
     // the dots of the way up lie in the rings of the way down
     for (i, role, name) in [(1, Role::Down, "turned down"), (0, Role::Motion, "turned up")] {

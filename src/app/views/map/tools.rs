@@ -125,7 +125,7 @@ fn quantity_ui(ui: &mut Ui, mapping: &mut Mapping) {
 
 /// Choice between the map from above and the surface, and of cuts.
 fn look_ui(ui: &mut Ui, look: &mut MapLook, quantity: &SummaryField) {
-    ui.selectable_value(&mut look.surface, false, "From above")
+    ui.selectable_value(&mut look.surface, false, "Flat")
         .on_hover_text("Each run is a cell, and its colour the quantity.");
     let surface = if words_of(quantity.name).is_some() {
         "Words have no height: they are seen from above."
