@@ -17,8 +17,8 @@ const TRIED_MM: f64 = 0.3;
 const NEARLY: f64 = 1.02;
 
 /// How stops between two wells act.
-const MIDDLE: &str = "near the middle they hold the mass high on the barrier, so a weaker push carries it over, \
-                      but less far; farther out they may hinder it.";
+const MIDDLE: &str = "near the middle they hold the mass high on the barrier, so a weaker push carries it \
+                      over, but less far; farther out they may hinder it.";
 
 /// What the line asks the user to try.
 #[derive(Debug, Clone, Copy, PartialEq)]

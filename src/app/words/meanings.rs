@@ -98,10 +98,7 @@ const MEANINGS: &[(&str, &str)] = &[
     ),
     ("turned up", "From the least value to the greatest, each run from the end of the one before."),
     ("turned down", "From the greatest value to the least, each run from the end of the one before."),
-    (
-        "hysteresis",
-        "At this value the motion on the way down differs from that on the way up: it depends on its history.",
-    ),
+    ("hysteresis", "The motion on the way down differs from that on the way up: it depends on its history."),
     ("once a period", "The state once a forcing period, always at the same phase of the shaking."),
     ("at rest on a stop", "The mechanism presses the mass on its stop, harder than the push pulls."),
     ("impacts", "The mass strikes a stop and rebounds; the energy that it loses goes into the stop."),
