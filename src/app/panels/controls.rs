@@ -197,6 +197,20 @@ pub fn named_ui(
     places
 }
 
+/// Whether a word in lower case in a lesson names the control of a field: by its label, or by the field's usual name.
+pub fn is_named(word: &str, path: &str) -> bool {
+    let name = name_and_unit(path).0;
+    let label = name.trim_end_matches(" ±").to_lowercase();
+    match path {
+        "stops" => ["stops", "stop"].contains(&word),
+        "excitation.rms_g" => word == "shaking" || word == label,
+        _ if path.starts_with("excitation.amplitude_") => word == "shaking" || word == label,
+        "stops.travel_limit_mm" => ["travel limit", "position"].contains(&word),
+        "start.v_m_per_s" => ["flick", "start", "velocity", label.as_str()].contains(&word),
+        _ => word == label,
+    }
+}
+
 fn shaking_ui(ui: &mut Ui, session: &mut Session, width: f32) {
     let text = match &session.scene().excitation {
         Excitation::Sine { .. }

@@ -418,8 +418,8 @@ fn option_size(ui: &Ui, options: &[Choice]) -> Vec2 {
     vec2(width, tallest + 2.0 * padding.y + 4.0)
 }
 
-/// The options of a prediction side by side, all of one height. Once the answer is shown, the one that holds is
-/// filled, and a ring marks another one that was chosen.
+/// The options of a prediction side by side, all of one height. Once the answer is shown, the one that
+/// holds is filled, and a ring marks another one that was chosen.
 fn options_ui(ui: &mut Ui, lesson: &OpenLesson, style: &Style) -> Option<LessonAction> {
     let options = lesson.options();
     if options.is_empty() {

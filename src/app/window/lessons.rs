@@ -14,7 +14,6 @@ use crate::app::session::lesson::{OpenLesson, Records, Turn, answers_text};
 use crate::app::ui::style::Style;
 use crate::app::ui::widgets::{bare, close_ui, dialog_ui, panel_frame, primary};
 use crate::app::views::{Cover, Memory, View};
-use crate::app::words::fields::name_and_unit;
 use crate::app::words::lesson::{bold_words, letter, numbered, question};
 use crate::questions::Error;
 use crate::scene::lesson::{BuiltInLesson, LessonDocument, LessonError, Step};
@@ -469,7 +468,9 @@ impl Window {
         let painter = ctx.layer_painter(layer);
         for word in bold_words(lesson.step().text()) {
             let stroke = style.pointing_stroke();
-            if let Some(control) = self.lessons.controls.iter().find(|shown| names_control(&word, &shown.0)) {
+            if let Some(control) =
+                self.lessons.controls.iter().find(|shown| controls::is_named(&word, &shown.0))
+            {
                 painter.rect_stroke(control.1.expand(OUTLINE_DISTANCE), 4.0, stroke, StrokeKind::Outside);
             } else if let Some(rect) = view_named(&word).and_then(|view| self.tiling.place_of(view)) {
                 painter.rect_stroke(rect, 4.0, stroke, StrokeKind::Inside);
@@ -482,20 +483,6 @@ impl Window {
             Some(text) => self.messages.copy(ctx, text, "your answers as text"),
             None => self.messages.notify("There are no answers yet"),
         }
-    }
-}
-
-/// Whether a word in lower case names the control of a field: by its label, or by the field's usual name.
-fn names_control(word: &str, path: &str) -> bool {
-    let name = name_and_unit(path).0;
-    let label = name.trim_end_matches(" ±").to_lowercase();
-    match path {
-        "stops" => ["stops", "stop"].contains(&word),
-        "excitation.rms_g" => word == "shaking" || word == label,
-        _ if path.starts_with("excitation.amplitude_") => word == "shaking" || word == label,
-        "stops.travel_limit_mm" => ["travel limit", "position"].contains(&word),
-        "start.v_m_per_s" => ["flick", "start", "velocity", label.as_str()].contains(&word),
-        _ => word == label,
     }
 }
 

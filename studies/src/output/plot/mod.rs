@@ -34,6 +34,7 @@ mod pdf;
 mod png;
 mod portrait;
 mod projection;
+mod push;
 mod quantity;
 mod record;
 mod role;

@@ -17,24 +17,16 @@ use super::style::{self, Theme};
 /// Thickness of a clamp, and its distance from the edges of the drawing.
 const CLAMP: (f64, f64) = (17.0, 13.0);
 /// Half the width of the mass.
-const HALF_MASS: f64 = 29.0;
+pub(super) const HALF_MASS: f64 = 29.0;
 /// Half the height of the mass as a share of the distance of the clamps, and its limits.
 const HALF_HEIGHT: (f64, f64, f64) = (0.19, 45.0, 97.0);
 /// Width of a stop, and its height above and below the mass.
-const STOP: (f64, f64) = (22.0, 9.0);
+pub(super) const STOP: (f64, f64) = (22.0, 9.0);
 
 /// Share of the width of the mass that the flexures of a group take.
 const ASIDE: f64 = 0.9;
 /// Half turns, half width and the share of a straight end of a spring in place of flexures.
 const SPRING: (usize, f64, f64) = (12, 19.0, 0.15);
-
-/// Longest arrow as a share of the width of the drawing; one between the stops may be as short as the second
-/// number of it.
-const ARROW: (f64, f64) = (0.16, 0.5);
-/// Length and half width of the head of an arrow.
-const HEAD: (f64, f64) = (26.0, 13.0);
-/// Distance of an arrow from the mass and from a stop, and the shortest one that is drawn.
-const ARROW_GAP: (f64, f64) = (13.0, 6.0);
 
 /// Distance of a letter from the edges of a pole together, and its smallest size.
 const LETTER: (f64, f64) = (4.0, 18.0);
@@ -93,7 +85,7 @@ pub(super) struct Pen<'a> {
     /// The lines of the feet of the flexures below the mass, next to the clamp.
     pub feet: Vec<Vec<Point>>,
     /// Inner edge of the upper clamp.
-    top: f64,
+    pub top: f64,
     /// Inner edge of the lower clamp.
     pub bottom: f64,
     /// Place of x = 0.
@@ -101,8 +93,8 @@ pub(super) struct Pen<'a> {
     /// Lengths to a m along the flexures, if there are any.
     pub along: Option<f64>,
     pub mass: Area,
-    stops: [Option<Area>; 2],
-    outlined: [Option<Area>; 2],
+    pub stops: [Option<Area>; 2],
+    pub outlined: [Option<Area>; 2],
 }
 
 /// Which side of a label is at its place: its upper one, its middle or its lower one.
@@ -234,78 +226,6 @@ impl<'a> Pen<'a> {
             let to = (0.5 * (self.mass.left + self.mass.right), self.mass.top);
             self.figure.line(&spring((foot, to), SPRING), width, self.theme.ink, area);
         }
-    }
-
-    /// The place of the longest arrow: between the stops where half of it has room on either side of the
-    /// mass, else above the stops and beside the flexures, or beyond a stop; without two stops on the inner
-    /// side of the mass. Except above the stops its height is that of the mass, where no flexure comes, and
-    /// clear of a spring.
-    fn arrow_place(&self, flexures: &[Vec<Point>]) -> Option<Area> {
-        let (area, mass) = (self.area(), self.mass);
-        let length = ARROW.0 * (area.right - area.left);
-        let half = 0.5 * (mass.bottom - mass.top);
-        let lift = if self.of.stiffness == 0.0 { 0.0 } else { 0.4 * half };
-        let y = 0.5 * (mass.top + mass.bottom) - lift;
-        let place =
-            |near: f64, far: f64, y: f64| Area::new(near.min(far), y - HEAD.1, near.max(far), y + HEAD.1);
-        let from = |edge: f64, side: f64, length: f64| {
-            let near = edge + side * ARROW_GAP.0;
-            place(near, near + side * length, y)
-        };
-        let face = |side: f64| if side < 0.0 { mass.left } else { mass.right };
-        let middle = 0.5 * (mass.left + mass.right);
-        let place = match self.stops {
-            [Some(left), Some(right)] => {
-                let room = 0.5 * (right.left - left.right) - HALF_MASS - 2.0 * ARROW_GAP.0;
-                let side = if middle > 0.5 * (left.right + right.left) { -1.0 } else { 1.0 };
-                let all = || self.outlined.into_iter().flatten().chain([left, right]);
-                let outer_left = all().map(|stop| stop.left).fold(f64::INFINITY, f64::min);
-                let outer_right = all().map(|stop| stop.right).fold(f64::NEG_INFINITY, f64::max);
-                let over = mass.top - STOP.1 - ARROW_GAP.0 - HEAD.1;
-                let above = |side: f64| place(face(side), face(side) + side * length, over);
-                let is_free = |place: &Area| {
-                    let crosses = |pair: &[Point]| place.clip(pair[0], pair[1]).is_some();
-                    let is_inside =
-                        place.left > area.left && place.right < area.right && place.top > self.top;
-                    is_inside && !flexures.iter().any(|line| line.windows(2).any(crosses))
-                };
-                let has_flexures = self.of.flexures.is_some();
-                let free = [above(-1.0), above(1.0)].into_iter().find(|place| has_flexures && is_free(place));
-                match (room >= ARROW.1 * length && self.of.outlined.is_none(), free) {
-                    (true, _) => from(face(side), side, length.min(room)),
-                    (false, Some(above)) => above,
-                    (false, None) if outer_left - length - 2.0 * ARROW_GAP.0 > area.left => {
-                        from(outer_left, -1.0, length)
-                    }
-                    (false, None) => from(outer_right, 1.0, length),
-                }
-            }
-            [Some(_), None] => from(mass.right, 1.0, length),
-            [None, Some(_)] => from(mass.left, -1.0, length),
-            [None, None] => {
-                let side = if middle > self.zero { -1.0 } else { 1.0 };
-                from(face(side), side, length)
-            }
-        };
-        (self.of.push != 0.0).then_some(place)
-    }
-
-    /// The arrow of the push, from or to the end of its place next to the mass.
-    fn arrow(&mut self, place: Area) {
-        let middle = 0.5 * (self.mass.left + self.mass.right);
-        let push = self.of.push.clamp(-1.0, 1.0) * (place.right - place.left);
-        if push.abs() < ARROW_GAP.1 {
-            return;
-        }
-        let (near, out) = if place.left > middle { (place.left, 1.0) } else { (place.right, -1.0) };
-        let (from, tip) = if push * out > 0.0 { (near, near + push) } else { (near - push, near) };
-        let y = 0.5 * (place.top + place.bottom);
-        let look = self.theme.look(Role::Push);
-        let head = HEAD.0.min(push.abs()) * push.signum();
-        let canvas = self.figure.canvas;
-        self.figure.line(&[(from, y), (tip - 0.5 * head, y)], look.width, look.ink, canvas);
-        let corners = vec![(tip, y), (tip - head, y - HEAD.1), (tip - head, y + HEAD.1)];
-        self.figure.polygon(corners, look.ink);
     }
 
     /// A bar of 10 mm along the flexures, with its length.
