@@ -114,6 +114,14 @@ fn lacking(asked: &Condition, found: &Value, on_stops: bool) -> String {
 /// Why a condition on one field does not hold.
 fn lacking_field(asked: &Condition, found: &Value, on_stops: bool) -> String {
     let field = asked.field().unwrap_or_default();
+    if field == "walk.gap" {
+        let words = if *found == Value::Missing {
+            "it does not cross both ways"
+        } else {
+            "the two ways still differ"
+        };
+        return words.to_owned();
+    }
     let Some((name, unit)) = name_and_unit_of(field) else {
         return "it differs from what is asked".to_owned();
     };
