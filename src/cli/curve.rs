@@ -1,16 +1,21 @@
 //! `curve`: force, potential and stiffness of the mechanism, and the state and shape of its flexures.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use clap::Args;
 use interwell::dynamics::{Model, STANDARD_GRAVITY};
+use interwell::mechanics::Mechanism;
 use interwell::numeric::extent;
 use interwell::output::{
-    contact_chart, curve_chart, landscape, measured_force_chart, mechanism_chart, shapes_chart, well_chart,
+    Chart, Ranges, contact_chart, curve_chart, landscape, measured_force_chart, mechanism_chart,
+    shapes_chart, well_chart,
 };
-use interwell::questions::{Curve, Error, Simulation};
+use interwell::questions::{Curve, Error, FlexuresAnswer, Simulation, Table};
+use interwell::scene::Document;
 use interwell_studies::study::{
-    CURVE_PICTURE_POINTS, CURVE_POINTS, default_positions, even_positions, metres, stop_positions,
+    CURVE_PICTURE_POINTS, CURVE_POINTS, ForceComparison, default_positions, even_positions, metres,
+    stop_positions,
 };
 
 use super::measured::MeasuredForceOptions;
@@ -117,6 +122,129 @@ fn pictures<'a>(options: &'a Arguments, common: &Common) -> Result<[Option<Pictu
     Ok(all)
 }
 
+/// The curve of a mechanism at the positions that the options name.
+struct Asked<'a> {
+    options: &'a Arguments,
+    document: Document,
+    mechanism: Arc<Mechanism>,
+    /// Ends in mm.
+    range: Option<(f64, f64)>,
+    /// Positions in m.
+    listed: Option<Vec<f64>>,
+}
+
+impl<'a> Asked<'a> {
+    fn new(options: &'a Arguments, common: &Common) -> Result<Self, Failure> {
+        let (document, mechanism) = load_with_mechanism(&options.scene, common)?;
+        let range = |text| range("--range-mm", text, "A:B in mm with A below B, such as -8:8");
+        let range = options.range_mm.as_deref().map(range).transpose()?;
+        let listed = options.at_mm.as_deref().map(|text| numbers("--at-mm", text, ',')).transpose()?;
+        let listed: Option<Vec<f64>> = listed.map(|mm| mm.into_iter().map(metres).collect());
+        if let (Some([_, _, _, ..]), Some(text), Some(other)) =
+            (listed.as_deref(), &options.at_mm, &options.beside)
+        {
+            refuse!(
+                "--at-mm {text}: with --beside {other} two masses are drawn, at two positions: give two, or \
+                 leave --beside out"
+            );
+        }
+        Ok(Self { options, document, mechanism, range, listed })
+    }
+
+    /// So many positions over the range.
+    fn even(&self, points: usize) -> Vec<f64> {
+        match self.range {
+            Some(range) => even_positions(range, points).into_iter().map(metres).collect(),
+            None => default_positions(&self.document.scene, &self.mechanism, points),
+        }
+    }
+
+    /// The positions, by default so many.
+    fn positions(&self, points: u32) -> Vec<f64> {
+        let even = || self.even(self.options.points.unwrap_or(points) as usize);
+        self.listed.clone().unwrap_or_else(even)
+    }
+
+    /// The position that is named at this place.
+    fn named(&self, place: usize) -> Option<f64> {
+        self.listed.as_ref()?.get(place).copied()
+    }
+
+    /// An error about positions, with the option that gave them.
+    fn failure(&self, error: Error) -> Failure {
+        let given = self.options.at_mm.as_ref().map(|text| ("--at-mm", text));
+        let given = given.or(self.options.range_mm.as_ref().map(|text| ("--range-mm", text)));
+        match (error, given) {
+            (Error::Argument { problem, .. }, Some((option, text))) => {
+                Failure::argument(format!("{option} {text}: {problem}"))
+            }
+            (error, _) => error.into(),
+        }
+    }
+
+    fn curve(&self, positions: Vec<f64>) -> Result<Table, Failure> {
+        let curve = Curve { positions: Some(positions) };
+        curve.of_mechanism(&self.document, &self.mechanism).map_err(|error| self.failure(error))
+    }
+
+    /// The flexures there; an error if the mechanism has none names the `option` that asks for them.
+    fn flexures(&self, positions: Vec<f64>, option: &str) -> Result<FlexuresAnswer, Failure> {
+        let curve = Curve { positions: Some(positions) };
+        let found = curve.flexures_of(&self.document, &self.mechanism, &interrupt::progress());
+        found.map_err(|error| match error {
+            Error::Unfit { .. } => Failure::argument(format!("{option}: {}", error.message())),
+            error => self.failure(error),
+        })
+    }
+
+    /// A mechanism without flexures is refused where an option needs some.
+    fn check_flexures(&self) -> Result<(), Failure> {
+        let needed = [
+            self.options.full.then_some("--full"),
+            self.options.shapes.is_some().then_some("--shapes"),
+            self.options.shapes_plot.is_some().then_some("--shapes-plot"),
+        ];
+        needed.into_iter().flatten().try_for_each(|option| self.flexures(Vec::new(), option).map(drop))
+    }
+
+    /// The chart of the curve, which is whole even if few positions were requested, or of a measured one.
+    fn chart(&self, measured: Option<&ForceComparison>, ranges: Ranges) -> Result<Chart, Failure> {
+        let Some(found) = measured else {
+            let table = self.curve(self.even(CURVE_PICTURE_POINTS))?;
+            return Ok(curve_chart(&table, &self.mechanism, stop_positions(&self.document.scene), ranges));
+        };
+        let range = extent(found.positions.iter().copied());
+        let table = Curve::drawn(Some(range), &self.document, &self.mechanism);
+        Ok(measured_force_chart(found, &table.map_err(|error| self.failure(error))?, ranges))
+    }
+
+    fn shapes_chart(&self) -> Result<Chart, Failure> {
+        let is_named = self.listed.is_some() || self.options.points.is_some() || self.range.is_some();
+        let equilibria = self.mechanism.landscape.equilibria.iter().map(|equilibrium| equilibrium.x);
+        let at = if is_named { self.positions(SHAPES) } else { equilibria.collect() };
+        let states = self.flexures(at, "--shapes-plot")?.states;
+        Ok(shapes_chart(&states, &self.mechanism, stop_positions(&self.document.scene)))
+    }
+
+    /// The chart of the mechanism, and of that of the other model beside it.
+    fn mechanism_chart(&self, model: &Model, other: Option<&Model>) -> Result<Chart, Failure> {
+        let models = std::iter::once(model).chain(other).enumerate();
+        let at: Vec<(&Model, f64)> =
+            models.map(|(place, model)| (model, self.named(place).unwrap_or(model.start().0))).collect();
+        let name = &self.document.name;
+        mechanism_chart(&at)
+            .map_err(|problem| Failure::argument(format!("--mechanism-plot: {name}: {problem}")))
+    }
+
+    /// The chart of the well while the base has this acceleration in g, by default its largest.
+    fn well_chart(&self, model: &Model, accel_g: Option<f64>) -> Chart {
+        let largest = if model.is_shaken() { model.largest_base_acceleration() } else { 0.0 };
+        let accel = accel_g.map_or(largest, |accel| accel * STANDARD_GRAVITY);
+        let ends = self.even(2);
+        well_chart(model, self.named(0).unwrap_or(model.start().0), accel, (ends[0], ends[1]))
+    }
+}
+
 /// Writes the curve as CSV and, if requested, the landscape as JSON and the shapes of the flexures as CSV.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let pictures = pictures(options, common)?;
@@ -124,64 +252,21 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let remedy = "give a coefficient of restitution, 0 to 1, such as 0.36";
     let rigid = number("--rigid", &options.rigid, |value: &f64| (0.0..=1.0).contains(value), remedy)?;
     let remedy = "give an acceleration in g, such as 0.8 or -0.8";
-    let accel = if_given("--base-accel-g", options.base_accel_g.as_deref(), remedy)?;
-    let (document, mechanism) = load_with_mechanism(&options.scene, common)?;
-    let range = |text| range("--range-mm", text, "A:B in mm with A below B, such as -8:8");
-    let range = options.range_mm.as_deref().map(range).transpose()?;
-    let even = |points: usize| match range {
-        Some(range) => even_positions(range, points).into_iter().map(metres).collect(),
-        None => default_positions(&document.scene, &mechanism, points),
-    };
-    let listed = options.at_mm.as_deref().map(|text| numbers("--at-mm", text, ',')).transpose()?;
-    let listed: Option<Vec<f64>> = listed.map(|mm| mm.into_iter().map(metres).collect());
-    if let (Some([_, _, _, ..]), Some(text), Some(other)) =
-        (listed.as_deref(), &options.at_mm, &options.beside)
-    {
-        refuse!(
-            "--at-mm {text}: with --beside {other} two masses are drawn, at two positions: give two, or \
-             leave --beside out"
-        );
-    }
-    let positions = |points: u32| match &listed {
-        Some(listed) => listed.clone(),
-        None => even(options.points.unwrap_or(points) as usize),
-    };
-    let given = options.at_mm.as_ref().map(|text| ("--at-mm", text));
-    let given = given.or(options.range_mm.as_ref().map(|text| ("--range-mm", text)));
-    let told = |error: Error| match (error, given) {
-        (Error::Argument { problem, .. }, Some((option, text))) => {
-            Failure::argument(format!("{option} {text}: {problem}"))
-        }
-        (error, _) => error.into(),
-    };
-    let curve = |positions: Vec<f64>| {
-        Curve { positions: Some(positions) }.of_mechanism(&document, &mechanism).map_err(told)
-    };
-    let flexures = |positions: Vec<f64>, option: &str| {
-        let found = Curve { positions: Some(positions) };
-        found.flexures_of(&document, &mechanism, &interrupt::progress()).map_err(|error| match error {
-            Error::Unfit { .. } => Failure::argument(format!("{option}: {}", error.message())),
-            error => told(error),
-        })
-    };
-    let table = curve(positions(CURVE_POINTS))?;
-    let of_flexures = [
-        options.full.then_some("--full"),
-        options.shapes.is_some().then_some("--shapes"),
-        of_shapes.is_some().then_some("--shapes-plot"),
-    ];
-    // a mechanism without flexures is refused before files are opened
-    of_flexures.into_iter().flatten().try_for_each(|option| flexures(Vec::new(), option).map(drop))?;
+    let accel_g = if_given("--base-accel-g", options.base_accel_g.as_deref(), remedy)?;
+    let asked = Asked::new(options, common)?;
+    let (document, table) = (&asked.document, asked.curve(asked.positions(CURVE_POINTS))?);
+    // before files are opened
+    asked.check_flexures()?;
     let contact_output = options.contact.as_ref().map(|_| Output::CONTACT);
     let contact_output = contact_output.or(of_contact.map(|picture| picture.output));
     let needs_model = contact_output.is_some() || of_mechanism.is_some() || of_well.is_some();
-    let simulation = needs_model.then(|| Simulation::new(&document)).transpose()?;
+    let simulation = needs_model.then(|| Simulation::new(document)).transpose()?;
     let impact = |(simulation, output): (&Simulation, Output)| {
         let wrong = |error: Error| Failure::argument(format!("{}: {}", output.option(), error.message()));
         simulation.impact(rigid).map_err(wrong)
     };
     let impacts = simulation.as_ref().zip(contact_output).map(impact).transpose()?;
-    let mut read = inputs(&options.scene, &document);
+    let mut read = inputs(&options.scene, document);
     read.extend(options.measured.measured.clone());
     let other = options.beside.as_deref().map(beside).transpose()?;
     read.extend(options.beside.iter().zip(&other).flat_map(|(spec, other)| inputs(spec, other.document())));
@@ -192,65 +277,38 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         .with(Output::CONTACT, options.contact.as_deref())?;
     let outputs = pictures.into_iter().try_fold(outputs, Outputs::with_picture)?;
     let mut outputs = outputs.with(Output::COMPARISON, options.measured.comparison.as_deref())?;
-    let measured = options.measured.compare(&document, &mechanism, common)?;
+    let measured = options.measured.compare(document, &asked.mechanism, common)?;
     if let Some(found) = &measured {
         outputs.table(Output::COMPARISON, &found.table)?;
     }
     if options.full {
-        let found = flexures(positions(CURVE_POINTS), "--full")?;
+        let found = asked.flexures(asked.positions(CURVE_POINTS), "--full")?;
         let warning = found.warning();
         warning.iter().for_each(|words| common.say(&format!("warning: {}: {words}", document.name)));
         outputs.table(Output::DATA, &found.table())?;
     } else {
         outputs.table(Output::DATA, &table)?;
     }
-    outputs.write(Output::LANDSCAPE, landscape(&mechanism, document.scene.mass_g / 1e3))?;
-    // The picture shows the whole curve, even if few positions were requested.
-    let stops = stop_positions(&document.scene);
-    outputs.draw(of_curve, &document, |ranges| match &measured {
-        Some(found) => {
-            let range = extent(found.positions.iter().copied());
-            let table = Curve::drawn(Some(range), &document, &mechanism).map_err(told)?;
-            Ok(measured_force_chart(found, &table, ranges))
-        }
-        None => {
-            let table = curve(even(CURVE_PICTURE_POINTS))?;
-            Ok(curve_chart(&table, &mechanism, stops, ranges))
-        }
-    })?;
+    outputs.write(Output::LANDSCAPE, landscape(&asked.mechanism, document.scene.mass_g / 1e3))?;
+    outputs.draw(of_curve, document, |ranges| asked.chart(measured.as_ref(), ranges))?;
     if outputs.has(Output::SHAPES) {
-        outputs.table(Output::SHAPES, &flexures(positions(SHAPES), "--shapes")?.shapes())?;
+        outputs.table(Output::SHAPES, &asked.flexures(asked.positions(SHAPES), "--shapes")?.shapes())?;
     }
-    outputs.draw(of_shapes, &document, |_| {
-        let is_named = listed.is_some() || options.points.is_some() || range.is_some();
-        let equilibria = || mechanism.landscape.equilibria.iter().map(|equilibrium| equilibrium.x).collect();
-        let at = if is_named { positions(SHAPES) } else { equilibria() };
-        Ok(shapes_chart(&flexures(at, "--shapes-plot")?.states, &mechanism, stops))
-    })?;
-    let named = |place: usize| listed.as_ref().and_then(|at| at.get(place)).copied();
+    outputs.draw(of_shapes, document, |_| asked.shapes_chart())?;
     let Some(model) = simulation.as_ref().map(Simulation::model) else {
-        return outputs.finish_rows(&document, 1);
+        return outputs.finish_rows(document, 1);
     };
     if let Some(picture) = of_mechanism {
-        let models = [Some(model), other.as_ref().map(Simulation::model)].into_iter().flatten();
-        let at = |(place, model): (usize, _)| (model, named(place).unwrap_or(Model::start(model).0));
-        let chart = mechanism_chart(&models.enumerate().map(at).collect::<Vec<_>>()).map_err(|problem| {
-            Failure::argument(format!("--mechanism-plot: {}: {problem}", document.name))
-        })?;
-        let caption = caption(&document).with_others(other.iter().map(Simulation::document));
+        let chart = asked.mechanism_chart(model, other.as_ref().map(Simulation::model))?;
+        let caption = caption(document).with_others(other.iter().map(Simulation::document));
         picture.write(&mut outputs, &chart, &caption)?;
     }
-    outputs.draw(of_well, &document, |_| {
-        let largest = if model.is_shaken() { model.largest_base_acceleration() } else { 0.0 };
-        let accel = accel.map_or(largest, |accel| accel * STANDARD_GRAVITY);
-        let ends: Vec<f64> = even(2);
-        Ok(well_chart(model, named(0).unwrap_or(model.start().0), accel, (ends[0], ends[1])))
-    })?;
+    outputs.draw(of_well, document, |_| Ok(asked.well_chart(model, accel_g)))?;
     if let Some(table) = &impacts {
         outputs.table(Output::CONTACT, table)?;
         if let Some(stop) = model.compliant() {
-            outputs.draw(of_contact, &document, |_| Ok(contact_chart(table, &stop, model.mass())))?;
+            outputs.draw(of_contact, document, |_| Ok(contact_chart(table, &stop, model.mass())))?;
         }
     }
-    outputs.finish_rows(&document, 1)
+    outputs.finish_rows(document, 1)
 }

@@ -5,6 +5,24 @@ use super::equation::End;
 use super::result::{Outcome, Phase};
 use crate::numeric::Scalar;
 
+/// The state at the start of a run.
+pub(crate) struct Start<T> {
+    /// Velocity and state of the circuit, kernel units.
+    pub v: T,
+    pub circuit: T,
+    pub mode: usize,
+    /// Displacement in m.
+    pub x: f64,
+    /// Energy in J stored in a compliant stop.
+    pub stop_energy: f64,
+}
+
+impl<T: Scalar> Default for Start<T> {
+    fn default() -> Self {
+        Self { v: T::zero(), circuit: T::zero(), mode: 0, x: 0.0, stop_energy: 0.0 }
+    }
+}
+
 /// A surface that the mass touches at the start of a step, and the derivative that opens the gap to it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Touch {

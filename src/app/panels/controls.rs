@@ -197,7 +197,7 @@ pub fn named_ui(
     places
 }
 
-/// Whether a word in lower case in a lesson names the control of a field: by its label, or by the field's usual name.
+/// Whether a word in lower case in a lesson names the control of a field, by its label or its usual name.
 pub fn is_named(word: &str, path: &str) -> bool {
     let name = name_and_unit(path).0;
     let label = name.trim_end_matches(" ±").to_lowercase();

@@ -130,13 +130,7 @@ impl Window {
             Command::Pin(kind) => self.pin(kind),
             Command::Unpin(letter) => self.session.pins.unpin(letter),
             Command::Ways => self.ways = !self.ways,
-            Command::BestStops => {
-                self.ways = false;
-                self.session.find_best_stops();
-                if self.filled.is_some() && self.session.best.is_shown() {
-                    self.messages.notify("Searching for the best stops. Z shows the answer");
-                }
-            }
+            Command::BestStops => self.find_best_stops(),
             Command::OpenLesson(name) => self.open_lesson(name),
             Command::LeaveLesson => self.leave_lesson(),
             Command::LessonAnew => self.begin_lesson_anew(),
@@ -223,6 +217,14 @@ impl Window {
     /// The view that keys act on: it fills the window, is under the pointer or has the focus.
     pub(super) fn active_view(&self) -> View {
         self.filled.or(self.memory.hovered).unwrap_or(View::Displacement)
+    }
+
+    fn find_best_stops(&mut self) {
+        self.ways = false;
+        self.session.find_best_stops();
+        if self.filled.is_some() && self.session.best.is_shown() {
+            self.messages.notify("Searching for the best stops. Z shows the answer");
+        }
     }
 
     fn pin(&mut self, kind: PinKind) {

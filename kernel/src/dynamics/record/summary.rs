@@ -5,8 +5,7 @@ use super::sums::Sums;
 use crate::dynamics::clock::Instant;
 use crate::dynamics::model::excitation::Rhythm;
 use crate::dynamics::result::{Harvest, Ledger, MapState, Outcome, Place, Regime, Run, Sample, Summary};
-use crate::dynamics::run::ending::Start;
-use crate::dynamics::state::MotionState;
+use crate::dynamics::state::{MotionState, Start};
 use crate::numeric::{CompensatedSum, Scalar};
 
 /// Share of the length scale up to which a motion is rounding: the mass has not moved.

@@ -10,7 +10,7 @@ use crate::dynamics::model::Model;
 use crate::dynamics::motion::Motion;
 use crate::dynamics::record::summary::MAX_ROUNDING;
 use crate::dynamics::result::{Ledger, Outcome, Run};
-use crate::dynamics::state::MotionState;
+use crate::dynamics::state::{MotionState, Start};
 use crate::numeric::Scalar;
 
 /// Permitted residual of a ledger, in tolerances. The largest in tens of thousands of random scenes was 4.
@@ -32,24 +32,6 @@ const MAX_MISSING_SHARE: f64 = 0.1;
 /// Ratio of coupling to the motion's rate above which a circuit nearly locks the mass. The small motion that
 /// is left must balance its energy even if it is below the rounding of displacement and force.
 const STRONG_COUPLING: f64 = 1e3;
-
-/// The state at the start of a run.
-pub(crate) struct Start<T> {
-    /// Velocity and state of the circuit, kernel units.
-    pub v: T,
-    pub circuit: T,
-    mode: usize,
-    /// Displacement in m.
-    x: f64,
-    /// Energy in J stored in a compliant stop.
-    stop_energy: f64,
-}
-
-impl<T: Scalar> Default for Start<T> {
-    fn default() -> Self {
-        Self { v: T::zero(), circuit: T::zero(), mode: 0, x: 0.0, stop_energy: 0.0 }
-    }
-}
 
 impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
     /// Starts the motion.
