@@ -168,6 +168,7 @@ fn of_every_view_of_a_survey_the_copied_command_makes_the_same_bytes() {
     }
     let line = same_bytes(&mut harness, View::Map, "svg");
     assert!(line.contains("--cut amplitude_g=1 --cut travel_limit_mm=1.5"), "{line}");
+    harness.state_mut().session.explore.walks.quantity = WalkQuantity::Strobes;
     let line = same_bytes(&mut harness, View::UpAndDown, "svg");
     assert!(line.contains("section paper") && line.contains("--carry both"), "{line}");
     harness.state_mut().session.explore.walks.quantity = WalkQuantity::RmsVelocity;

@@ -23,8 +23,9 @@ const SPACE: f32 = 4.0;
 /// Least height in points of the text, beside which the dots and the buttons stand.
 const LEAST: f32 = 20.0 + SPACE + CONTROL;
 const HINT: &str = "Hint: ";
-/// The longest result of a prediction that is judged.
+/// The longest result of a prediction that is judged, where there is room for it and where there is little.
 const LONGEST_RESULT: &str = "Answer: B. You chose C. ";
+const SHORT_RESULT: &str = "Answer: B. ";
 const DOT: f32 = 4.5;
 const DOT_SPACING: f32 = 15.0;
 /// Greatest number of characters of the reason that a student gives.
@@ -76,7 +77,8 @@ pub fn lesson_ui(
                 ui.set_min_height(above_options(ui, style, step, (width, beside.1)));
             }
             let result = matches!(step, Step::Predict { .. }) && !lesson.is_covering();
-            let heading = if result { short_verdict(lesson) + " " } else { heading(step).to_owned() };
+            let result = result.then(|| short_verdict(lesson, urged.is_some()) + " ");
+            let heading = result.unwrap_or_else(|| heading(step).to_owned());
             text_ui(ui, style, &heading, step.text());
             action = below_ui(ui, lesson, session, style, urged.is_some());
         });
@@ -132,7 +134,8 @@ fn height_of(ui: &Ui, style: &Style, step: &Step, (width, least): (f32, f32)) ->
 /// Height in points of what is above the options of a prediction: its text with the result in front, and
 /// where the text has this least height, the row of the reason.
 fn above_options(ui: &Ui, style: &Style, step: &Step, (width, least): (f32, f32)) -> f32 {
-    let mut job = job(style, LONGEST_RESULT, step.text());
+    let result = if least > 0.0 { LONGEST_RESULT } else { SHORT_RESULT };
+    let mut job = job(style, result, step.text());
     job.wrap.max_width = width;
     let text = ui.painter().layout_job(job).size().y;
     let reason = if least > 0.0 { SPACE + ui.spacing().interact_size.y.max(1.4 * BODY) } else { 0.0 };
@@ -164,12 +167,14 @@ fn spoken(lesson: &OpenLesson, session: &Session) -> String {
     format!("Step {number} of {count}. {}{}{options}{hint}", heading(step), plain(step.text()))
 }
 
-/// The result of a prediction beside its options, which stay and have their letters.
-fn short_verdict(lesson: &OpenLesson) -> String {
+/// The result of a prediction beside its options, which stay and have their letters. A ring marks the one
+/// that was chosen; words say it too if there `is_room`.
+fn short_verdict(lesson: &OpenLesson, is_room: bool) -> String {
     match lesson.outcome() {
         Outcome::Holds(option) if lesson.answer().choice.as_ref() == Some(&lesson.options()[option].text) => {
             "That holds.".to_owned()
         }
+        Outcome::Holds(option) if !is_room => format!("Answer: {}.", letter(option)),
         Outcome::Holds(option) => {
             let is_chosen = |choice: &&Choice| lesson.answer().choice.as_ref() == Some(&choice.text);
             let chosen = lesson.options().iter().position(|choice| is_chosen(&choice));

@@ -164,6 +164,9 @@ pub struct Look {
     pub hatch: Option<Ink>,
 }
 
+const KINDS: [Marker; 4] = [Marker::Disc, Marker::Square, Marker::Triangle, Marker::Diamond];
+const EVENTS: [Marker; 4] = [Marker::Triangle, Marker::Diamond, Marker::Square, Marker::DoubleArrow];
+
 impl Theme {
     /// The look of a role.
     pub fn look(&self, role: Role) -> Look {
@@ -188,7 +191,6 @@ impl Theme {
             ..marked(ink, marker)
         };
         let design = |marker: Marker| Look { halo: Some(self.paper), ..marked(self.stable, marker) };
-        const MARKERS: [Marker; 4] = [Marker::Disc, Marker::Square, Marker::Triangle, Marker::Diamond];
         match role {
             Role::Motion => fine(self.ink),
             Role::Second => fine(self.second),
@@ -220,12 +222,9 @@ impl Theme {
             Role::Kind(place) => Look {
                 hatch: style::kind_hatch(place),
                 halo: Some(style::WHITE),
-                ..marked(style::KINDS[place % style::KINDS.len()], MARKERS[(place + 2 * (place / 4)) % 4])
+                ..marked(style::KINDS[place % style::KINDS.len()], KINDS[(place + 2 * (place / 4)) % 4])
             },
-            Role::Event(place) => {
-                let shapes = [Marker::Triangle, Marker::Diamond, Marker::Square, Marker::DoubleArrow];
-                marked(self.soft, shapes[place % 4])
-            }
+            Role::Event(place) => marked(self.soft, EVENTS[place % 4]),
             Role::UnstableMotion => dashed(self.unstable),
             Role::Release => Look { width: style::GUIDE, halo: Some(style::BLACK), ..dashed(style::WHITE) },
             Role::FirstCrossing => {
