@@ -153,22 +153,32 @@ pub fn named_ui(
         let name = name_and_unit(path).0;
         ui.painter().layout_no_wrap(name, font.clone(), Color32::PLACEHOLDER).size().x
     };
-    let is_amplitude = |path: &str| AMPLITUDE.contains(&path);
-    let width_of = |path: &str| match path {
-        SWITCH => SWITCH_WIDTH,
-        path if is_amplitude(path) => SHAKING_WIDTH + name_width(ui, path) + BESIDE_SLIDER,
-        path => name_width(ui, path) + BESIDE_SLIDER,
-    };
     let shown = controls.iter().filter(|path| *path == SWITCH || session.number(path).is_some());
-    let shown: Vec<(&String, f32)> = shown.map(|path| (path, width_of(path))).collect();
-    let mut rows: Vec<Vec<(&String, f32)>> = Vec::new();
-    let least = |row: &[(&String, f32)]| row.iter().map(|control| control.1 + LEAST_SLIDER).sum::<f32>();
-    for control in shown {
-        match rows.last_mut() {
-            Some(row) if least(row) + control.1 + LEAST_SLIDER <= ui.available_width() => row.push(control),
-            _ => rows.push(vec![control]),
+    let shown: Vec<&String> = shown.collect();
+    let is_amplitude = |path: &str| AMPLITUDE.contains(&path);
+    let rows_of = |has_heading: bool| {
+        let width_of = |path: &str| match path {
+            SWITCH => SWITCH_WIDTH,
+            path if has_heading && is_amplitude(path) => SHAKING_WIDTH + name_width(ui, path) + BESIDE_SLIDER,
+            path => name_width(ui, path) + BESIDE_SLIDER,
+        };
+        let least = |row: &[(&String, f32)]| row.iter().map(|control| control.1 + LEAST_SLIDER).sum::<f32>();
+        let mut rows: Vec<Vec<(&String, f32)>> = Vec::new();
+        for path in &shown {
+            let control = (*path, width_of(path));
+            match rows.last_mut() {
+                Some(row) if least(row) + control.1 + LEAST_SLIDER <= ui.available_width() => {
+                    row.push(control);
+                }
+                _ => rows.push(vec![control]),
+            }
         }
-    }
+        rows
+    };
+    // a heading that costs a row is left out
+    let (rows, headed) = (rows_of(false), rows_of(true));
+    let has_heading = headed.len() == rows.len();
+    let rows = if has_heading { headed } else { rows };
     let has_switch = controls.iter().any(|path| path == SWITCH);
     let mut places = Vec::new();
     for row in rows {
@@ -183,7 +193,7 @@ pub fn named_ui(
                         if is_asked(session, path) {
                             ui.set_invisible();
                         }
-                        if is_amplitude(path) {
+                        if has_heading && is_amplitude(path) {
                             ui.heading(SHAKING);
                         }
                         knob_ui(ui, session, path, width, has_switch && is_off(session, path));
