@@ -54,7 +54,8 @@ pub fn bare(panel: egui::Panel, x: i8, y: i8) -> egui::Panel {
 
 /// A text in parts: code between backticks has letters of one width.
 fn prose(text: &str) -> Vec<(&str, FontFamily)> {
-    let family = |i: usize| if i.is_multiple_of(2) { FontFamily::Proportional } else { FontFamily::Monospace };
+    let family =
+        |i: usize| if i.is_multiple_of(2) { FontFamily::Proportional } else { FontFamily::Monospace };
     text.split('`').enumerate().map(|(i, part)| (part, family(i))).collect()
 }
 
