@@ -121,17 +121,8 @@ proptest! {
         let landscapes = [found, named].map(|curve| Mechanism::new(curve).landscape);
         let kinks = |i: usize| landscapes[i].kinks.iter().map(|kink| kink.x).collect::<Vec<_>>();
         prop_assert_eq!(kinks(0).len(), kinks(1).len(), "{:?} {:?}", kinks(0), kinks(1));
-        let same = kinks(0).into_iter().zip(kinks(1)).all(|(found, named)| (found - named).abs() < 1e-8);
+        let same = kinks(0).into_iter().zip(kinks(1)).all(|(found, named)| (found - named).abs() < 1e-9);
         prop_assert!(same, "{:?} {:?}", kinks(0), kinks(1));
-        // at the edges of its definition a damping ratio depends on rounding: at a kink in the middle or
-        // with a slope of 0, and where a well appears
-        let named = &landscapes[1];
-        let middle = named.barrier.map_or(0.0, |barrier| barrier.x);
-        prop_assume!(named.extrema.iter().all(|extremum| extremum.force.abs() > 10.0 * tolerance));
-        prop_assume!(named.kinks.iter().all(|kink| {
-            let slopes = [kink.stiffness_left, kink.stiffness_right];
-            (kink.x - middle).abs() > 1e-8 && slopes.iter().all(|slope| slope.abs() > 0.01)
-        }));
         let stiffness = |i: usize| landscapes[i].damping_stiffness();
         match (stiffness(0), stiffness(1)) {
             (Some(found), Some(named)) => {

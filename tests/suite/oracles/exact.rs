@@ -64,7 +64,7 @@ fn a_fast_circuit_keeps_the_digits() {
 fn exponentials_multiply_and_invert() {
     for x in [-300.0, -1.7, -1e-9, 0.0, 0.3, 1.0, 42.0, 600.0] {
         let product = exp(dd(x)) * exp(dd(-x));
-        assert!((product - dd(1.0)).to_f64().abs() < 1e-26, "{x}");
+        assert!((product - dd(1.0)).to_f64().abs() < 1e-28, "{x}");
         assert!((exp(dd(x)).to_f64() / x.exp() - 1.0).abs() < 4e-16, "{x}");
     }
     // e to 32 digits
