@@ -286,7 +286,7 @@ fn the_best_stops_are_found_and_taken() {
     assert!((1.9..2.2).contains(&limit), "{limit}");
     let guide = session.best.guide();
     assert!(guide.heading.starts_with("Best stops: ±2."), "{guide:?}");
-    for part in ["RMS velocity 5", "; at least nine tenths of it from ±1.6", " to ±2.1"] {
+    for part in ["RMS velocity 5", "; at least nine tenths of it from ±1.6", " to ±2.17 mm."] {
         assert!(guide.text.contains(part), "{part}: {guide:?}");
     }
     assert!(guide.more.contains("until its motion repeats"), "{guide:?}");
