@@ -321,7 +321,11 @@ impl<F: Fn(f64) -> f64> Sampled<'_, F> {
             let curve = fitted(&table, AT_SAMPLES * tolerance, self.cancel)?;
             let compared = self.compared(&curve, &table, tolerance)?;
             if compared.refined.is_empty() {
-                return Ok(Attempt::Curve(curve.with_fit(compared.report)));
+                let corners = self.corners_beside(&curve, &table, &ends)?;
+                return Ok(match corners.is_empty() {
+                    true => Attempt::Curve(curve.with_fit(compared.report)),
+                    false => Attempt::Corners(corners),
+                });
             }
             // a corner beside a sample is seen from the intervals on both sides of it, and counts once
             let (mut corners, mut known) = (Vec::new(), ends.clone());
@@ -387,6 +391,24 @@ impl<F: Fn(f64) -> f64> Sampled<'_, F> {
         Ok(Compared { report, refined })
     }
 
+    /// The corners at breaks that the fit has put on samples, which may lie beside them within the tolerance.
+    fn corners_beside(
+        &self,
+        curve: &ForceCurve,
+        table: &ForceTable,
+        ends: &[f64],
+    ) -> Result<Vec<f64>, FunctionError> {
+        let mut corners = Vec::new();
+        for at in curve.breaks().iter().filter(|at| !ends.contains(at)) {
+            let next = table.x.partition_point(|x| x <= at);
+            let before = table.x[..next].iter().rfind(|x| *x < at);
+            if let (Some(from), Some(to)) = (before, table.x.get(next)) {
+                corners.extend(self.corner((*from, *to), &[ends, &corners].concat())?);
+            }
+        }
+        Ok(corners)
+    }
+
     /// The corner in an interval, if the function has one there and is smooth beside it, up to the next of
     /// the corners and ends of the range that are `known`. Narrower and narrower intervals around it locate
     /// it to rounding.
@@ -439,13 +461,16 @@ impl<F: Fn(f64) -> f64> Sampled<'_, F> {
     }
 }
 
-/// Makes corners of a range about 0 that are each other's mirror image within rounding exactly so.
+/// Makes corners of a range about 0 that are each other's mirror image within rounding exactly so, and puts
+/// one that is its mirror image at 0.
 fn mirrored(mut corners: Vec<f64>, (low, high): (f64, f64)) -> Vec<f64> {
     if low == -high {
         for i in 0..corners.len() {
             let image = corners.iter().position(|x| (x + corners[i]).abs() < 1e-9 * high);
-            if let Some(image) = image.filter(|_| corners[i] > 0.0) {
-                corners[image] = -corners[i];
+            match image {
+                Some(image) if image == i => corners[i] = 0.0,
+                Some(image) if corners[i] > 0.0 => corners[image] = -corners[i],
+                _ => {}
             }
         }
     }

@@ -136,6 +136,29 @@ proptest! {
 }
 
 #[test]
+fn a_corner_beside_a_sample_and_one_in_the_middle_are_where_they_are() {
+    let found = |places: &[f64], steps: &[f64], tolerance: f64| {
+        let force = |x: f64| {
+            let bends = places.iter().zip(steps).map(|(at, step)| step * (x - at).max(0.0));
+            -40.0 * x + 8e5 * x.powi(3) + bends.sum::<f64>()
+        };
+        let curve = ForceCurve::from_fn(force, (-9e-3, 9e-3), tolerance, &[]).unwrap();
+        Mechanism::new(curve).landscape
+    };
+    // there are samples at multiples of the range's 64th part
+    for (cell, beside) in [(-13.0, 1.3e-9), (5.0, -0.7e-9), (20.0, 3e-11)] {
+        let at = cell * 18e-3 / 64.0 + beside;
+        let kinks = found(&[at], &[94.0], 3.5e-8).kinks;
+        assert!(kinks.len() == 1 && (kinks[0].x - at).abs() < 1e-12, "{at} {kinks:?}");
+    }
+    let landscape = found(&[-8.243_429e-3, 0.0, 9.231_25e-4], &[10.0, 199.9, 10.0], 1e-6);
+    assert!(landscape.kinks[1].x == 0.0, "{:?}", landscape.kinks);
+    // not the slope beside the corner in the middle, which is 170 N/m
+    let stiffness = landscape.damping_stiffness().unwrap();
+    assert!((stiffness - 94.36).abs() < 0.1, "{stiffness}");
+}
+
+#[test]
 fn an_odd_function_with_corners_has_an_odd_curve() {
     for at in [1.0e-3, 2.345_678e-3, 6.9e-3] {
         let bend = |x: f64| 50.0 * ((x - at).max(0.0) - (-x - at).max(0.0));
