@@ -238,8 +238,8 @@ impl<'a> Asked<'a> {
 
     /// The chart of the well while the base has this acceleration in g, by default its largest.
     fn well_chart(&self, model: &Model, accel_g: Option<f64>) -> Chart {
-        let largest = if model.is_shaken() { model.largest_base_acceleration() } else { 0.0 };
-        let accel = accel_g.map_or(largest, |accel| accel * STANDARD_GRAVITY);
+        let accel =
+            accel_g.map_or_else(|| model.extreme_base_acceleration(), |accel| accel * STANDARD_GRAVITY);
         let ends = self.even(2);
         well_chart(model, self.named(0).unwrap_or(model.start().0), accel, (ends[0], ends[1]))
     }

@@ -89,15 +89,26 @@ fn where_nothing_shakes_the_mass_a_step_plays_its_motion_from_the_start() {
 #[test]
 fn the_axis_of_energy_holds_from_step_to_step_of_a_lesson() {
     let mut harness = opened("design-it", WIDE);
-    let numbers = |harness: &Shown| axes(harness, "energy (mJ)")[0].iter().map(|tick| tick.0).collect();
+    let up = |harness: &Shown| axes(harness, "energy (mJ)")[0].clone();
+    let numbers = |harness: &Shown| up(harness).iter().map(|tick| tick.0).collect::<Vec<_>>();
+    let millijoule = |harness: &Shown| {
+        let up = up(harness);
+        (up[0].1 - up[1].1) / (up[0].0 - up[1].0) as f32
+    };
     harness.run_steps(40);
-    let before: Vec<f64> = numbers(&harness);
+    let before = numbers(&harness);
     assert!(go_to(&mut harness, |step| matches!(step, Step::Predict { .. })));
     go_on(&mut harness);
     harness.run_steps(40);
-    assert!(harness.state().session.number("mechanism.preload_mm") == Some(1.0));
-    let after: Vec<f64> = numbers(&harness);
+    let session = &harness.state().session;
+    assert!(session.number("mechanism.preload_mm") == Some(1.0));
+    let (low, after) = (millijoule(&harness), numbers(&harness));
     assert!(before.len() > 2 && before == after, "{before:?} {after:?}");
+    // what the question covered takes its room back, so the scale of the high hill is that in this room
+    assert!(harness.state_mut().session.set_number("mechanism.preload_mm", 2.7).unwrap());
+    harness.run_steps(40);
+    let high = millijoule(&harness);
+    assert!((low / high - 1.0).abs() < 0.02, "{low} {high}");
 }
 
 #[test]
@@ -126,11 +137,17 @@ fn a_hint_comes_when_asked_is_offered_after_three_tries_and_leaves_when_the_task
     assert!(is_painted(&harness, "Done.") && !is_painted(&harness, "Hint"));
 }
 
-#[test]
-fn page_down_stops_at_a_covered_prediction_and_at_the_last_step() {
+/// The first lesson at its first question, and the number of that step.
+fn asked() -> (Shown, usize) {
     let mut harness = opened(LESSONS[0].name, WIDE);
     assert!(go_to(&mut harness, |step| matches!(step, Step::Predict { .. })));
     let at = number(&harness);
+    (harness, at)
+}
+
+#[test]
+fn page_down_stops_at_a_covered_prediction_and_at_the_last_step() {
+    let (mut harness, at) = asked();
     press(&mut harness, Key::PageDown);
     assert!(number(&harness) == at && harness.state().lesson().unwrap().is_covering());
     assert!(harness.state().notice().is_some_and(|text| text.contains("PageDown once more")));
@@ -156,9 +173,7 @@ fn page_down_stops_at_a_covered_prediction_and_at_the_last_step() {
 /// A choice takes Reveal away; what then stands in its place must not be pressed by Enter.
 #[test]
 fn a_choice_by_its_key_leaves_no_button_with_the_keyboard() {
-    let mut harness = opened(LESSONS[0].name, WIDE);
-    assert!(go_to(&mut harness, |step| matches!(step, Step::Predict { .. })));
-    let at = number(&harness);
+    let (mut harness, at) = asked();
     press(&mut harness, Key::PageDown);
     assert!(harness.state().lesson().unwrap().is_covering());
     press(&mut harness, Key::B);
@@ -170,9 +185,7 @@ fn a_choice_by_its_key_leaves_no_button_with_the_keyboard() {
 /// A clicker has no Enter.
 #[test]
 fn page_down_twice_reveals_and_a_vote_between_does_not() {
-    let mut harness = opened(LESSONS[0].name, WIDE);
-    assert!(go_to(&mut harness, |step| matches!(step, Step::Predict { .. })));
-    let at = number(&harness);
+    let (mut harness, at) = asked();
     press(&mut harness, Key::PageDown);
     harness.key_press_modifiers(Modifiers::SHIFT, Key::A);
     harness.run_steps(3);

@@ -145,6 +145,9 @@ fn a_corner_beside_a_sample_and_one_in_the_middle_are_where_they_are() {
         let curve = ForceCurve::from_fn(force, (-9e-3, 9e-3), tolerance, &[]).unwrap();
         Mechanism::new(curve).landscape
     };
+    let places = [-1.167_757_077_873_290_2e-3, 2.286_109_608_505_83e-3, -1.420_466_877_074_472_5e-3];
+    let kinks = found(&places, &[10.0; 3], 1e-6).kinks;
+    assert!(kinks.len() == 3 && (kinks[1].x - places[0]).abs() < 1e-12, "{kinks:?}");
     // there are samples at multiples of the range's 64th part
     for (cell, beside) in [(-13.0, 1.3e-9), (5.0, -0.7e-9), (20.0, 3e-11)] {
         let at = cell * 18e-3 / 64.0 + beside;

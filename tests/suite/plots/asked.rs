@@ -203,3 +203,16 @@ fn a_picture_of_a_run_has_the_numbers_of_the_times_that_it_shows() {
     let free = "simulate paper-unconstrained --set excitation.amplitude_g=1.5";
     assert_eq!(account(free, &["irregular: crosses without a period", " s:"]), (false, 2));
 }
+
+#[test]
+fn the_push_of_a_well_is_one_that_the_scene_has() {
+    let well = |set: &str, words: &str| {
+        says(&format!("curve paper --set excitation={set} > --well-plot"), &[words]);
+    };
+    well("Constant(accel_g:-0.4)", "N to the right (as at a base acceleration of \u{2212}0.4 g)");
+    well("Constant(accel_g:0.4)", "N to the left (as at a base acceleration of 0.4 g)");
+    well("None", "no push");
+    // the base rests, and the force on the mass is as large as this push
+    let force = "Force(amplitude_n:0.1,frequency_rad_per_s:18.8)";
+    well(force, "pushed by 0.1 N to the left (as at a base acceleration of");
+}

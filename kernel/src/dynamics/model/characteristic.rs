@@ -74,6 +74,16 @@ impl Model {
         drive.constant.abs() + parts.iter().sum::<f64>()
     }
 
+    /// The base acceleration of the largest magnitude in m/s^2, with the sign of the drive's constant part, or
+    /// above 0; without a drive 0. A bound as above.
+    pub fn extreme_base_acceleration(&self) -> f64 {
+        if self.is_shaken() {
+            self.largest_base_acceleration().copysign(self.excitation.constant)
+        } else {
+            0.0
+        }
+    }
+
     /// Amplitude in m/s^2 and angular frequency in 1/s of the drive, if it is a single sine and nothing else.
     pub fn single_sine(&self) -> Option<(f64, f64)> {
         let drive = &self.excitation;

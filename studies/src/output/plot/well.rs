@@ -142,7 +142,7 @@ fn push(model: &Model, base_accel: f64) -> String {
         0.0 => "no push".to_owned(),
         _ => {
             let [newton, accel] = [newton.abs(), base_accel / STANDARD_GRAVITY].map(short);
-            format!("pushed by {newton} N to the {direction} (base acceleration {accel} g)")
+            format!("pushed by {newton} N to the {direction} (as at a base acceleration of {accel} g)")
         }
     }
 }
