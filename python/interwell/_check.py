@@ -61,13 +61,21 @@ def _number(name: str, value: Any) -> float:
     raise _wrong(name, _shown(value), "give a number")
 
 
-def _count(name: str, value: int | None, below: int = 2**32) -> int | None:
+def _real(name: str, value: Any) -> float | None:
+    """Return a number that may be left out."""
+    return None if value is None else _number(name, value)
+
+
+def _whole(name: str, value: Any, below: int = 2**32) -> int:
     """Return a whole number that is not negative."""
-    if value is None:
-        return None
     if not isinstance(value, (int, np.integer)) or not 0 <= value < below:
         raise _wrong(name, _shown(value), "give a whole number from 0 up")
     return int(value)
+
+
+def _count(name: str, value: int | None, below: int = 2**32) -> int | None:
+    """Return a whole number that is not negative, or that is left out."""
+    return None if value is None else _whole(name, value, below)
 
 
 def _names(name: str, value: Iterable[str] | str) -> list[str]:

@@ -10,7 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _interwell
-from ._check import _count, _entries, _mapping, _names, _near, _number, _numbers, _shown, _without, _wrong
+from ._check import _count, _entries, _mapping, _names, _near, _number, _numbers, _real, _shown
+from ._check import _whole, _without, _wrong
 from ._errors import SceneError
 from ._table import Array, Basins, Grid, Identified, Run, Table, _write
 
@@ -625,8 +626,8 @@ class Scene(Mapping[str, Any]):
         (10001,)
         """
         times = None if at is None else _numbers("at", at).tolist()
-        run = self._simulation.run(dt, times, until_settled)
-        return Run(run)
+        longest = _real("until_settled", until_settled)
+        return Run(self._simulation.run(_real("dt", dt), times, longest))
 
     def curve(self, positions: npt.ArrayLike | None = None) -> Table:
         """Return force, potential and stiffness of the mechanism.
@@ -744,7 +745,7 @@ class Scene(Mapping[str, Any]):
                 self._simulation,
                 axes,
                 names,
-                until_settled,
+                _real("until_settled", until_settled),
                 carry,
                 inputs,
                 _count("draws", draws, 2**64),
@@ -812,10 +813,10 @@ class Scene(Mapping[str, Any]):
                 self._simulation,
                 axes,
                 at,
-                phase_deg,
+                _number("phase_deg", phase_deg),
                 _count("skip", skip, 2**64),
                 _count("keep", keep, 2**64),
-                until_settled,
+                _real("until_settled", until_settled),
                 carry,
                 _count("threads", threads),
                 told,
@@ -911,6 +912,7 @@ class Scene(Mapping[str, Any]):
         if not low < high:
             raise _wrong("range", _shown(range), "give the lower end first, and a higher one")
         searched = f"{field}={_value(low)}:{_value(high)}"
+        finest, longest = _real("resolution", resolution), _real("until_settled", until_settled)
         if step is not None:
             if not _number("step", step) > 0:
                 raise _wrong("step", _shown(step), "give a number above 0, in the unit of the field")
@@ -919,7 +921,7 @@ class Scene(Mapping[str, Any]):
             _without("leave it out, or give `probability` too", runs=(runs, None), within=(within, None))
             with _Told(progress, "values") as told:
                 answer = _interwell.threshold(
-                    self._simulation, axes, searched, of, resolution, until_settled, melnikov,
+                    self._simulation, axes, searched, of, finest, longest, melnikov,
                     _count("threads", threads), told
                 )
             return Table(answer)
@@ -929,8 +931,8 @@ class Scene(Mapping[str, Any]):
         )
         with _Told(progress, "runs") as told:
             answer = _interwell.probable_threshold(
-                self._simulation, axes, searched, probability, _count("runs", runs), within, resolution,
-                _count("threads", threads), told
+                self._simulation, axes, searched, _number("probability", probability),
+                _count("runs", runs), _real("within", within), finest, _count("threads", threads), told
             )
         return Table(answer)
 
@@ -1033,7 +1035,8 @@ class Scene(Mapping[str, Any]):
         >>> scene.orbit()["period"]
         array([1])
         """
-        return Table(_interwell.orbit(self._simulation, _count("period", period), phase_deg))
+        phase = _number("phase_deg", phase_deg)
+        return Table(_interwell.orbit(self._simulation, _count("period", period), phase))
 
     def branch(
         self,
@@ -1095,10 +1098,12 @@ class Scene(Mapping[str, Any]):
         >>> branch["amplitude_g"][branch["event"] == "fold"].round(2)
         array([0.7])
         """
+        ends = (_number("start", start), _number("end", end))
+        relative, motions = _number("step", step), _whole("count", count, 2**64)
         with _Told(progress, "motions") as told:
             answer = _interwell.branch(
-                self._simulation, field, (start, end), step, count, switch, _count("period", period),
-                phase_deg, told
+                self._simulation, field, ends, relative, motions, _whole("switch", switch),
+                _count("period", period), _number("phase_deg", phase_deg), told
             )
         return Table(answer)
 
@@ -1160,11 +1165,13 @@ class Scene(Mapping[str, Any]):
         >>> bool(abs(reached - 1).max() < 1e-8)
         True
         """
+        low, high = _entries("range", range, "(first, last)", 2)
+        left, right = _entries("second_range", second_range, "(first, last)", 2)
+        relative, motions = _number("step", step), _whole("count", count, 2**64)
         with _Told(progress, "motions") as told:
-            periods = _count("period", period)
             answer = _interwell.locus(
-                self._simulation, event, field, range, second, second_range, step, count, periods,
-                phase_deg, told
+                self._simulation, event, field, (low, high), second, (left, right), relative, motions,
+                _count("period", period), _number("phase_deg", phase_deg), told
             )
         return Table(answer)
 
@@ -1222,7 +1229,8 @@ class Scene(Mapping[str, Any]):
         axes, arrays = _over(over)
         with _Told(progress, "cells") as told:
             answer = _interwell.exponents(
-                self._simulation, axes, _count("periods", periods), until_settled,
+                self._simulation, axes, _count("periods", periods),
+                _real("until_settled", until_settled),
                 _count("threads", threads), told
             )
         return Grid(answer, arrays) if arrays else Table(answer)
@@ -1285,7 +1293,8 @@ class Scene(Mapping[str, Any]):
         axes, arrays = _over(over)
         with _Told(progress, "runs") as told:
             answer = _interwell.escape(
-                self._simulation, axes, _count("runs", runs), within, until, _count("threads", threads), told
+                self._simulation, axes, _count("runs", runs), _real("within", within), until,
+                _count("threads", threads), told
             )
         return Grid(answer, arrays) if arrays else Table(answer)
 
@@ -1338,7 +1347,8 @@ class Scene(Mapping[str, Any]):
         >>> table["amplitude"][table["frequency_hz"] == 3.0].round(6)
         array([14.709975])
         """
-        return Table(_interwell.spectrum(self._simulation, of, taper, rate_hz, until_settled))
+        rate, longest = _real("rate_hz", rate_hz), _real("until_settled", until_settled)
+        return Table(_interwell.spectrum(self._simulation, of, taper, rate, longest))
 
     def compare(
         self,
@@ -1402,7 +1412,8 @@ class Scene(Mapping[str, Any]):
         pairs = [(name, scene._simulation) for name, scene in zip(names[1:], scenes[1:])]
         with _Told(progress, "parts") as told:
             answer = _interwell.compare(
-                self._simulation, names[0], pairs, until_settled, _count("threads", threads), told
+                self._simulation, names[0], pairs, _real("until_settled", until_settled),
+                _count("threads", threads), told
             )
         return Table(answer)
 
@@ -1492,7 +1503,7 @@ class Scene(Mapping[str, Any]):
                 places,
                 varied,
                 _count("seed", seed, 2**64) or 0,
-                until_settled,
+                _real("until_settled", until_settled),
                 _count("threads", threads),
                 told,
             )
@@ -1589,9 +1600,9 @@ def identify(
         [column, unit],
         [position, position_unit],
         [base, base_unit],
-        [start, end],
+        [_real("start", start), _real("end", end)],
         impact_times,
-        [left_mm, right_mm],
+        [_real("left_mm", left_mm), _real("right_mm", right_mm)],
         _count("points", points),
     )
     return Identified(answer, summary)

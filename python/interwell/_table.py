@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _interwell
-from ._check import _entries, _near, _shown, _wrong
+from ._check import _entries, _near, _real, _shown, _wrong
 
 if TYPE_CHECKING:
     import pandas
@@ -339,8 +339,8 @@ class Table(Mapping[str, Array]):
             "quantity": quantity,
             **ranges,
             "dark": dark,
-            "width_mm": width_mm,
-            "height_mm": height_mm,
+            "width_mm": _real("width_mm", width_mm),
+            "height_mm": _real("height_mm", height_mm),
         }
         return Picture(self._answer, options)
 

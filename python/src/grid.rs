@@ -115,13 +115,15 @@ pub fn exponents(
 ) -> PyResult<Answer> {
     let periods = periods.unwrap_or(ExponentOptions::PERIODS);
     let question = Exponents { over, options: ExponentOptions { periods, until_settled, circuits: false } };
-    let table = work(py, &Way { threads, progress }, |progress| question.run(&scene.inner, progress))?;
-    let answer = Answer::new(py, table, scene.caption());
+    let way = Way { threads, progress };
     if question.over.is_empty() {
-        return Ok(answer);
+        let found = work(py, &way, |progress| question.of_one(&scene.inner, progress))?;
+        let words = found.describe(scene.inner.model().repeats());
+        return Ok(Answer::new(py, found.table(), scene.caption()).told(vec![words]));
     }
+    let table = work(py, &way, |progress| question.run(&scene.inner, progress))?;
     let (grid, shown) = (checked(py, scene.inner.grid(&question.over))?, scene.inner.clone());
-    Ok(answer.drawn(move |rows, asked| {
+    Ok(Answer::new(py, table, scene.caption()).drawn(move |rows, asked| {
         exponents_chart(rows, &grid, shown.scene(), asked.ranges).map_err(no_picture)
     }))
 }
@@ -142,7 +144,8 @@ pub fn escape(
     let until = named(py, "until", until, &Until::ALL, Until::name)?;
     let question = Escape { over, runs: runs.unwrap_or(Escape::RUNS), within, until };
     let table = work(py, &Way { threads, progress }, |progress| question.run(&scene.inner, progress))?;
-    let answer = Answer::new(py, table, scene.caption());
+    let words = vec![Escape::describe(&table)];
+    let answer = Answer::new(py, table, scene.caption()).told(words);
     if question.over.is_empty() {
         return Ok(answer);
     }
@@ -173,7 +176,9 @@ pub fn threshold(
     let question = Threshold { over, field, of, resolution, until_settled, melnikov };
     let table = work(py, &Way { threads, progress }, |progress| question.run(&scene.inner, progress))?;
     let scan = checked(py, question.scan(scene.inner.document(), &Grid::of_one()))?;
-    thresholds(scene, py, table, &question.over, scan.field, of)
+    let remarks = question.remarks(&scene.inner, &table);
+    let answer = Answer::new(py, table, scene.caption()).told(remarks);
+    with_picture_of_thresholds(answer, scene, py, &question.over, scan.field, of)
 }
 
 #[pyfunction]
@@ -197,19 +202,20 @@ pub fn probable_threshold(
     let question = ProbableThreshold { over, field, probability, runs, within, resolution };
     let table = work(py, &Way { threads, progress }, |progress| question.run(&scene.inner, progress))?;
     let scan = checked(py, question.scan(scene.inner.document(), &Grid::of_one()))?;
-    thresholds(scene, py, table, &question.over, scan.field, Onset::Crossing)
+    let remarks = question.remarks(&scene.inner, &table);
+    let answer = Answer::new(py, table, scene.caption()).told(remarks);
+    with_picture_of_thresholds(answer, scene, py, &question.over, scan.field, Onset::Crossing)
 }
 
-/// Thresholds of a field, with their picture if they are those of a grid.
-fn thresholds(
+/// The thresholds of a field, with their picture if they are those of a grid.
+fn with_picture_of_thresholds(
+    answer: Answer,
     scene: &Simulation,
     py: Python<'_>,
-    table: Table,
     over: &Over,
     field: String,
     onset: Onset,
 ) -> PyResult<Answer> {
-    let answer = Answer::new(py, table, scene.caption());
     if over.is_empty() {
         return Ok(answer);
     }

@@ -149,8 +149,8 @@ pub fn compare(
     let question = Compare { with, name, environment: None, until_settled };
     let way = Way { threads, progress };
     let found = work(py, &way, |progress| question.run(&scene.inner, progress))?;
-    Ok(Answer::new(py, found.table(), scene.caption())
-        .drawn(move |_, _| Ok(comparison_chart(&found.rated, found.frequency_hz))))
+    let answer = Answer::new(py, found.table(), scene.caption()).told(found.remarks.clone());
+    Ok(answer.drawn(move |_, _| Ok(comparison_chart(&found.rated, found.frequency_hz))))
 }
 
 #[pyfunction]

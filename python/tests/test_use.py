@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import inspect
 import os
 import pathlib
 import pickle
@@ -390,6 +391,50 @@ def test_bad_input_is_one_clear_error(number: int) -> None:
     assert faults and all(isinstance(fault, iw.Fault) and fault.problem for fault in faults)
     if field:
         assert field in [fault.field for fault in faults]
+
+
+def test_a_text_in_place_of_a_number_is_a_fault_of_its_argument() -> None:
+    arguments = {
+        "sweep": ({"mass_g": [15]},),
+        "branch": ("mass_g", 1, 2),
+        "locus": ("fold", "mass_g", (1, 2), "damping.xi", (0.1, 0.2)),
+        "basins": ((0, 1, 2), (0, 1, 2)),
+        "best": ({"mass_g": (1, 2)},),
+        "with_force": (lambda x: x, (-1, 1)),
+        "with_drive": ([1.0, 2.0], 3.0),
+        "identify": ("no.csv", "force"),
+    }
+    scene = iw.Scene.preset("paper")
+    questions = [getattr(scene, name) for name in dir(iw.Scene) if not name.startswith("_")]
+    questions = [question for question in questions if callable(question)]
+    tried = 0
+    for question in [*questions, iw.identify, scene.curve().plot]:
+        signature = inspect.signature(question)
+        for name, parameter in signature.parameters.items():
+            if str(parameter.annotation).removesuffix(" | None") not in ("float", "int"):
+                continue
+            given = signature.bind(*arguments.get(question.__name__, ())).arguments
+            if question.__name__ == "threshold" and name in ("runs", "within"):
+                given["probability"] = 0.5
+            with pytest.raises(iw.SceneError) as caught:
+                question(**{**given, name: "a"})
+            assert [fault.field for fault in caught.value.faults] == [name], (question, name)
+            tried += 1
+    assert tried > 40, "the signatures are read"
+
+
+def test_an_answer_has_remarks() -> None:
+    one_well = iw.Scene("monostable")
+    assert "no barrier between two wells" in " ".join(one_well.threshold().words)
+    weak = iw.Scene("paper").threshold(range=(0, 0.1), step=0.05, over={"mass_g": [15, 16]})
+    assert "2 of 2 rows have no value" in weak.words[0] and "--" not in " ".join(weak.words)
+    noisy = iw.Scene("paper").set(excitation="Noise(rms_g: 0.8, low_hz: 0.5, high_hz: 20, seed: 1)")
+    assert "of 3 runs escaped" in noisy.escape(runs=3, within=1).words[0]
+    few = noisy.threshold("excitation.rms_g", (0, 0.01), probability=0.5, runs=3, within=1)
+    assert "`within` a longer time" in few.words[0]
+    compared = one_well.compare("paper").words
+    assert any("no release_g: it rests on no stop" in words for words in compared)
+    assert len(iw.Scene("duffing").exponents(periods=5).words) == 1
 
 
 def test_texts_at_random_make_no_panic() -> None:

@@ -1,11 +1,9 @@
 //! `compare`: scenes side by side under one sine, one row for each scene.
 
 use clap::Args;
-use interwell::dynamics::Regime;
-use interwell::numeric::short;
 use interwell::output::{compared_name, comparison_chart, comparison_title};
-use interwell::questions::{Compare, Rated, Simulation};
-use interwell::scene::{Document, RunSettings, Stops, Transducer};
+use interwell::questions::Compare;
+use interwell::scene::Document;
 
 use super::support::{self, change, inputs, load_simulation, settle_limit, simulation};
 use super::{Common, Failure, Output, Outputs, Picture, PlotOptions, ask, caption, interrupt};
@@ -56,19 +54,10 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         common.say(&format!("{only}: the only scene; name others to set beside it"));
     }
     let environment = question.environment.as_ref().unwrap_or(&first).document();
-    let replaced = all.iter().filter_map(|(name, scene)| Some((name.clone(), replaced(scene, environment)?)));
-    grouped(replaced).iter().for_each(|(names, how)| common.say(&format!("{names}: {how}")));
     let mut outputs = Outputs::new(&read).with_rows(Some(common.out()))?.with_picture(picture)?;
     let found = ask("parts", common, |progress| question.run(&first, progress))?;
-    let table = found.table();
-    outputs.table(Output::DATA, &table)?;
-    let remarks = scenes.iter().enumerate().flat_map(|(row, (name, scene))| {
-        let empty = table.columns().iter().filter(|column| column.values.is_missing(row));
-        let empty = empty.map(|column| column.name.as_str());
-        let remarks = remarks(scene, &found.rated[row], found.amplitude_g, empty);
-        remarks.into_iter().map(|words| (name.clone(), words))
-    });
-    grouped(remarks).iter().for_each(|(names, words)| common.say(&format!("{names}: {words}")));
+    outputs.table(Output::DATA, &found.table())?;
+    found.remarks.iter().for_each(|remark| common.say(remark));
     if let Some(picture) = picture {
         let mut caption = caption(environment);
         caption.title = comparison_title(&found);
@@ -79,18 +68,6 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let first = documents.first().map(|(_, document)| document);
     outputs.manifest(first, common.jobs(), |manifest| Ok(manifest.of_scenes(&documents)))?;
     outputs.finish()
-}
-
-/// Which of excitation and run of a scene those of the environment replace.
-fn replaced(simulation: &Simulation, environment: &Document) -> Option<String> {
-    let (scene, lent) = (simulation.scene(), &environment.scene);
-    let how = match (scene.excitation != lent.excitation, window(&scene.run) != window(&lent.run)) {
-        (true, true) => "under the excitation and with the run of",
-        (true, false) => "under the excitation of",
-        (false, true) => "with the run of",
-        (false, false) => return None,
-    };
-    Some(format!("{how} {}", environment.name))
 }
 
 /// The scenes of the arguments, each with its name in the table and its argument. The manifest of a
@@ -109,81 +86,4 @@ fn named<'a>(specs: &'a [String], common: &Common) -> Result<Vec<(String, &'a st
         }
     }
     Ok(all)
-}
-
-/// Duration of a run, beginning of its settled window, and tolerance.
-fn window(run: &RunSettings) -> [f64; 3] {
-    [run.duration_s, run.settle_s.unwrap_or(0.5 * run.duration_s), run.tolerance]
-}
-
-/// Each distinct remark after the names of all to which it applies.
-fn grouped(remarks: impl IntoIterator<Item = (String, String)>) -> Vec<(String, String)> {
-    let mut groups: Vec<(String, String)> = Vec::new();
-    for (name, words) in remarks {
-        match groups.iter_mut().find(|group| group.1 == words) {
-            Some((names, _)) => *names += &format!(", {name}"),
-            None => groups.push((name, words)),
-        }
-    }
-    groups
-}
-
-/// Explains the empty and infinite cells of a row, an early end, rest, and an undecided threshold.
-fn remarks<'a>(
-    simulation: &Simulation,
-    rated: &Rated,
-    amplitude_g: f64,
-    empty: impl Iterator<Item = &'a str>,
-) -> Vec<String> {
-    let (summary, given) = (&rated.summary, short(amplitude_g));
-    let mut all = Vec::new();
-    if let Some(at) = summary.outcome.ended_at() {
-        let (at, outcome) = (short(at), summary.outcome.name());
-        all.push(format!(
-            "its run ended early at {at} s ({outcome}): nothing is known of its settled motion"
-        ));
-    } else if summary.regime == Regime::Rest {
-        all.push(format!("{given} g does not move it"));
-    }
-    if let Some(crossing) = rated.crossing.filter(|crossing| crossing.undecided) {
-        let low = crossing.low.map_or_else(String::new, |low| format!(" above {} g", short(low)));
-        let high = crossing.high.map_or_else(String::new, |high| format!(" below {} g", short(high)));
-        all.push(format!(
-            "its threshold is undecided: of some amplitudes{low}{high} it is not known whether they cross: \
-             the motion does not repeat in the time for which it is followed, the run ended early, or there \
-             is no valid scene"
-        ));
-    }
-    if let Some((_, size)) = rated.sensitivity.as_ref().filter(|(change, _)| change.is_infinite()) {
-        all.push(format!("with {size} changed by 1 % nothing is left to cross, or nothing crosses"));
-    }
-    let empty = empty.map(|column| (column.to_owned(), why_empty(column, simulation, rated, &given)));
-    all.extend(grouped(empty).iter().map(|(names, why)| format!("no {names}: {why}")));
-    all
-}
-
-fn why_empty(column: &str, simulation: &Simulation, rated: &Rated, given: &str) -> String {
-    let (summary, crossing) = (&rated.summary, rated.crossing_g());
-    let transducer = simulation.scene().transducer != Transducer::None;
-    match column {
-        "release_g" => "it rests on no stop",
-        "mean_load_power_w" if !transducer => "it has no transducer",
-        "impact_speed_max_m_per_s" if simulation.scene().stops == Stops::None => "it has no stops",
-        "impact_speed_max_m_per_s" if summary.outcome.ended_at().is_none() => "it strikes no stop",
-        "rms_velocity_m_per_s" | "mean_load_power_w" | "max_abs_x_m" | "impact_speed_max_m_per_s" => {
-            "its run ended early"
-        }
-        _ if simulation.mechanism().landscape.barrier.is_none() => {
-            "no barrier between two wells, so nothing to cross"
-        }
-        _ if rated.crossing.is_none() => "no barrier stands between its stops, so nothing to cross",
-        "crosses_from_hz" | "crosses_to_hz" => {
-            return format!("no frequency that was tried makes its settled motion cross at {given} g");
-        }
-        _ if crossing.is_none() => "no amplitude that was tried makes its settled motion cross",
-        "crossing_low_g" => "no smaller amplitude that was tried is known not to cross",
-        "crossing_high_g" => "no amplitude that was tried is known to cross for good",
-        _ => "its mechanism has no length, thickness or gap to change",
-    }
-    .to_owned()
 }

@@ -2,9 +2,9 @@
 
 use clap::Args;
 use interwell::output::{can_show_over_field, escape_chart};
-use interwell::questions::{Escape, Table, Until, Values};
+use interwell::questions::{Escape, Until};
 
-use super::support::{counted, if_given, load_over, mechanism_of_all, outputs};
+use super::support::{if_given, load_over, mechanism_of_all, outputs};
 use super::{ChartOptions, Common, Failure, Output, Picture, ask, whole};
 
 const EXAMPLES: &str = "\
@@ -60,34 +60,9 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let mut outputs = outputs(&options.scene, &document, common)?.with_picture(picture)?;
     let table = ask("runs", common, |progress| question.in_cells(&document, &grid, progress))?;
     outputs.table(Output::DATA, &table)?;
-    common.say(&format!("{}: {}", document.name, about(&table)));
+    common.say(&format!("{}: {}", document.name, Escape::describe(&table)));
     outputs.draw(picture, &document, |ranges| {
         Ok(escape_chart(&table, &grid, &document.scene, &question, ranges)?)
     })?;
     outputs.finish_rows(&document, common.jobs())
-}
-
-/// What came out, in a sentence.
-fn about(table: &Table) -> String {
-    let total = |name: &str| match table.column(name).map(|column| &column.values) {
-        Some(Values::Counts(counts)) => counts.iter().flatten().sum::<u64>(),
-        _ => 0,
-    };
-    let (runs, escaped, early) = (total("runs"), total("escaped"), total("ended_early"));
-    let mut text = format!("{escaped} of {} escaped", counted(runs, "run"));
-    if early > 0 {
-        text += &format!(
-            "; {early} ended before their time without an escape (they left the table of the force, or used \
-             up a budget), so that the rate counts their time up to there"
-        );
-    }
-    let mut fails: Vec<&str> =
-        table.words("kramers_fails").iter().copied().filter(|word| !word.is_empty()).collect();
-    fails.sort_unstable();
-    fails.dedup();
-    if !fails.is_empty() {
-        let fails = fails.join(", ");
-        text += &format!("; Kramers' rate does not hold: {fails} (see kramers_fails in docs/output.md)");
-    }
-    text
 }

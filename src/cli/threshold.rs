@@ -1,11 +1,9 @@
 //! `threshold`: thresholds of a field, a row for each cell of a grid.
 
 use clap::Args;
-use interwell::numeric::extent;
 use interwell::output::{can_show_thresholds, threshold_chart};
-use interwell::questions::{Escape, Grid, Onset, ProbableThreshold, Table, Threshold};
+use interwell::questions::{Escape, Onset, ProbableThreshold, Threshold};
 use interwell::scene::Document;
-use interwell_studies::study::{Chance, Scan, can_cross};
 
 use super::support::{if_given, load_over, mechanism_of_all, outputs, settle_limit};
 use super::{ChartOptions, Common, Failure, Output, Picture, ask, whole};
@@ -100,9 +98,11 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let picture = Picture::of_chart(&options.chart, common)?;
     let (document, warnings, grid) = load_over(&options.scene, &options.over, common)?;
     let ((question, probable), Document { scene, name, .. }) = (questions(options)?, &document);
-    let chance = probable.as_ref().map(|probable| probable.chance(&document, &grid)).transpose()?;
     let (onset, scan) = match &probable {
-        Some(probable) => (Onset::Crossing, probable.scan(&document, &grid)?),
+        Some(probable) => {
+            probable.chance(&document, &grid)?;
+            (Onset::Crossing, probable.scan(&document, &grid)?)
+        }
         None => (question.of, question.scan(&document, &grid)?),
     };
     if picture.is_some() {
@@ -115,98 +115,12 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         None => ask("values", common, |progress| question.in_cells(&document, &grid, progress)),
     }?;
     outputs.table(Output::DATA, &table)?;
-    let mut fields = grid.axes().iter().map(|axis| &axis.field).chain([&scan.field]);
-    let fixed = !fields.any(|field| field.starts_with("stops") || field.starts_with("mechanism"));
-    let blocked = mechanism.filter(|mechanism| fixed && !can_cross(scene, mechanism));
-    let blocked = blocked.map(|mechanism| match mechanism.landscape.barrier {
-        None => "there is no barrier between two wells",
-        Some(_) => "no barrier lies between the stops",
-    });
-    let missing = match &chance {
-        Some(chance) => too_few(&table, &scan, chance),
-        None => missing(&table, &scan, onset, &grid, blocked),
+    let remarks = match &probable {
+        Some(probable) => probable.remarks_in_cells(&document, &grid, &table),
+        None => question.remarks_in_cells(&document, &grid, mechanism.as_deref(), &table),
     };
-    let remarks = [missing, undecided(&table), without_melnikov(&table)];
-    remarks.iter().flatten().for_each(|words| common.say(&format!("{name}: {words}")));
+    remarks.iter().for_each(|words| common.say(&format!("{name}: {words}")));
     let chart = |ranges| Ok(threshold_chart(&table, &grid, scene, &scan.field, onset, ranges)?);
     outputs.draw(picture, &document, chart)?;
     outputs.finish_rows(&document, common.jobs())
-}
-
-/// The clause "`count` of `all` rows" with the singular or plural of a verb. Returns `None` if `count` is 0.
-fn of_rows(count: usize, all: usize, verbs: [&str; 2]) -> Option<String> {
-    match (count, all) {
-        (0, _) => None,
-        (1, 1) => Some(format!("the row {}", verbs[0])),
-        (count, all) => Some(format!("{count} of {all} rows {}", verbs[1])),
-    }
-}
-
-/// The rows with an empty `value`, as a clause, if there are any.
-fn without_value(table: &Table) -> Option<String> {
-    without(table.numbers("value")?, "value")
-}
-
-/// The rows without one of these `numbers`, as a clause, if there are any.
-fn without(numbers: &[f64], name: &str) -> Option<String> {
-    let count = numbers.iter().filter(|number| number.is_nan()).count();
-    of_rows(count, numbers.len(), [&format!("has no {name}"), &format!("have no {name}")])
-}
-
-/// Explains an empty Melnikov's threshold, if a row has one.
-fn without_melnikov(table: &Table) -> Option<String> {
-    let name = &table.columns().iter().find(|column| column.name.starts_with("melnikov"))?.name;
-    let rows = without(table.numbers(name)?, name)?;
-    Some(format!(
-        "{rows}: it needs linear damping above 0, no current or voltage as a third state, a barrier without \
-         a kink, a well whose homoclinic orbit meets neither a stop nor the end of the force curve, and a \
-         drive that is not far faster than motions at the barrier"
-    ))
-}
-
-/// Explains an empty `value` of a threshold in probability, if a row has one.
-fn too_few(table: &Table, scan: &Scan, chance: &Chance) -> Option<String> {
-    let rows = without_value(table)?;
-    let (last, Chance { probability, within, .. }) = (scan.values.last()?, chance);
-    Some(format!(
-        "{rows}: at {} = {last} less than a share {probability} of the runs crosses within {within} s; give \
-         --field a wider range, or --within a longer time",
-        scan.field
-    ))
-}
-
-/// Explains `undecided`, if it is true in a row.
-fn undecided(table: &Table) -> Option<String> {
-    let words = table.words("undecided");
-    let count = words.iter().filter(|word| **word == "true").count();
-    let rows = of_rows(count, words.len(), ["is undecided", "are undecided"])?;
-    Some(format!(
-        "{rows}: the answer just below or at the value (without a value, at the end of the range) is not \
-         known: the motion does not repeat in the time for which it is followed, the run ended early, or \
-         there is no valid scene; low and high, where given, are values whose answers are known, and \
-         --until-settled with a longer time may bring them together"
-    ))
-}
-
-/// Explains an empty `value`, if a row has one. `blocked` says why no row can have a crossing.
-fn missing(table: &Table, scan: &Scan, onset: Onset, grid: &Grid, blocked: Option<&str>) -> Option<String> {
-    let rows = without_value(table)?;
-    if let Some(why) = blocked.filter(|_| onset != Onset::Release) {
-        return Some(format!("{rows}: {why}, so nothing to cross"));
-    }
-    let what = match onset {
-        Onset::Release => "releases the mass from a stop",
-        Onset::Crossing => "makes the settled motion cross",
-        Onset::Interwell => "makes the settled motion interwell",
-    };
-    let (low, high) = extent(scan.values.iter().copied());
-    let unsolved = match grid.changes_mechanism() || scan.field.starts_with("mechanism") {
-        true => ", or the flexures are not solved",
-        false => "",
-    };
-    Some(format!(
-        "{rows}: no {} that was tried from {low} to {high} {what}{unsolved}; give --field a wider range or \
-         smaller steps",
-        scan.field
-    ))
 }

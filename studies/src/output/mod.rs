@@ -18,6 +18,7 @@
 //! | --- | --- |
 //! | a run, by itself or with a measured motion over it | [`RunPicture`] |
 //! | [`Curve`], its flexures | [`curve_chart`], [`shapes_chart`] |
+//! | [`Simulation::compared_force`] | [`measured_force_chart`] |
 //! | [`Simulation::impact`] | [`contact_chart`] |
 //! | [`Sweep`] | [`sweep_chart`] |
 //! | [`Section`] | [`section_chart`] |
@@ -29,11 +30,14 @@
 //! | [`Compare`], [`Distance`] | [`comparison_chart`], [`distance_chart`] |
 //! | [`Best`] | [`best_chart`] |
 //! | [`Identify`] | [`identified_chart`] |
+//! | [`Accuracy`] | [`scene_accuracy_chart`] |
 //!
-//! [`mechanism_chart`] draws the mechanism itself.
+//! [`mechanism_chart`] draws the mechanism itself, [`well_chart`] the mass in its potential well.
 //!
 //! [`Curve`]: crate::questions::Curve
 //! [`Simulation::impact`]: crate::questions::Simulation::impact
+//! [`Simulation::compared_force`]: crate::questions::Simulation::compared_force
+//! [`Accuracy`]: crate::questions::Accuracy
 //! [`Sweep`]: crate::questions::Sweep
 //! [`Section`]: crate::questions::Section
 //! [`Threshold`]: crate::questions::Threshold

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::grid::check_until;
+use super::remarks::of_comparison;
 use super::{Error, Progress, Simulation};
 use crate::scene::{Document, Excitation, Start};
 use crate::study::{Alternative, Rated, Table, Task, alternatives, comparison_parts, comparison_table};
@@ -63,11 +64,16 @@ impl Compare {
             let (scene, files) = (document.scene.clone(), document.files.clone());
             Alternative { name, scene, files, mechanism }
         };
-        let all: Vec<_> = self.scenes(simulation, progress)?.into_iter().map(alternative).collect();
+        let scenes = self.scenes(simulation, progress)?;
+        let all: Vec<_> = scenes.iter().cloned().map(alternative).collect();
         let rate = |pool: &Pool, task: &Task| alternatives(&all, self.until_settled, pool, task);
         let rated = progress.shared(comparison_parts(&all), rate)?.ok_or(Error::Cancelled)?;
         let (frequency_hz, amplitude_g) = needs_a_sine(self.environment(simulation))?;
-        Ok(CompareAnswer { rated, frequency_hz, amplitude_g })
+        let table = comparison_table(&rated);
+        let given: Vec<_> = self.given(simulation).collect();
+        let environment = self.environment(simulation);
+        let remarks = of_comparison(&given, environment, &scenes, &rated, (amplitude_g, &table));
+        Ok(CompareAnswer { rated, frequency_hz, amplitude_g, remarks })
     }
 
     /// The scenes as they are rated, with their names: at rest, under the common sine and with the common run
@@ -80,14 +86,18 @@ impl Compare {
     ) -> Result<Vec<(String, Simulation)>, Error> {
         let environment = self.environment(simulation);
         needs_a_sine(environment)?;
-        let first = std::iter::once((&self.name, simulation));
-        let all = first.chain(self.with.iter().map(|(name, other)| (name, other)));
-        let rated = |(name, other): (&String, &Simulation)| {
+        let rated = |(name, other): (&str, &Simulation)| {
             let other = other.with_document(in_environment(other.document(), environment), progress)?;
             check_until(self.until_settled, other.document(), other.model())?;
-            Ok((name.clone(), other))
+            Ok((name.to_owned(), other))
         };
-        all.map(rated).collect()
+        self.given(simulation).map(rated).collect()
+    }
+
+    /// The scenes with their names, the first one first.
+    fn given<'a>(&'a self, simulation: &'a Simulation) -> impl Iterator<Item = (&'a str, &'a Simulation)> {
+        let others = self.with.iter().map(|(name, other)| (&**name, other));
+        std::iter::once((&*self.name, simulation)).chain(others)
     }
 
     fn environment<'a>(&'a self, simulation: &'a Simulation) -> &'a Document {
@@ -106,6 +116,9 @@ pub struct CompareAnswer {
     pub frequency_hz: f64,
     /// Its amplitude in g.
     pub amplitude_g: f64,
+    /// Which scenes have another excitation or run than their own, and why a scene lacks a number: sentences,
+    /// each after the names of the scenes to which it applies.
+    pub remarks: Vec<String>,
 }
 
 impl CompareAnswer {

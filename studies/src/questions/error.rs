@@ -219,7 +219,7 @@ fn scene_faults(error: &SceneError) -> Vec<FaultAt> {
 /// Replaces options of the command line in a text by names of arguments: --until-settled by
 /// `until_settled`. A word is an option if, after brackets and quotes, it begins with two hyphens
 /// and a letter.
-fn with_argument_names(text: &str) -> String {
+pub(super) fn with_argument_names(text: &str) -> String {
     let renamed = |word: &str| {
         let (open, rest) = word.split_at(word.len() - word.trim_start_matches(['(', '\'', '"', '`']).len());
         let Some(option) =

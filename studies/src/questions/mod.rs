@@ -94,6 +94,7 @@ mod orbits;
 mod parts;
 mod progress;
 mod record;
+mod remarks;
 mod simulation;
 mod sweep;
 
@@ -131,7 +132,8 @@ pub use crate::study::accuracy::scene::{AtTolerance, Course, Lateness, StepSize,
 pub use crate::study::{
     Answer, Attractor, BestDesign, BestQuestion, Branch as BranchAnswer, BranchEnd, BranchEvent, Carry,
     Column, Comparison, Estimate, EvenRange, ExponentOptions, Exponents as ExponentsAnswer, FieldRange,
-    Found, Grid, Identified, Identity, Locus as OneLocus, LocusEnd, LocusEvent, MeasuredMotion, Onset,
-    Optimum, Orbit as OrbitAnswer, Rated, Recorded, Sampling, SectionAt, SectionOptions, Shares, Signal,
-    Spectrum as SpectrumAnswer, Spread, Table, Thresholds, Tried, Until, Values,
+    ForceComparison, Found, Grid, Identified, Identity, Locus as OneLocus, LocusEnd, LocusEvent,
+    MeasuredMotion, Onset, Optimum, Orbit as OrbitAnswer, Rated, Recorded, Sampling, SectionAt,
+    SectionOptions, Shares, Signal, Spectrum as SpectrumAnswer, Spread, Table, Thresholds, Tried, Until,
+    Values,
 };

@@ -6,14 +6,14 @@ use std::sync::Arc;
 
 use super::grid::check_until;
 use super::parts::thresholds;
-use super::{Error, Progress};
+use super::{Curve, Error, Progress};
 use crate::dynamics::{Model, Outcome, Request, Run};
 use crate::mechanics::{ForceCurve, Mechanism};
 use crate::numeric::number_text;
 use crate::scene::{Axis, Document, Excitation, Files, Quantity, Scene};
 use crate::study::{
-    Comparison, Grid, Keep, MeasuredMotion, NoComparison, Recorded, Sampling, Table, Thresholds, Trace,
-    can_cross, compare, contact, inspect, sample_times, simulate, simulate_with_trace,
+    Comparison, ForceComparison, Grid, Keep, MeasuredMotion, NoComparison, Recorded, Sampling, Table,
+    Thresholds, Trace, can_cross, compare, contact, inspect, sample_times, simulate, simulate_with_trace,
 };
 
 /// A checked scene with its model, which every question takes.
@@ -261,6 +261,42 @@ impl Simulation {
             NoComparison::Cancelled => Error::Cancelled,
             NoComparison::Apart { .. } => Error::unfit(&self.document, problem),
         })
+    }
+
+    /// Forces in N that were measured at positions in m in a slow pull, beside those that hold the mass there by
+    /// the force curve. Positions beyond the curve are left out, and a remark of the answer counts them.
+    /// [`measured_force_chart`](crate::output::measured_force_chart) draws both.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Argument`] for lists of different lengths and numbers that are not finite; [`Error::Unfit`] if
+    /// less than two positions lie on the curve.
+    ///
+    /// # Example
+    ///
+    /// ```
+    /// # use interwell_studies as interwell;
+    /// use interwell::questions::Simulation;
+    ///
+    /// // a record that reads 0.01 N too much
+    /// let simulation = Simulation::preset("nominal-cubic")?;
+    /// let positions = [-4e-3, -1e-3, 2e-3, 5e-3];
+    /// let force = positions.map(|x| simulation.mechanism().curve.force(x) + 0.01);
+    /// let found = simulation.compared_force(&positions, &force)?;
+    /// assert!((found.rms.0 - 0.01).abs() < 1e-12 && (found.largest.1 + 0.01).abs() < 1e-12);
+    /// # Ok::<(), interwell::questions::Error>(())
+    /// ```
+    pub fn compared_force(&self, positions: &[f64], force: &[f64]) -> Result<ForceComparison, Error> {
+        if positions.len() != force.len() {
+            let problem = format!("give as many as forces, which are {}", force.len());
+            return Err(Error::argument("positions", positions.len(), problem));
+        }
+        for (name, values) in [("positions", positions), ("force", force)] {
+            if let Some(value) = values.iter().find(|value| !value.is_finite()) {
+                return Err(Error::number(name, *value, "give a finite number"));
+            }
+        }
+        Curve::compared(&self.document, self.mechanism(), positions, force)
     }
 
     /// The amplitudes in g of a harmonic drive that release the mass from its stop and let it cross, in one

@@ -78,10 +78,10 @@ const ROOM: f64 = 0.12;
 /// Share of the travel at which an error of 0 is drawn: the digits of a double.
 const LEAST_SHARE: f64 = 1e-16;
 
-/// The picture of the accuracy of one scene of this `tolerance`, with stops in m, NaN where there is none:
-/// its error over processor time at several tolerances, and beside it each run in fixed steps over the true
-/// one.
-#[doc(hidden)]
+/// The picture of an [`AccuracyAnswer`](crate::questions::AccuracyAnswer), whose fields `tolerances` and
+/// `stepped` are `known` and `stepped`, of a scene of this `tolerance`, with stops in m, NaN where there is
+/// none: its error over processor time at several tolerances, and beside it each run in fixed steps over the
+/// true one.
 pub fn scene_accuracy_chart(
     known: &Tolerances,
     tolerance: f64,
