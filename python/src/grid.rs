@@ -5,7 +5,7 @@ use interwell_studies::output::{
 };
 use interwell_studies::questions::{
     Carry, Error, Escape, ExponentOptions, Exponents, Grid, Onset, ProbableThreshold, Section, SectionAt,
-    SectionOptions, Sweep, Table, Threshold, Uncertain, Until,
+    SectionOptions, Sweep, Threshold, Uncertain, Until,
 };
 use pyo3::prelude::*;
 

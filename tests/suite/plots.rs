@@ -24,9 +24,11 @@ fn plot(line: &str, folder: &Path, name: &str) -> PathBuf {
     path
 }
 
+/// What follows a `>` in `line` is the option that names the picture.
 fn with_plot(line: &str, path: &Path) -> Command {
+    let (line, option) = line.split_once(" > ").unwrap_or((line, "--plot"));
     let mut command = headless(line);
-    command.arg("--plot").arg(path);
+    command.arg(option).arg(path);
     command
 }
 

@@ -21,8 +21,8 @@ pub const EVENT_AHEAD: f64 = 5.0;
 const BUTTON: (f32, f32) = (32.0, 40.0);
 /// Width in points of the time, and where there is no row below the bar, with the note below the time.
 const TIME: (f32, f32) = (72.0, 140.0);
-/// Width in points of the length of the run.
-const LENGTH: f32 = 48.0;
+/// Width in points of the length of the run, and for a long one of the part that the bar shows too.
+const LENGTH: (f32, f32) = (48.0, 96.0);
 /// Height in points of the bar with the signs of events above and below it.
 const SIGNS: f32 = 32.0;
 /// Height in points of the row below the bar, and of the note below the time.
@@ -195,15 +195,16 @@ fn length_of_bar(run: f64, seen: f64) -> f64 {
 /// the bar has the focus, shows an earlier time. With a `note` the length of the run stands at the end of the
 /// bar, and there is a row below it: the meanings of the signs, and the note.
 fn scrub_ui(ui: &mut Ui, session: &mut Session, style: &Style, covered: bool, note: Option<&str>) {
-    let width = (ui.available_width() - if note.is_some() { LENGTH } else { 0.0 }).max(40.0);
+    let watch = session.player.watch();
+    let (begin, seen) = (watch.begin(), watch.time());
+    let end = session.end_of_run().max(seen);
+    let length = if end - begin > LONG { LENGTH.1 } else { LENGTH.0 };
+    let width = (ui.available_width() - if note.is_some() { length } else { 0.0 }).max(40.0);
     let height = if note.is_some() { SIGNS + BELOW } else { SIGNS };
     let (whole, _) = ui.allocate_exact_size(vec2(width, height), Sense::hover());
     let rect = whole.with_max_y(whole.top() + SIGNS);
     let response = ui.interact(rect, ui.scope_id().with("bar"), Sense::click_and_drag());
     response.widget_info(|| egui::WidgetInfo::slider(true, session.player.time(), "time"));
-    let watch = session.player.watch();
-    let (begin, seen) = (watch.begin(), watch.time());
-    let end = session.end_of_run().max(seen);
     let span = length_of_bar(end - begin, seen - begin).max(1e-9);
     let is_whole = begin + span >= end;
     let mut bar =
@@ -230,7 +231,9 @@ fn scrub_ui(ui: &mut Ui, session: &mut Session, style: &Style, covered: bool, no
         at.x += DOTS;
     }
     if note.is_some() {
-        painter.text(at, Align2::LEFT_CENTER, length_words(session), style.small(), style.faint());
+        let part = if is_whole { String::new() } else { format!("{:.0} of ", begin + span) };
+        let length = part + &length_words(session);
+        painter.text(at, Align2::LEFT_CENTER, length, style.small(), style.faint());
     }
     let now = pos2(screen_from_time(session.player.time()), bar.center().y);
     painter.circle(now, 7.0, style.mass(), Stroke::new(1.5, style.mass_edge()));

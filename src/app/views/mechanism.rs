@@ -21,7 +21,7 @@ use super::ghosts::ghosts;
 use super::labels::ago;
 use super::mass::{OUTLINE, body_ui, was_dragged};
 use super::memory::Ring;
-use super::pane::{GUTTER, RIGHT, UNIT, on_screen, paint};
+use super::pane::{GUTTER, LEGEND_LEFT, RIGHT, UNIT, on_screen, paint};
 use super::stops::{BEST_STOPS, best_stops, stops_ui};
 use super::{Cover, Drawn, LegendRow, Span, ViewContext};
 
@@ -192,7 +192,8 @@ impl Caption {
         {
             all.retain(|text| text.2 > lowest);
         }
-        let mut at = pos2(row.left + 10.0, rect.top() + 0.5 * LegendRow::HEIGHT);
+        let left = if LegendRow::given(ui).is_some() { row.left + 10.0 } else { row.left + LEGEND_LEFT };
+        let mut at = pos2(left, rect.top() + 0.5 * LegendRow::HEIGHT);
         for (text, color, _) in all {
             if text == BEST_STOPS {
                 let ends = [at, at + vec2(SAMPLE, 0.0)];

@@ -35,7 +35,7 @@ pub const RIGHT: f32 = 8.0;
 pub const LEGEND: f32 = LegendRow::HEIGHT;
 
 /// Width in points to the left of a legend below the titles of its card.
-const LEGEND_LEFT: f32 = 8.0;
+pub const LEGEND_LEFT: f32 = 6.0;
 
 /// Least radius in points of a dot that can be seen.
 const LEAST_DOT: f32 = 1.5;
@@ -63,12 +63,14 @@ impl Place {
         let area = area.with_max_x(area.right() - RIGHT);
         let unit = |points: f32| f64::from(points / UNIT);
         let row = LegendRow::of(ui, area);
-        // a legend in the row of the card is in line with the frame; otherwise it has rows of the full width
+        // a legend that fits into the row of the card is in line with the frame, else it has rows of the full
+        // width
         let shares = LegendRow::given(ui).is_some();
         let legend = if shares { (row.left - area.left()).max(GUTTER) } else { LEGEND_LEFT };
         let room = Room {
             left: unit(GUTTER),
             legend: unit(legend),
+            rows: unit(LEGEND_LEFT),
             beside: unit(beside + area.right() - row.right),
             between: unit(between),
         };
@@ -97,10 +99,11 @@ impl Pane {
         let area = self.response.rect;
         let painter = ui.painter().with_clip_rect(area);
         let galley = painter.layout_no_wrap(with_minus(text), style.small(), style.ink());
-        let right = LegendRow::of(ui, area).right - beside;
-        let row = Rect::from_min_max(area.min, pos2(right, area.top() + LEGEND));
+        let free = LegendRow::of(ui, area);
+        let row = Rect::from_min_max(area.min, pos2(free.right - beside, area.top() + LEGEND));
         let at = Align2::RIGHT_CENTER.anchor_size(row.right_center() - vec2(6.0, 0.0), galley.size());
-        let is_cut = self.painting.legend.iter().any(|entry| entry.0.intersects(at.expand2(vec2(4.0, 0.0))));
+        let is_cut = at.left() < free.left
+            || self.painting.legend.iter().any(|entry| entry.0.intersects(at.expand2(vec2(4.0, 0.0))));
         match self.frame(0).filter(|_| is_cut) {
             Some(frame) => {
                 let corner = (frame.right_top() + vec2(-4.0, 4.0), Align2::RIGHT_TOP);

@@ -52,8 +52,6 @@ const START: f32 = 2.0;
 const LEAST_START: f32 = 1.0;
 /// Width in points of the button beside the legend.
 const BUTTON: f32 = 88.0;
-/// Its height in points.
-const POINTS_ROW: f32 = 15.0;
 
 /// A point of the picture: displacement in mm, velocity in mm/s.
 type State = (f64, f64);
@@ -156,12 +154,11 @@ pub(super) fn starts(painter: &egui::Painter, context: &ViewContext<'_>, pane: &
 /// Button in the row of the legend that hides the path.
 fn points_ui(ui: &mut Ui, area: egui::Rect, points_only: &mut bool) {
     let right = LegendRow::of(ui, area).right - 4.0;
-    // as high as a row of the legend, whose next rows may come below it
-    let row = area.with_max_y(area.top() + POINTS_ROW).with_max_x(right);
+    let row = area.with_max_y(area.top() + LegendRow::HEIGHT).with_max_x(right);
     let layout = egui::Layout::right_to_left(egui::Align::Center);
     let builder = egui::UiBuilder::new().max_rect(row).layout(layout);
     ui.scope_builder(builder, |ui| {
-        ui.spacing_mut().interact_size.y = POINTS_ROW;
+        ui.spacing_mut().interact_size.y = LegendRow::HEIGHT;
         (ui.spacing_mut().icon_width, ui.spacing_mut().button_padding.y) = (11.0, 0.0);
         let text = egui::RichText::new("points only").small();
         let hover = "One point a forcing period, always at the same phase, and no path: motion that repeats \

@@ -70,7 +70,7 @@ impl Row {
     }
 
     fn known(&self) -> impl Iterator<Item = &String> {
-        self.texts.iter().filter(|text| *text != UNKNOWN)
+        self.texts.iter().filter(|text| *text != UNKNOWN && !text.is_empty())
     }
 
     fn differs(&self) -> bool {
@@ -161,6 +161,9 @@ pub(super) fn table_ui(
                     let text = format!("ended at {}, stays there", seconds(at));
                     ui.add(Label::new(RichText::new(text).font(style.small())).wrap());
                 }
+                None if column.card.is_some() && column.settled().is_none() => {
+                    ui.label(faint("not yet known").font(style.small()));
+                }
                 None => regime_ui(ui, context, column.settled(), width),
             });
         }
@@ -204,7 +207,7 @@ fn scene_rows(scenes: &[Option<&Scene>]) -> Vec<Row> {
             "" => text(scene),
             unit => text(scene).replace(&format!(" {unit}"), ""),
         };
-        let texts = scenes.iter().map(|scene| scene.map_or_else(|| UNKNOWN.to_owned(), bare));
+        let texts = scenes.iter().map(|scene| scene.map_or_else(String::new, bare));
         Row::new(name, unit, texts.collect())
     };
     let mut rows = vec![row("shaking", "", |scene| shaking(scene).0), row("stops", "mm", stops)];
@@ -250,7 +253,10 @@ fn scene_rows(scenes: &[Option<&Scene>]) -> Vec<Row> {
         // all digits if two rounded numbers are equal
         let hidden = known().any(|a| known().any(|b| a != b && shown(*a, 0) == shown(*b, 0)));
         let text = |value: &f64| if hidden { exact(*value, 0) } else { shown(*value, 0) };
-        let texts = values.iter().map(|value| value.as_ref().map_or_else(|| UNKNOWN.to_owned(), text));
+        let texts = scenes.iter().zip(&values).map(|(scene, value)| match (scene, value) {
+            (None, _) => String::new(),
+            (_, value) => value.as_ref().map_or_else(|| UNKNOWN.to_owned(), text),
+        });
         rows.push(Row::new(&name, unit, texts.collect()));
     }
     rows
@@ -264,7 +270,7 @@ fn number_rows(columns: &[Column], now: usize, with_threshold: bool) -> Vec<Row>
                value: &dyn Fn(&Summary) -> Option<f64>,
                decimals: &dyn Fn(f64) -> usize| {
         let written = |column: &Column| text(column.card.as_ref()?, column.settled()?);
-        let texts = columns.iter().map(|column| written(column).unwrap_or_else(|| UNKNOWN.to_owned()));
+        let texts = columns.iter().map(|column| written(column).unwrap_or_else(|| unknown(column)));
         let present = columns[now].settled().and_then(value);
         let apart = |column: &Column| {
             let number = column.settled().filter(|_| column.differs).and_then(value)?;
@@ -306,7 +312,10 @@ fn number_rows(columns: &[Column], now: usize, with_threshold: bool) -> Vec<Row>
         let text = |_: &Card, run: &Summary| watt(run).map(|watt| three(watt * factor));
         rows.push(row("load power", unit, &text, &|run| Some(watt(run)? * factor), &decimals_for));
     }
-    if with_threshold {
+    // other drives have no amplitude
+    let has_amplitude =
+        |column: &Column| column.card.as_ref().is_some_and(|card| card.scene.harmonic().is_some());
+    if with_threshold && columns.iter().any(has_amplitude) {
         let found = |column: &Column| {
             let card = column.card.as_ref()?;
             threshold(&card.scene, &card.thresholds?.crossing)
@@ -318,10 +327,16 @@ fn number_rows(columns: &[Column], now: usize, with_threshold: bool) -> Vec<Row>
             true => number.clone(),
             false => format!("{number} {its}"),
         };
-        let texts = all.iter().map(|found| found.as_ref().map_or_else(|| UNKNOWN.to_owned(), text));
+        let texts = columns.iter().zip(&all);
+        let texts = texts.map(|(column, found)| found.as_ref().map_or_else(|| unknown(column), text));
         rows.push(Row::new(CROSSES, unit, texts.collect()));
     }
     rows
+}
+
+/// What stands for a number that is missing; nothing if there is no such scene.
+fn unknown(column: &Column) -> String {
+    column.card.as_ref().map_or_else(String::new, |_| UNKNOWN.to_owned())
 }
 
 fn difference(value: f64, present: f64, decimals: &dyn Fn(f64) -> usize) -> String {
@@ -393,7 +408,7 @@ fn start(scene: &Scene) -> String {
 
 /// Symbol and name of the regime, one below the other in a narrow column.
 fn regime_ui(ui: &mut Ui, context: &ViewContext<'_>, settled: Option<&Summary>, width: f32) {
-    let Some(settled) = settled else { return drop(ui.label(UNKNOWN)) };
+    let Some(settled) = settled else { return };
     if settled.outcome != Outcome::Done {
         return drop(ui.add(Label::new("the run ended early").wrap()));
     }

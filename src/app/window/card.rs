@@ -13,8 +13,9 @@ const ROW: f32 = CONTROL;
 const MARGIN: f32 = 8.0;
 /// Width in points of a tool.
 const TOOL: f32 = 24.0;
-/// Width in points that a legend needs beside the titles; with less room it is in a row below.
-const LEGEND_ROOM: f32 = 220.0;
+/// Width in points that the caption of the mechanism needs beside the titles; with less room it is in a row
+/// below.
+const CAPTION_ROOM: f32 = 220.0;
 /// Width in points that the choices of a map need beside the titles, and the width of a card below which they
 /// would need more than two rows.
 const CHOICES_ROOM: f32 = 300.0;
@@ -52,7 +53,9 @@ pub fn card_ui(ui: &mut Ui, titles: &[Title], view: View, context: &mut ViewCont
     let is_compact = ui.ctx().content_rect().width() < COMPACT_BELOW;
     let needed = match view {
         View::Map if is_compact || rect.width() < FEW_ROWS => CHOICES_ROOM,
-        _ if view.has_legend() => LEGEND_ROOM,
+        View::Mechanism => CAPTION_ROOM,
+        // a legend that is too wide has rows of its own
+        _ if view.has_legend() => f32::NEG_INFINITY,
         _ => f32::INFINITY,
     };
     let shares = free.right - free.left >= needed;

@@ -12,8 +12,8 @@ use crate::scene::{Document, RunSettings, Stops, Transducer};
 use crate::study::{Grid, Onset, Rated, Scan, Table, Values, can_cross};
 
 impl Threshold {
-    /// Why `table`, the answer of [`run`](Self::run), has rows without a value, undecided ones or ones without
-    /// Melnikov's threshold: a sentence each, none if there are no such rows.
+    /// Why `table`, the answer of [`run`](Self::run), has rows without a value, undecided ones, or ones
+    /// without Melnikov's threshold: a sentence each, none if there are no such rows.
     pub fn remarks(&self, simulation: &Simulation, table: &Table) -> Vec<String> {
         let grid = grid_or_one(&self.over, simulation).unwrap_or_else(|_| Grid::of_one());
         let mechanism = Some(&**simulation.mechanism()).filter(|_| !grid.changes_mechanism());
@@ -54,8 +54,8 @@ impl ProbableThreshold {
             let (last, field) = (scan.values.last()?, &scan.field);
             let within = self.within.unwrap_or(document.scene.run.duration_s);
             Some(format!(
-                "{rows}: at {field} = {last} less than a share {} of the runs crosses within {within} s; give \
-                 a wider range, or --within a longer time",
+                "{rows}: at {field} = {last} less than a share {} of the runs crosses within {within} s; \
+                 give a wider range, or --within a longer time",
                 self.probability
             ))
         };

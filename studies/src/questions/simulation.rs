@@ -263,14 +263,14 @@ impl Simulation {
         })
     }
 
-    /// Forces in N that were measured at positions in m in a slow pull, beside those that hold the mass there by
-    /// the force curve. Positions beyond the curve are left out, and a remark of the answer counts them.
+    /// Forces in N that were measured at positions in m in a slow pull, beside those of the force curve that
+    /// hold the mass there. Positions beyond the curve are left out, and a remark of the answer counts them.
     /// [`measured_force_chart`](crate::output::measured_force_chart) draws both.
     ///
     /// # Errors
     ///
-    /// [`Error::Argument`] for lists of different lengths and numbers that are not finite; [`Error::Unfit`] if
-    /// less than two positions lie on the curve.
+    /// [`Error::Argument`] for lists of different lengths and for numbers that are not finite;
+    /// [`Error::Unfit`] if less than two positions lie on the curve.
     ///
     /// # Example
     ///

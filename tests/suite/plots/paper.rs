@@ -96,17 +96,16 @@ fn a_width_in_mm_and_a_size_in_points_hold_on_paper() {
 }
 
 /// Asserts for pictures of a scene with a title of forty characters, at four sizes, that no text lies on
-/// another or leaves the picture. What follows a `>` is the option that names the picture.
+/// another or leaves the picture.
 fn no_text_lies_on_another(lines: &[&str]) {
     let title = "title=A bistable harvester with travel stops x";
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.svg");
     for line in lines {
-        let (line, option) = line.split_once(" > ").unwrap_or((line, "--plot"));
         let titled = if line.starts_with("identify") { vec![] } else { vec!["--set", title] };
         for size in ["", "--plot-width-mm 60 --font-pt 6", PAPER, "--plot-width-mm 170 --font-pt 9"] {
-            let mut command = headless(&format!("{line} {size} --out /dev/null --quiet"));
-            command.args(&titled).arg(option).arg(&path).assert().success();
+            let options = [&*titled, &["--out", "/dev/null", "--quiet"]].concat();
+            with_plot(line, &path).args(size.split_whitespace()).args(options).assert().success();
             let svg = fs::read_to_string(&path).unwrap();
             let view = svg.split("viewBox=\"").nth(1).unwrap().split('"').next().unwrap();
             let canvas: Vec<f64> = view.split(' ').map(|side| side.parse().unwrap()).collect();

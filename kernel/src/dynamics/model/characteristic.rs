@@ -74,8 +74,8 @@ impl Model {
         drive.constant.abs() + parts.iter().sum::<f64>()
     }
 
-    /// The base acceleration of the largest magnitude in m/s^2, with the sign of the drive's constant part, or
-    /// above 0; without a drive 0. A bound as above.
+    /// The base acceleration of the largest magnitude in m/s^2, with the sign of the drive's constant part if
+    /// there is one; without a drive 0. A bound as above.
     pub fn extreme_base_acceleration(&self) -> f64 {
         if self.is_shaken() {
             self.largest_base_acceleration().copysign(self.excitation.constant)

@@ -6,7 +6,7 @@ use super::chart::{Chart, Marks, Panel};
 use super::drawn::Drawn;
 use super::quantity::suited_unit;
 use super::role::Role;
-use super::style::{KINDS, WARM};
+use super::style::{COOL, KINDS, WARM};
 use super::sweep::{MAX_PICTURE_CELLS, NoPicture};
 use crate::dynamics::Regime;
 use crate::numeric::short;
@@ -114,18 +114,21 @@ fn source_row(basins: &Basins) -> impl Fn(usize) -> usize {
 }
 
 /// The roles of the attractors, in the order of their words: a finer level of starts finds the same
-/// attractors in another order, and their colours stay. Interwell motion has the warm colours first.
+/// attractors in another order, and their colours stay. Interwell motion has the warm colours first, other
+/// motion the cool ones.
 fn roles(answer: &Answer) -> Vec<Role> {
     let mut order: Vec<(String, usize)> = answer.words().into_iter().zip(0..).collect();
     order.sort();
-    let mut free: Vec<usize> = (0..order.len().max(KINDS.len())).collect();
+    let (mut cool, mut warm) = (COOL.to_vec(), WARM.to_vec());
+    let mut more = KINDS.len()..;
     let mut roles = vec![Role::Several; order.len()];
     for (_, place) in order {
-        let is_interwell = answer.attractors[place].regime == Regime::Interwell;
-        let suits = |kind: &usize| WARM.contains(kind) == is_interwell && *kind < KINDS.len();
-        let usual = free.iter().position(suits);
-        let plain = free.iter().rposition(|kind| *kind < KINDS.len());
-        roles[place] = Role::Kind(free.remove(usual.or(plain).unwrap_or(0)));
+        let (suited, others) = match answer.attractors[place].regime {
+            Regime::Interwell => (&mut warm, &mut cool),
+            _ => (&mut cool, &mut warm),
+        };
+        let kind = if suited.is_empty() { others.pop() } else { Some(suited.remove(0)) };
+        roles[place] = Role::Kind(kind.or_else(|| more.next()).unwrap_or(0));
     }
     roles
 }

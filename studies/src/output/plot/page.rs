@@ -15,8 +15,9 @@ const EDGE: (f64, f64) = (24.0, 40.0);
 const TITLE_LINE: f64 = 46.0;
 /// Line height of the subtitle.
 const SUBTITLE_LINE: f64 = 36.0;
-/// Line height of the legend.
+/// Line height of the legend, and the room after it.
 const ROW: f64 = 38.0;
+const AFTER_LEGEND: f64 = 10.0;
 /// Width of a sample in the legend.
 const SAMPLE: f64 = 44.0;
 /// Distance from a sample to its text.
@@ -115,6 +116,8 @@ pub struct Room {
     pub left: f64,
     /// From the left edge to the legend.
     pub legend: f64,
+    /// The same of a legend that stands in rows below its first one, since it is too wide for that.
+    pub rows: f64,
     /// To the right of the legend.
     pub beside: f64,
     /// Between the legend and the frames.
@@ -188,25 +191,32 @@ impl Chart {
     pub fn pane(&self, (width, height): (f64, f64), theme: &Theme, room: Option<&Room>) -> Figure {
         let named = self.entries(theme);
         let margin = if room.is_some() { 0.0 } else { PANE };
-        let left = room.map_or(PANE, |room| room.legend);
+        let mut left = room.map_or(PANE, |room| room.legend);
         let beside = room.map_or(0.0, |room| room.beside);
         let mut legend = Legend::new(&named, width - left - margin, beside);
-        if room.is_some() {
-            legend = legend.within(height);
+        let mut top = 0.0;
+        if let Some(room) = room {
+            if room.rows < left && !legend.is_one_row(width - left - margin - beside) {
+                (left, top) = (room.rows, ROW);
+                legend = Legend::new(&named, width - left - margin, 0.0);
+            }
+            legend = legend.within(height - top);
+            top += 0.5 * AFTER_LEGEND;
         }
         let is_low = height < LOW_PANE;
         let has_subtitle = !is_low && !self.subtitle.is_empty();
         let subtitle = if has_subtitle { &self.subtitle } else { "" };
         let subtitle = wrapped_to(subtitle, style::TICK, false, width - 2.0 * PANE, MAX_LINES);
         let edge = if is_low || room.is_some() { 0.0 } else { 0.5 * PANE };
-        let above = edge + if has_subtitle { SUBTITLE_LINE * subtitle.len() as f64 } else { 0.0 };
-        let below = above + legend.height + room.map_or(0.0, |room| room.between);
+        let above = top + edge + if has_subtitle { SUBTITLE_LINE * subtitle.len() as f64 } else { 0.0 };
+        let between = room.map_or(0.0, |room| room.between - 0.5 * AFTER_LEGEND);
+        let below = above + legend.height + between;
         let mut grid = Grid::new(self, width < style::NARROW);
         let least = room.map_or(MIN_PANE_HEIGHT, |_| MIN_ALIGNED_HEIGHT);
         grid.fit((margin, width - margin), height - below - edge, least, room);
         let mut figure = Figure::new(theme, (width, height), (0.0, height));
         for (i, line) in subtitle.iter().enumerate() {
-            let at = (PANE, edge + SUBTITLE_LINE * (i as f64 + 0.75));
+            let at = (PANE, top + edge + SUBTITLE_LINE * (i as f64 + 0.75));
             figure.text(Text::new(line, at, style::TICK, theme.soft));
         }
         legend.draw(&mut figure, (left, above), theme);
@@ -271,8 +281,17 @@ impl<'a> Legend<'a> {
             entries.push(Entry { sample: *sample, words, size, left, row });
             left += width + BETWEEN_ENTRIES;
         }
-        let height = if entries.is_empty() { 0.0 } else { ROW * (row as f64 + 1.0) + 10.0 };
+        let height = if entries.is_empty() { 0.0 } else { ROW * (row as f64 + 1.0) + AFTER_LEGEND };
         Self { entries, step: ROW, height }
+    }
+
+    /// Whether it is a row of full letters that is no wider than `room`.
+    fn is_one_row(&self, room: f64) -> bool {
+        let fits = |entry: &Entry| {
+            let width = SAMPLE + GAP + font::width(entry.words, style::TICK, false);
+            entry.row == 0 && entry.left + width <= room + 0.5
+        };
+        self.entries.iter().all(fits)
     }
 
     /// The legend within this height; an empty one has the height of a row.
@@ -285,7 +304,7 @@ impl<'a> Legend<'a> {
             self.step = step;
             self.entries.retain(|entry| entry.row == 0 || bottom(step, Some(entry)) <= most * height);
         }
-        self.height = bottom(self.step, self.entries.last()) + 10.0;
+        self.height = bottom(self.step, self.entries.last()) + AFTER_LEGEND;
         self
     }
 

@@ -134,8 +134,8 @@ pub fn identified_chart(
 
 /// The picture of the answer of [`Simulation::compared_force`](crate::questions::Simulation::compared_force)
 /// over the computed curve, of which `curve` is the table: forces in N or mN over the displacement in mm, and
-/// below them the difference, computed minus measured. `ranges` are those of both axes in mm and in the unit of
-/// the upper panel.
+/// below them the difference, computed minus measured. `ranges` are those of the upper panel, in the units of
+/// its axes.
 pub fn measured_force_chart(found: &ForceComparison, curve: &Table, ranges: Ranges) -> Chart {
     let (scale, up, unit) = axis_of(Quantity::Force, &found.measured);
     let mm = |values: &[f64]| -> Vec<Point> {
