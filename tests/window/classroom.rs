@@ -328,6 +328,27 @@ fn the_notes_mark_the_line_of_now() {
 }
 
 #[test]
+fn a_task_is_passed_by_page_down_twice_or_by_skip_and_is_then_shown_solved() {
+    for by_key in [true, false] {
+        let mut harness = opened(LESSONS[0].name, WIDE);
+        assert!(go_to(&mut harness, |step| matches!(step, Step::Do { .. })));
+        let at = number(&harness);
+        assert!(harness.query_by_label("Next").is_none());
+        if by_key {
+            press(&mut harness, Key::PageDown);
+            assert!(number(&harness) == at && is_painted(&harness, "PageDown once more shows it solved"));
+            press(&mut harness, Key::PageDown);
+        } else {
+            click_on(&mut harness, "Skip");
+        }
+        assert_eq!(number(&harness), at + 1);
+        assert!(is_painted(&harness, "The task is shown solved: start, velocity \u{2212}0.5 m/s"));
+        assert_eq!(harness.state().session.number("start.v_m_per_s"), Some(-0.5));
+        assert!(!harness.state().lesson().unwrap().is_settled(at));
+    }
+}
+
+#[test]
 fn votes_are_counted_beside_a_prediction() {
     let mut harness = opened_own(WIDE);
     assert!(go_to(&mut harness, |step| matches!(step, Step::Predict { .. })));
@@ -341,8 +362,8 @@ fn votes_are_counted_beside_a_prediction() {
     // from the first vote on the letter alone is one too, and reveals nothing
     press(&mut harness, Key::C);
     assert!(harness.state().lesson().unwrap().is_covering());
-    for text in ["A   crosses every period  (1 vote)", "C   does not move at all  (2 votes)"] {
-        assert!(is_painted(&harness, text), "{text}");
+    for text in ["A   crosses every period, 1\u{a0}vote", "C   does not move at all, 2\u{a0}votes"] {
+        harness.get_by_label(text);
     }
     // in the notes by buttons
     press_with_ctrl(&mut harness, Key::L);
@@ -352,8 +373,8 @@ fn votes_are_counted_beside_a_prediction() {
     press_with_ctrl(&mut harness, Key::L);
     click_on(&mut harness, "Reveal");
     // the options stay, with their votes
-    for text in ["A   crosses every period  (1 vote)", "C   does not move at all  (2 votes)"] {
-        assert!(is_painted(&harness, text), "{text}");
+    for text in ["A   crosses every period, 1\u{a0}vote", "C   does not move at all, 2\u{a0}votes"] {
+        harness.get_by_label(text);
     }
     assert_eq!(harness.state().lesson().unwrap().answer().choice, None);
     // too late: no vote, and nothing is covered

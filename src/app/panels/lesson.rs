@@ -40,6 +40,8 @@ pub enum LessonAction {
     Choose(usize),
     Back,
     Next,
+    /// Go on although the task is not done.
+    Skip,
     /// Show the answer of a prediction without a choice.
     Reveal,
     Finish,
@@ -358,15 +360,17 @@ fn buttons_ui(ui: &mut Ui, lesson: &OpenLesson, urged: bool) -> Option<LessonAct
         true => ("Finish", LessonAction::Finish, "Ends the lesson: your scene comes back as it was"),
         false => ("Next", LessonAction::Next, "The next step (PageDown)"),
     };
-    let condition = match lesson.step() {
-        Step::Predict { .. } => "First choose what you expect, or Reveal.",
-        _ => "First the task. A lecturer goes on with PageDown.",
+    let is_skipped = !lesson.may_go_on() && !lesson.is_covering() && !lesson.is_last();
+    let (button, hover) = match following {
+        _ if is_skipped => (Button::new("Skip"), "The next step, with the task shown solved (PageDown)"),
+        None => (primary(ui, name), hover),
+        Some(_) => (Button::new(name), hover),
     };
-    let button = if following.is_none() { primary(ui, name) } else { Button::new(name) };
-    let next = ui.add_enabled(lesson.may_go_on(), button).on_disabled_hover_text(condition);
+    let next = ui.add_enabled(lesson.may_go_on() || is_skipped, button);
+    let next = next.on_disabled_hover_text("First choose what you expect, or Reveal.");
     urge(&next, urged && lesson.is_last() && following.is_none());
     if next.on_hover_text(hover).clicked() {
-        action = Some(chosen);
+        action = Some(if is_skipped { LessonAction::Skip } else { chosen });
     }
     let back = ui.add_enabled(lesson.number() > 0, Button::new("Back"));
     if back.on_hover_text("The step before (PageUp)").clicked() {
@@ -399,14 +403,17 @@ fn rows_of(count: usize) -> usize {
     count.div_ceil(SIDE_BY_SIDE).max(1)
 }
 
-/// An option, with the votes for it if there are any.
-fn option_text(option: usize, choice: &Choice, votes: u32) -> String {
-    let votes = match votes {
+fn option_text(option: usize, choice: &Choice) -> String {
+    format!("{}   {}", letter(option), plain(&choice.text))
+}
+
+/// The votes for an option, if there are any.
+fn votes_text(votes: u32) -> String {
+    match votes {
         0 => String::new(),
-        1 => "  (1 vote)".to_owned(),
-        votes => format!("  ({votes} votes)"),
-    };
-    format!("{}   {}{votes}", letter(option), plain(&choice.text))
+        1 => "1\u{a0}vote".to_owned(),
+        votes => format!("{votes}\u{a0}votes"),
+    }
 }
 
 /// Width and height in points of each option.
@@ -414,10 +421,12 @@ fn option_size(ui: &Ui, options: &[Choice]) -> Vec2 {
     let columns = options.len().div_ceil(rows_of(options.len())) as f32;
     let (space, padding) = (ui.spacing().item_spacing.x, ui.spacing().button_padding);
     let width = (ui.available_width() - space * (columns - 1.0)) / columns;
+    let font = || FontId::proportional(BODY);
+    let votes = ui.painter().layout_no_wrap(votes_text(MOST_VOTES), font(), Color32::PLACEHOLDER).size().x;
+    let room = width - 2.0 * padding.x - votes - 2.0 * space;
     let height = |(option, choice): (usize, &Choice)| {
-        let (room, font) = (width - 2.0 * padding.x, FontId::proportional(BODY));
-        let text = option_text(option, choice, MOST_VOTES);
-        ui.painter().layout(text, font, Color32::PLACEHOLDER, room).size().y
+        let text = option_text(option, choice);
+        ui.painter().layout(text, font(), Color32::PLACEHOLDER, room).size().y
     };
     let tallest = options.iter().enumerate().map(height).fold(0.0, f32::max);
     vec2(width, tallest + 2.0 * padding.y + 4.0)
@@ -438,7 +447,8 @@ fn options_ui(ui: &mut Ui, lesson: &OpenLesson, style: &Style) -> Option<LessonA
             for (i, choice) in choices.iter().enumerate() {
                 let option = row * columns + i;
                 let votes = *lesson.answer().votes.get(option).unwrap_or(&0);
-                let text = option_text(option, choice, votes);
+                let (text, votes) = (option_text(option, choice), votes_text(votes));
+                let spoken = if votes.is_empty() { text.clone() } else { format!("{text}, {votes}") };
                 if !lesson.is_covering() {
                     let button = match lesson.outcome() == Outcome::Holds(option) {
                         true => primary(ui, &text),
@@ -447,16 +457,18 @@ fn options_ui(ui: &mut Ui, lesson: &OpenLesson, style: &Style) -> Option<LessonA
                         }
                         false => Button::new(text),
                     };
-                    ui.add_sized(each, button.wrap().sense(Sense::hover()));
+                    let shown = ui.add_sized(each, button.right_text(votes).wrap().sense(Sense::hover()));
+                    tell(&shown, egui::Role::Label, &spoken);
                     continue;
                 }
-                let button = ui.add_sized(each, Button::new(text).wrap());
+                let button = ui.add_sized(each, Button::new(text).right_text(votes).wrap());
                 let letter = letter(option);
                 let hover = format!(
                     "Choose this: nothing is scored (key {letter}). Right button or Shift+{letter}: count a \
                      vote."
                 );
                 let button = button.on_hover_text(hover);
+                tell(&button, egui::Role::Button, &spoken);
                 if button.clicked() {
                     action = Some(LessonAction::Choose(option));
                 } else if button.secondary_clicked() {

@@ -139,8 +139,8 @@ impl Session {
             return Err("The best stops are searched for once the scene can be run.");
         }
         if matches!(self.scene().stops, Stops::Uneven { .. }) {
-            return Err("The best stops are searched for where both stand equally far out: switch off \
-                        “different stops left and right” under Advanced first.");
+            return Err("The best stops are searched for where both stand equally far out: under More, \
+                        Advanced, switch off “different stops left and right”.");
         }
         let reach = reach(info(LIMIT).ok_or("")?, self);
         let axis = SweepAxis { field: LIMIT.to_owned(), ..SweepAxis::default() };

@@ -179,6 +179,8 @@ methods! {
     action(style) -> Color32 = style.pick(hex(0x17689f), hex(0x2272a8));
     on_action(style) -> Color32 = style.pick(hex(0xffffff), hex(0xffffff));
     mass(_style) -> Color32 = ORANGE;
+    /// A pinned motion.
+    pin(style) -> Color32 = style.colour(Role::Pin(0));
     /// Text about the proof mass.
     mass_ink(style) -> Color32 = style.pick(rgb(140, 92, 0), ORANGE);
     mass_edge(style) -> Color32 = style.pick(rgb(122, 84, 0), rgb(255, 214, 128));
@@ -198,7 +200,7 @@ methods! {
     /// The potential without the push.
     ghost_stroke(style) -> Stroke = style.stroke(Role::Reference);
     /// The outline of a pinned motion's mass.
-    ghost_mass_stroke(style) -> Stroke = Stroke::new(style.width(1.8), style.mass_ink());
+    ghost_mass_stroke(style) -> Stroke = Stroke::new(style.width(1.8), style.pin());
     /// The height of the barrier where energies are compared with it.
     barrier_stroke(style) -> Stroke = Stroke::new(style.width(2.0), style.ink());
     /// Frame of the widget with the keyboard focus.
@@ -253,8 +255,9 @@ pub fn install(ctx: &egui::Context) {
         spacing.interact_size.y = CONTROL;
         spacing.item_spacing = egui::vec2(8.0, 4.0);
         spacing.button_padding = egui::vec2(8.0, 4.0);
-        // scroll bars are always visible
-        spacing.scroll = egui::style::ScrollStyle { bar_width: 7.0, ..egui::style::ScrollStyle::solid() };
+        // scroll bars are always visible, in the colour of text, since that of a button is the ground's
+        let solid = egui::style::ScrollStyle::solid();
+        spacing.scroll = egui::style::ScrollStyle { bar_width: 5.0, foreground_color: true, ..solid };
         paint(&mut style.visuals, Style { dark, projector: false });
     });
 }

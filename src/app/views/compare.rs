@@ -119,7 +119,7 @@ fn heading_ui(ui: &mut Ui, context: &ViewContext<'_>, pin: &Pin, width: f32) -> 
         };
         let hover = format!("{letter}: {kind}. In brackets: how much more or less it is than now.");
         let name = if pin.kind == PinKind::Twin { format!("{letter} twin") } else { letter.to_string() };
-        ui.label(RichText::new(name).heading()).on_hover_text(hover);
+        ui.label(RichText::new(name).heading().color(context.style.pin())).on_hover_text(hover);
         let hover = "The scene as it is in this pin: one step that can be undone. The motion goes on from \
                      where it is.";
         let other = pin.scene != *context.session.scene();

@@ -6,7 +6,6 @@
 use eframe::egui::{self, Align, Align2, Layout, Rect, RichText, Sense, Stroke, Ui, pos2, vec2};
 
 use crate::app::ui::style::Style;
-use crate::app::words::numbers::UNKNOWN;
 use crate::dynamics::LiveLedger;
 use crate::output::{
     LedgerTerm, ledger_bars, ledger_decimals, ledger_number, share_of_work, suited_unit, three_digits,
@@ -32,6 +31,8 @@ const ROWS: (f32, f32) = (17.0, 30.0);
 
 /// Number of rows of the view, including the headings and the bar of the present energy.
 const COUNT: f32 = 10.0;
+/// A larger unit is taken where a number has this value.
+const MANY: f64 = 1e4;
 
 /// Height in points of the names below the bar of the present energy.
 const LEGEND: f32 = 11.0;
@@ -80,11 +81,11 @@ pub fn energy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         (last_period, "last period", "The last whole forcing period. Steady motion repeats it."),
     ];
     // both headings are short if a long one would overlap the other
-    let width = |text: &str| {
+    let width = |ui: &Ui, text: &str| {
         let font = egui::TextStyle::Body.resolve(ui.style());
         ui.painter().layout_no_wrap(text.to_owned(), font, style.faint()).size().x
     };
-    if shaken && heads.iter().any(|head| width(head.1) > column - GAP) {
+    if shaken && heads.iter().any(|head| width(ui, head.1) > column - GAP) {
         (heads[0].1, heads[1].1) = ("total", "period");
     }
     let heads = &heads[..if shaken { 2 } else { 1 }];
@@ -96,6 +97,8 @@ pub fn energy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let all = heads.iter().map(|head| &head.0).chain(ghosts).flatten();
     let energies = all.flat_map(|ledger| LedgerTerm::ALL.map(|term| (term.energy)(ledger).abs()));
     let largest = energies.fold(0.0, f64::max);
+    // of a long motion
+    let (unit, name) = if largest < MANY * unit { (unit, name) } else { unit_of(largest) };
     let mut y = area.top();
     for (i, (_, head, hover)) in heads.iter().rev().enumerate() {
         let rect = cell(area.left() + NAMES + column * i as f32, y, column, row);
@@ -115,9 +118,10 @@ pub fn energy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         let rect = cell(area.left() + NAMES + column * place, y, column, height);
         let Some(ledger) = ledger else {
             let hover = "Not kept: a whole period has to pass while this view is open.";
-            for part in (0..terms.len()).map(|i| cell(rect.left(), y + row * i as f32, column, row)) {
-                let nothing = RichText::new(UNKNOWN).color(style.faint());
-                put_ui(ui, part.with_min_x(part.right() - NUMBERS), nothing, Align::Max, hover);
+            for (i, text) in ["after one", "more period"].into_iter().enumerate() {
+                let part = cell(rect.left(), y + row * i as f32, column, row);
+                let text = RichText::new(text).font(style.small()).color(style.faint());
+                put_ui(ui, part.with_min_x(part.right() - NUMBERS), text, Align::Max, hover);
             }
             continue;
         };
@@ -134,6 +138,7 @@ pub fn energy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
             whole.residual_j()
         );
         let text = format!("{} % of the energy accounted for", accounted(residual));
+        let text = if width(ui, &text) > area.width() { text.replace("of the energy ", "") } else { text };
         put_ui(ui, cell(area.left(), y, area.width(), row), RichText::new(text), Align::Min, &hover);
     }
     y += 1.3 * row;

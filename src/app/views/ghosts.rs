@@ -87,21 +87,27 @@ impl Ghost {
         let turn = std::f32::consts::TAU / CIRCLE_SEGMENTS as f32;
         let point = |i: usize| at + radius * Vec2::angled(i as f32 * turn);
         let ring: Vec<Pos2> = (0..=CIRCLE_SEGMENTS).map(point).collect();
-        self.outline(painter, style, &ring, at - vec2(0.0, radius));
+        self.outline(painter, style, &ring);
+        self.letter(painter, style, (at - vec2(0.0, radius + 2.0), Align2::CENTER_BOTTOM));
     }
 
     /// Draws the mass as a dashed box with its letter.
     pub fn body(&self, painter: &Painter, style: &Style, body: Rect) {
         let corners = [body.left_top(), body.right_top(), body.right_bottom(), body.left_bottom()];
         let outline: Vec<Pos2> = corners.into_iter().chain([body.left_top()]).collect();
-        self.outline(painter, style, &outline, body.center_top());
+        self.outline(painter, style, &outline);
+        // clear of the flexures
+        self.letter(painter, style, (body.center(), Align2::CENTER_CENTER));
     }
 
-    fn outline(&self, painter: &Painter, style: &Style, path: &[Pos2], top: Pos2) {
+    fn letter(&self, painter: &Painter, style: &Style, (at, align): (Pos2, Align2)) {
+        let place = (at + vec2(self.aside, 0.0), align);
+        haloed(painter, style, place, PINNED[self.place], (style.small(), style.pin()));
+    }
+
+    fn outline(&self, painter: &Painter, style: &Style, path: &[Pos2]) {
         painter.add(Shape::line(path.to_vec(), Stroke::new(4.0, style.ground().gamma_multiply(0.7))));
         painter.extend(dashed(path, self.place, style.ghost_mass_stroke()));
-        let at = (top + vec2(self.aside, -2.0), Align2::CENTER_BOTTOM);
-        haloed(painter, style, at, PINNED[self.place], (style.small(), style.mass_ink()));
     }
 
     /// Draws its stops as dashed lines over the height of `rect`, where they differ from the present ones.

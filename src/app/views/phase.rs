@@ -153,7 +153,12 @@ pub(super) fn starts(painter: &egui::Painter, context: &ViewContext<'_>, pane: &
 
 /// Button in the row of the legend that hides the path.
 fn points_ui(ui: &mut Ui, area: egui::Rect, points_only: &mut bool) {
-    let right = LegendRow::of(ui, area).right - 4.0;
+    let free = LegendRow::of(ui, area);
+    let right = free.right - 4.0;
+    // a view over the whole window (Z) has room for it
+    if right - free.left < BUTTON {
+        return;
+    }
     let row = area.with_max_y(area.top() + LegendRow::HEIGHT).with_max_x(right);
     let layout = egui::Layout::right_to_left(egui::Align::Center);
     let builder = egui::UiBuilder::new().max_rect(row).layout(layout);

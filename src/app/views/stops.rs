@@ -1,10 +1,10 @@
 //! Stops as walls that can be dragged, in every view with the shared x axis.
 
-use eframe::egui::{self, Align2, CursorIcon, Painter, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
+use eframe::egui::{self, Align2, CursorIcon, Painter, Pos2, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
 
 use crate::app::session::Session;
 use crate::app::session::sliders::reach;
-use crate::app::ui::style::{BALL, GRAB};
+use crate::app::ui::style::{BALL, GRAB, colour};
 use crate::app::ui::widgets::arrows;
 use crate::app::words::fields::info;
 use crate::app::words::numbers::{decimal, decimals, shown, with_minus};
@@ -78,13 +78,26 @@ pub(super) fn travel_limits(painter: &Painter, context: &ViewContext<'_>, rect: 
     for (x, ..) in &limits {
         taken.lines.push(vec![pos2(*x, rect.top()), pos2(*x, rect.bottom())]);
     }
-    for (x, side, text) in &limits {
-        // outside of the wall, clear of the mass at it
-        let places = [(BALL + 5.0, -side), (-4.0, *side)].map(|(aside, towards)| {
-            let align = if towards > 0.0 { Align2::RIGHT_TOP } else { Align2::LEFT_TOP };
-            (text.as_str(), pos2(x + side * aside, rect.top() + 4.0), align)
-        });
-        taken.write(painter, rect, look.clone(), places);
+    // outside of a wall it is clear of the mass there
+    let place = |((x, side, text), is_outside): (&(f32, f32, String), bool)| {
+        let (aside, towards) = if is_outside { (BALL + 5.0, -side) } else { (-4.0, *side) };
+        let align = if towards > 0.0 { Align2::RIGHT_TOP } else { Align2::LEFT_TOP };
+        (text.clone(), pos2(x + side * aside, rect.top() + 4.0), align)
+    };
+    let area = |(text, at, align): &(String, Pos2, Align2)| {
+        align.anchor_size(*at, painter.layout_no_wrap(text.clone(), look.0.clone(), look.1).size())
+    };
+    // both of them or none
+    for are_outside in [[true; 2], [false; 2], [true, false], [false, true]] {
+        let places: Vec<_> = limits.iter().zip(are_outside).map(place).collect();
+        let areas: Vec<Rect> = places.iter().map(area).collect();
+        let are_apart = areas.windows(2).all(|pair| !pair[0].expand(4.0).intersects(pair[1]));
+        if are_apart && areas.iter().all(|area| rect.contains_rect(*area) && taken.is_free(*area)) {
+            for (text, at, align) in &places {
+                taken.write(painter, rect, look.clone(), [(text.as_str(), *at, *align)]);
+            }
+            return;
+        }
     }
 }
 
@@ -140,8 +153,15 @@ fn walls_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect, (top, bottom
         let id = ui.scope_id().with(name);
         let style = context.style;
         let painter = ui.painter().with_clip_rect(rect);
-        painter.rect_filled(wall, 0.0, style.stop());
-        painter.extend(hatching(wall, side, Stroke::new(1.0, style.ground())));
+        if radius > 0.0 {
+            painter.rect_filled(wall, 0.0, style.stop());
+            painter.extend(hatching(wall, side, Stroke::new(1.0, style.ground())));
+        } else {
+            // as in a chart
+            painter.rect_filled(wall, 0.0, colour(style.theme().wall_fill()));
+            painter.extend(hatching(wall, side, Stroke::new(1.0, style.stop())));
+            painter.line_segment([pos2(x, top), pos2(x, bottom)], style.stop_stroke());
+        }
         if !movable {
             let at = limit_number(context.session, mm);
             let then = match context.drawn {

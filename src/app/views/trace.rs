@@ -155,7 +155,7 @@ pub fn trace_ui(ui: &mut Ui, quantity: TraceQuantity, context: &mut ViewContext<
         let value = quantity.value_in(&pin.watch, &pin.watch.state_at(end));
         if let Some(at) = pane.place(0, (end, value.clamp(low, high))).filter(|_| value.is_finite()) {
             let at = at + vec2(LETTER * (i as f32 + 0.5), 0.0);
-            painter.text(at, Align2::CENTER_CENTER, pin.letter, style.small(), style.ink());
+            painter.text(at, Align2::CENTER_CENTER, pin.letter, style.small(), style.pin());
         }
     }
     let pass = ui.ctx().cumulative_pass_nr();

@@ -158,7 +158,9 @@ fn chart(
 ) -> Chart {
     let mut panel = Panel::new(axes.0, axes.1);
     let differing = differing(fine, panel.y.high - panel.y.low);
-    panel.layer(Role::Closer, "hysteresis", Marks::Spans(differing));
+    if !differing.is_empty() {
+        panel.layer(Role::Closer, "hysteresis", Marks::Spans(differing));
+    }
     panel.draw(Role::Drive, Marks::Verticals(here.into_iter().collect()));
     // the dots of the way up lie in the rings of the way down
     for (i, role, name) in [(1, Role::Down, "turned down"), (0, Role::Motion, "turned up")] {
@@ -228,16 +230,15 @@ fn picture_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axis: &SweepAxis, area
     };
     let pointed = pane.response.hover_pos().and_then(|at| pane.values_at(0, at));
     let is_same = is_whole && current && !fine[0].is_empty() && differing(&fine, high - low).is_empty();
-    if pointed.is_none() && is_same {
-        let at = frame.right_top() + vec2(-6.0, 4.0);
-        write(at, Align2::RIGHT_TOP, "the same motion both ways", style.faint());
+    let pointed = pointed.map(|values| values.0.clamp(axis.from, axis.to));
+    if let Some(at) = pointed.and_then(|value| pane.place(0, (value, low))) {
+        child.painter().vline(at.x, frame.y_range(), egui::Stroke::new(1.0, style.faint()));
     }
-    if let Some((value, _)) = pointed {
-        let text =
-            reading(&branches, value.clamp(axis.from, axis.to), quantity, name_and_unit(&axis.field).1);
-        if let Some(at) = pane.place(0, (value.clamp(axis.from, axis.to), low)) {
-            child.painter().vline(at.x, frame.y_range(), egui::Stroke::new(1.0, style.faint()));
-        }
+    let text = match pointed {
+        Some(value) => Some(reading(&branches, value, quantity, name_and_unit(&axis.field).1)),
+        None => is_same.then(|| "the same motion both ways".to_owned()),
+    };
+    if let Some(text) = text {
         let size = ui.painter().layout_no_wrap(text.clone(), style.small(), style.ink()).size();
         let corners = [
             (frame.right_top() + vec2(-4.0, 4.0), Align2::RIGHT_TOP),

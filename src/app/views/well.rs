@@ -111,10 +111,11 @@ pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     all.iter().for_each(|ghost| ghost.stops(&painter, context, frame, 0.0));
     let mut taken = Taken::default();
     landmarks(&painter, context, (&pane, frame), &level, &mut taken);
-    travel_limits(&painter, context, frame, &mut taken);
     let at = on_curve(state.x, &tipped);
     stops_ui(ui, context, frame, (frame.top() + 4.0, frame.bottom()), 0.0);
     mass_ui(ui, context, at, frame);
+    // over the mass, which may pass them
+    travel_limits(&painter, context, frame, &mut taken);
     // drawn after the stops, since their letters may overlap one; whole at an end of an axis
     let over = ui.painter().with_clip_rect(frame.expand(BALL + 1.0).intersect(area));
     balls.iter().for_each(|(at, ghost)| ghost.ball(&over, &style, *at, BALL));

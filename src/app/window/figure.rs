@@ -50,6 +50,9 @@ pub struct Figures {
     job: Background<FigureOrder, WriteResult>,
 }
 
+/// Panels of a run that are chosen side by side.
+const PANELS_IN_ROW: usize = 4;
+
 impl Figures {
     /// No figure, and the layout with which the first one begins.
     pub(super) fn new() -> Self {
@@ -178,6 +181,9 @@ impl Figures {
             _ => "",
         }
         .to_owned();
+        if !panels(view).is_empty() && !session.pins.all().is_empty() {
+            words += " Pinned motions are not drawn.";
+        }
         let data = path.with_extension("csv");
         if files::exists(path) || self.data && files::exists(&data) {
             words += " A file of that name exists and will be replaced.";
@@ -305,14 +311,20 @@ impl Figures {
         let mut fields = vec![path.inner, width, font];
         if !panels(view).is_empty() {
             ui.label("Panels");
-            ui.horizontal_wrapped(|ui| {
-                for (panel, is_shown) in RunPanel::ALL.into_iter().zip(&mut self.panels) {
-                    let name = match panel {
-                        RunPanel::Acceleration => BASE_ACCELERATION,
-                        RunPanel::Portrait => "phase portrait",
-                        panel => panel.name(),
-                    };
-                    ui.checkbox(is_shown, name);
+            // not wrapped: a grid gives a wrapped row the height of one
+            let mut all = RunPanel::ALL.into_iter().zip(&mut self.panels);
+            ui.vertical(|ui| {
+                while all.len() > 0 {
+                    ui.horizontal(|ui| {
+                        for (panel, is_shown) in all.by_ref().take(PANELS_IN_ROW) {
+                            let name = match panel {
+                                RunPanel::Acceleration => BASE_ACCELERATION,
+                                RunPanel::Portrait => "phase portrait",
+                                panel => panel.name(),
+                            };
+                            ui.checkbox(is_shown, name);
+                        }
+                    });
                 }
             });
             ui.end_row();

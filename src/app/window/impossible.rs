@@ -28,7 +28,7 @@ impl Window {
             C::Pin(_) => (in_lesson, "In a lesson no motion is pinned: leave the lesson first"),
             C::Ways => (in_lesson, "There is no hint here: a task has one, until it is done"),
             C::Choose(Wanted::Measured) => (in_lesson, "Leave the lesson first"),
-            C::BestStops if in_lesson => (true, "The best stops may be an answer: leave the lesson first"),
+            C::BestStops if in_lesson => (true, "In a lesson no best stops are searched for"),
             C::BestStops => (!session.model().is_shaken(), "Nothing shakes the mass: shake it first."),
             C::LeaveLesson | C::LessonAnew | C::LecturerNotes => (!in_lesson, "No lesson is open"),
             C::ArrangeOwn => (

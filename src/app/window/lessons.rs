@@ -14,7 +14,7 @@ use crate::app::session::lesson::{OpenLesson, Records, Turn, answers_text};
 use crate::app::ui::style::Style;
 use crate::app::ui::widgets::{bare, close_ui, dialog_ui, panel_frame, primary};
 use crate::app::views::{Cover, Memory, View};
-use crate::app::words::lesson::{bold_words, letter, numbered, question};
+use crate::app::words::lesson::{bold_words, letter, numbered, question, solved};
 use crate::questions::Error;
 use crate::scene::lesson::{BuiltInLesson, LessonDocument, LessonError, Step};
 use crate::scene::{Document, PRESETS, is_link, linked_lesson};
@@ -246,6 +246,7 @@ impl Window {
         // the result appears in the strip, which a view over the whole window hides
         self.filled = self.filled.filter(|_| matches!(act, LessonAction::Vote(..)));
         self.lessons.asked = self.lessons.asked.filter(|_| act == LessonAction::Next);
+        let mut skipped = None;
         let turn = match act {
             LessonAction::Choose(option) => lesson.choose(option),
             LessonAction::Back => lesson.go_back(),
@@ -265,7 +266,13 @@ impl Window {
                     (false, None) => "The last step: Enter finishes the lesson".to_owned(),
                 });
             }
-            LessonAction::Next => {
+            LessonAction::Next if !lesson.may_go_on() && self.lessons.asked != Some(lesson.number()) => {
+                self.lessons.asked = Some(lesson.number());
+                return self.messages.notify("The task is not done: PageDown once more shows it solved");
+            }
+            LessonAction::Next | LessonAction::Skip => {
+                self.lessons.asked = None;
+                skipped = (!lesson.may_go_on()).then(|| solved(lesson.solution()));
                 let turn = lesson.go_on();
                 // where nothing shakes the mass, a step speaks of the motion from its start
                 if matches!(turn, Turn::Same) && !self.session.model().is_shaken() {
@@ -293,6 +300,9 @@ impl Window {
             }
         };
         self.take_turn(turn);
+        if let Some(solution) = skipped {
+            self.messages.notify(format!("The task is shown solved{solution}"));
+        }
     }
 
     /// Leaves the lesson with one sentence of what was learnt.

@@ -87,6 +87,9 @@ impl Window {
             }
             Command::Arrange(layout) => {
                 self.show_arrangement(Arrangement::Layout(layout));
+                if layout == Layout::Map {
+                    self.tiling.show_in_front(View::Map);
+                }
                 // the other studies need shaking that repeats
                 if layout == Layout::Explore && !self.session.model().repeats() {
                     self.tiling.show_beside(View::Spectrum, View::UpAndDown);

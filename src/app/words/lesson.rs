@@ -1,7 +1,7 @@
 //! Sentences of a lesson: predictions and their outcomes, the verdict on a task, bold words.
 
 use super::fields::name_and_unit;
-use super::numbers::three;
+use super::numbers::{three, with_minus};
 use crate::app::words::capital;
 use crate::scene::Start;
 use crate::scene::lesson::{Condition, Lesson};
@@ -67,6 +67,16 @@ pub fn script(notes: &str) -> Vec<(f64, &str, &str)> {
     lines.push((from, written, notes[begin..].trim()));
     lines.retain(|line| !line.2.is_empty());
     lines
+}
+
+/// The numbers of a solution, after a colon; nothing if a field has no number.
+pub fn solved(solution: &[(String, String)]) -> String {
+    let one = |(path, value): &(String, String)| {
+        let (name, unit) = name_and_unit(path);
+        value.parse::<f64>().ok().map(|_| format!("{name} {} {unit}", with_minus(value)))
+    };
+    let all: Option<Vec<String>> = solution.iter().map(one).collect();
+    all.map_or_else(String::new, |all| format!(": {}", all.join(", ")))
 }
 
 /// On what a task is judged, in a scene with this start, by a goal that names so many starts.

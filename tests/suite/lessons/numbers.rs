@@ -125,7 +125,7 @@ fn wells_and_hill() {
     let ends = |v: f64| (flick(v).crossings, flick(v).final_x > 0.0);
     assert_eq!((ends(0.365), ends(0.37), ends(0.44)), ((0, true), (1, false), (2, true)));
     told.says("at 0.37 m/s. Follow it in **Displacement**: it gets over the hill once");
-    told.says("and so it takes 0.37 m/s");
+    told.says("so that one crossing takes 0.37 m/s");
     told.says("a harder flick in the same direction, 0.44 m/s");
     assert_eq!((ends(0.473).0, ends(0.474).0, ends(0.5).0, ends(0.53).0), (2, 3, 3, 3));
     assert_eq!(ends(0.54), (4, true));

@@ -18,6 +18,8 @@ const SUBTITLE_LINE: f64 = 36.0;
 /// Line height of the legend, and the room after it.
 const ROW: f64 = 38.0;
 const AFTER_LEGEND: f64 = 10.0;
+/// Room between the row of a title and a legend below it.
+const UNDER_TITLE: f64 = 6.0;
 /// Width of a sample in the legend.
 const SAMPLE: f64 = 44.0;
 /// Distance from a sample to its text.
@@ -197,7 +199,7 @@ impl Chart {
         let mut top = 0.0;
         if let Some(room) = room {
             if room.rows < left && !legend.is_one_row(width - left - margin - beside) {
-                (left, top) = (room.rows, ROW);
+                (left, top) = (room.rows, ROW + UNDER_TITLE);
                 legend = Legend::new(&named, width - left - margin, 0.0);
             }
             legend = legend.within(height - top);

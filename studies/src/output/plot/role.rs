@@ -137,7 +137,7 @@ pub enum Role {
 }
 
 /// Dash and gap of the pinned motions, by which they can be distinguished.
-const PINS: [(f64, f64); 3] = [(36.0, 14.0), (4.5, 9.0), (14.0, 9.0)];
+const PINS: [(f64, f64); 3] = [(24.0, 9.0), (4.5, 9.0), (14.0, 9.0)];
 
 /// Strength of the oldest part of a motion that fades.
 const FAINTEST: f64 = 0.12;
@@ -262,9 +262,7 @@ impl Theme {
             Role::Apart => Look { dash: Some(style::SHORT_DASH), ..fine(self.shaking) },
             Role::Past(age) => fine(self.faded(self.ink, age)),
             Role::Jump(age) => Look { dash: Some(style::SHORT_DASH), ..fine(self.faded(self.impact, age)) },
-            Role::Pin(place) => {
-                Look { dash: Some(PINS[place % PINS.len()]), ..fine(self.ink.over(self.paper, 0.6)) }
-            }
+            Role::Pin(place) => Look { dash: Some(PINS[place % PINS.len()]), ..of(self.second) },
         }
     }
 
