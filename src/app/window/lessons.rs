@@ -10,7 +10,7 @@ use crate::app::panels::hint::Hint;
 use crate::app::panels::lesson::{LessonAction, lesson_ui, navigation_ui};
 use crate::app::session::Session;
 use crate::app::session::editor::Editor;
-use crate::app::session::lesson::{OpenLesson, Records, Turn, answers_text};
+use crate::app::session::lesson::{OpenLesson, Records, Turn};
 use crate::app::ui::style::Style;
 use crate::app::ui::widgets::{bare, close_ui, dialog_ui, panel_frame, primary};
 use crate::app::views::{Cover, Memory, View};
@@ -485,13 +485,6 @@ impl Window {
             } else if let Some(rect) = view_named(&word).and_then(|view| self.tiling.place_of(view)) {
                 painter.rect_stroke(rect, 4.0, stroke, StrokeKind::Inside);
             }
-        }
-    }
-
-    pub(super) fn copy_answers(&mut self, ctx: &egui::Context) {
-        match answers_text(&self.records()) {
-            Some(text) => self.messages.copy(ctx, text, "your answers as text"),
-            None => self.messages.notify("There are no answers yet"),
         }
     }
 }

@@ -5,6 +5,7 @@ use eframe::egui::{self, gui_zoom};
 use crate::app::export;
 use crate::app::panels::hint;
 use crate::app::panels::transport::EVENT_AHEAD;
+use crate::app::session::lesson::answers_text;
 use crate::app::session::measured::MeasuredData;
 use crate::app::session::pins::PinKind;
 use crate::app::session::player::{Goal, SPEEDS};
@@ -143,6 +144,13 @@ impl Window {
             Command::Notes => self.show_notes(),
             Command::Shortcuts => self.shortcuts = Some(ctx.input(|input| input.time)),
             Command::About => self.messages.alert("interwell", ABOUT),
+        }
+    }
+
+    fn copy_answers(&mut self, ctx: &egui::Context) {
+        match answers_text(&self.records()) {
+            Some(text) => self.messages.copy(ctx, text, "your answers as text"),
+            None => self.messages.notify("There are no answers yet"),
         }
     }
 

@@ -116,8 +116,9 @@ impl<const W: usize> Columns<W> {
         self.take(&taken, &to, (&low, &high), &squared, trial);
         (trial.length, trial.end, trial.at, trial.unit, trial.squared) = (length, end, at, unit, squared);
     }
-    /// The lanes in which a step of this `length`, which ends `at` this time with the velocity `v`, is accurate
-    /// and ends before the border of its window, and the time up to that border.
+
+    /// The lanes in which a step of this `length` is accurate and ends before the border of its window, and
+    /// the time up to that border. The step ends `at` this time with the velocity `v`.
     #[inline(always)]
     fn candidates(
         &self,
