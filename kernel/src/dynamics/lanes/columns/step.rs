@@ -1,21 +1,14 @@
 //! One step of all lanes. It must stay equal to the bit with the two event-free steps of a single motion, see
 //! `run/event_free.rs`.
 
+use super::Columns;
 use super::landing::Arrivals;
-use super::{Clocks, Columns};
 use crate::dynamics::drive::tone::Harmonic;
 use crate::dynamics::lanes::trial::Trial;
 use crate::dynamics::record::event_free::MARGIN;
 use crate::dynamics::series::{Series, natural_steps, polynomial};
 use crate::dynamics::step::chord::{CLEARANCE, Chord};
 use crate::numeric::{GaussLegendre, Lanes, Number};
-
-/// The lanes that take a step; those that end it at a break of the force, and those that pass the barrier.
-struct Taken<const W: usize> {
-    any: [bool; W],
-    to_break: [bool; W],
-    across: [bool; W],
-}
 
 impl<const W: usize> Columns<W> {
     /// Computes one step in all lanes, and takes it in the lanes where it is event-free, up to a break if it
@@ -43,7 +36,17 @@ impl<const W: usize> Columns<W> {
         let sum = (end.acceleration + self.damping * end.v) + base;
         let residual = (self.force.at(end.y) + sum).abs() * length;
 
-        let (candidate, left) = self.candidates((&length, &at), &end.v, &residual, &mut trial.holds);
+        let (mut candidate, mut left) = ([false; W], length);
+        for (lane, candidate) in candidate.iter_mut().enumerate() {
+            let (length, period) = (length.0[lane], self.period.0[lane]);
+            let cycles = self.border.cycle.0[lane] - self.at.cycle.0[lane];
+            let to_border = cycles * period + (self.border.phase.0[lane] - self.at.phase.0[lane]);
+            left.0[lane] = to_border - MARGIN * period;
+            trial.holds[lane] = (residual.0[lane] <= self.allowed.0[lane]) & (length > 0.0);
+            let early = (length < left.0[lane]) & (at.phase.0[lane] < period);
+            let finite = end.v.0[lane].abs() < f64::INFINITY;
+            *candidate = self.active[lane] & trial.holds[lane] & early & finite;
+        }
         let (x, acceleration) = (end.y + self.origin, end.acceleration);
         let mut to = Arrivals { length, x, v: end.v, acceleration, at, unit };
         let landed = self.land(&candidate, y, &end.bound, &mut to);
@@ -112,51 +115,12 @@ impl<const W: usize> Columns<W> {
                 event_free[lane] &= !turning[lane] | turned[lane];
             }
         }
-        let taken = Taken { any: event_free, to_break: landed, across: crosses };
-        self.take(&taken, &to, (&low, &high), &squared, trial);
-        (trial.length, trial.end, trial.at, trial.unit, trial.squared) = (length, end, at, unit, squared);
-    }
-
-    /// The lanes in which a step of this `length` is accurate and ends before the border of its window, and
-    /// the time up to that border. The step ends `at` this time with the velocity `v`.
-    #[inline(always)]
-    fn candidates(
-        &self,
-        (length, at): (&Lanes<W>, &Clocks<W>),
-        v: &Lanes<W>,
-        residual: &Lanes<W>,
-        holds: &mut [bool; W],
-    ) -> ([bool; W], Lanes<W>) {
-        let (mut candidate, mut left) = ([false; W], *length);
-        for (lane, candidate) in candidate.iter_mut().enumerate() {
-            let (length, period) = (length.0[lane], self.period.0[lane]);
-            let cycles = self.border.cycle.0[lane] - self.at.cycle.0[lane];
-            let to_border = cycles * period + (self.border.phase.0[lane] - self.at.phase.0[lane]);
-            left.0[lane] = to_border - MARGIN * period;
-            holds[lane] = (residual.0[lane] <= self.allowed.0[lane]) & (length > 0.0);
-            let early = (length < left.0[lane]) & (at.phase.0[lane] < period);
-            let finite = v.0[lane].abs() < f64::INFINITY;
-            *candidate = self.active[lane] & holds[lane] & early & finite;
-        }
-        (candidate, left)
-    }
-
-    /// Takes the step in these lanes, and says of every lane what came of it.
-    #[inline(always)]
-    fn take(
-        &mut self,
-        lanes: &Taken<W>,
-        to: &Arrivals<W>,
-        (low, high): (&Lanes<W>, &Lanes<W>),
-        squared: &Lanes<W>,
-        trial: &mut Trial<W>,
-    ) {
         for lane in 0..W {
-            let (taken, inside, length) = (lanes.any[lane], self.inside[lane], to.length.0[lane]);
+            let (taken, inside, length) = (event_free[lane], self.inside[lane], to.length.0[lane]);
             trial.taken[lane] = taken;
             trial.stopped[lane] = !taken & self.active[lane];
-            trial.passed[lane] = taken & lanes.to_break[lane];
-            trial.measured[lane] = inside & !lanes.to_break[lane];
+            trial.passed[lane] = taken & landed[lane];
+            trial.measured[lane] = inside & !landed[lane];
 
             let measured = taken & inside;
             let (squared, covered) =
@@ -168,7 +132,7 @@ impl<const W: usize> Columns<W> {
             set(&mut self.squared.carry.0[lane], squared.1, measured);
             set(&mut self.covered.sum.0[lane], covered.0, measured);
             set(&mut self.covered.carry.0[lane], covered.1, measured);
-            let crosses = taken & lanes.across[lane];
+            let crosses = taken & crosses[lane];
             let side = self.side.0[lane];
             set(&mut self.side.0[lane], -side, crosses);
             self.crossings.0[lane] += if crosses { 1.0 } else { 0.0 };
@@ -182,5 +146,6 @@ impl<const W: usize> Columns<W> {
             set(&mut self.value.0[lane], to.unit.0.0[lane], taken);
             set(&mut self.slope.0[lane], to.unit.1.0[lane], taken);
         }
+        (trial.length, trial.end, trial.at, trial.unit, trial.squared) = (length, end, at, unit, squared);
     }
 }
