@@ -366,8 +366,9 @@ class Scene(Mapping[str, Any]):
             First and last position in m, of a function.
         tolerance : float, optional
             Largest error of the curve, relative to the largest force between the wells, 1e-10 to 0.1: at all
-            places that are compared with a function (by default 1e-8), or at the samples (by default 1e-3). A
-            smaller one needs higher degrees or more pieces.
+            places that are compared with a function (by default 1e-8), or at the samples (by default 1e-3, of
+            an identified force its ``tolerance``). A smaller one needs higher degrees or more pieces, and
+            follows the noise of samples, which makes wells of its own.
         breaks : iterable of float
             Positions in m at which a function has a corner, where they are known. Others are found.
 
@@ -404,7 +405,9 @@ class Scene(Mapping[str, Any]):
             return self._of(simulation, self)
         if range is not None:
             raise _wrong("range", _shown(range), "leave it out: samples have a first and a last position")
+        usual = 1e-3
         if isinstance(force, Table):
+            usual = getattr(force, "tolerance", None) or usual
             missing = [name for name in ("x_m", "force_n") if name not in force]
             if missing:
                 raise _wrong("force", _shown(force), f"the table has no column {missing[0]}")
@@ -413,7 +416,7 @@ class Scene(Mapping[str, Any]):
             problem = "give a function, a pair (x_m, force_n), or a table with these columns"
             raise _wrong("force", _shown(force), problem)
         x, values = _numbers("force", force[0]).tolist(), _numbers("force", force[1]).tolist()
-        relative = 1e-3 if tolerance is None else _number("tolerance", tolerance)
+        relative = usual if tolerance is None else _number("tolerance", tolerance)
         return self._of(self._simulation.with_force_samples(x, values, relative), self)
 
     def with_drive(
@@ -855,7 +858,8 @@ class Scene(Mapping[str, Any]):
             Step between the values that are tried first; by default a 200th of the range. A window narrower
             than a step can be missed; a smaller one costs more runs.
         resolution : float, optional
-            How closely the threshold is located, in the unit of the field; by default a thousandth of a step.
+            How closely the threshold is located, in the unit of the field; by default a thousandth of a step,
+            with ``probability`` a step.
         over : mapping of str to array_like of float, optional
             Fields and their values: a row for each cell.
         until_settled : float, optional
@@ -1593,7 +1597,7 @@ def identify(
     >>> round(decay.summary["damping_ratio"]["value"], 4)
     0.02
     """
-    answer, summary = _interwell.identify(
+    answer, summary, known = _interwell.identify(
         os.fspath(path),
         of,
         [time, time_unit],
@@ -1605,4 +1609,4 @@ def identify(
         [_real("left_mm", left_mm), _real("right_mm", right_mm)],
         _count("points", points),
     )
-    return Identified(answer, summary)
+    return Identified(answer, summary, known)

@@ -686,10 +686,14 @@ class Identified(Table):
         The numbers of the whole record, each a dict of ``value`` and of ``low`` and ``high``, the 95 %
         interval, which are None of a count; and ``of``, ``samples``, ``step_s``, ``jitter_s``, ``gaps``,
         ``remarks``.
+    tolerance : float or None
+        Of a force, how closely it is known: the tolerance that :meth:`Scene.with_force` takes for it.
     """
 
-    def __init__(self, answer: _interwell.Answer, summary: str) -> None:
+    def __init__(self, answer: _interwell.Answer, summary: str, tolerance: float | None) -> None:
         super().__init__(answer)
+        self.tolerance = tolerance
+        """How closely a force is known, as a share."""
         parsed = json.loads(summary)
         for key in ("arguments", "wall_s", "cpu_s"):
             parsed.pop(key, None)

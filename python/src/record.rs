@@ -27,7 +27,7 @@ pub fn identify(
     impact_times: bool,
     stops_mm: [Option<f64>; 2],
     points: Option<u32>,
-) -> PyResult<(Answer, String)> {
+) -> PyResult<(Answer, String, Option<f64>)> {
     let of = named(py, "of", of, &WhatToIdentify::ALL, WhatToIdentify::name)?;
     let question = Identify { of, time, column, position, base, between, impact_times, stops_mm, points };
     let answer = work(py, &Way::default(), |progress| {
@@ -39,10 +39,11 @@ pub fn identify(
     let identities = answer.found.summary.iter().map(Identity::describe);
     let words = std::iter::once(answer.columns.clone()).chain(identities);
     let words = words.chain(answer.found.remarks.iter().cloned()).collect();
+    let tolerance = answer.found.tolerance;
     let rows = Answer::new(py, answer.found.rows.clone(), move || caption.clone()).told(words);
     let drawn = move |_: &Table, asked: &Asked| {
         let record = (&answer.across[..], &answer.values.values[..]);
         Ok(identified_chart(of.name(), &answer.found, record, answer.values.quantity, asked.ranges))
     };
-    Ok((rows.drawn(drawn), summary))
+    Ok((rows.drawn(drawn), summary, tolerance))
 }

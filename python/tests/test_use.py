@@ -437,6 +437,23 @@ def test_an_answer_has_remarks() -> None:
     assert len(iw.Scene("duffing").exponents(periods=5).words) == 1
 
 
+def test_a_noisy_force_is_followed_as_closely_as_it_is_known(tmp_path: pathlib.Path) -> None:
+    places = np.linspace(-8e-3, 8e-3, 401)
+    pull = np.concatenate([places, places[::-1]])
+    noise = 5e-3 * np.random.default_rng(1).standard_normal(len(pull))
+    path = tmp_path / "pull.csv"
+    rows = np.column_stack([pull, -40 * pull + 8e5 * pull**3 + noise])
+    np.savetxt(path, rows, delimiter=",", header="x_m,force_n", comments="")
+    fitted = iw.identify(path, "force")
+    assert fitted.tolerance is not None and 0.01 < fitted.tolerance < 0.1
+    scene = iw.Scene("nominal-cubic").with_force(fitted)
+    assert scene["mechanism.error_n"] > 1e-3
+    wells = [place for place, is_stable in scene.equilibria if is_stable]
+    assert len(wells) == 2 and abs(wells[1] - 0.05**0.5 / 1e3**0.5) < 1e-4
+    exact = iw.Scene("nominal-cubic").with_force(fitted, tolerance=1e-3)
+    assert exact["mechanism.error_n"] < scene["mechanism.error_n"]
+
+
 def test_texts_at_random_make_no_panic() -> None:
     texts = [path.read_bytes() for path in sorted((ROOT / "tests/corpus/scene").iterdir())]
     chance = random.Random(7)

@@ -254,6 +254,21 @@ fn the_command_writes_one_row_the_same_for_any_jobs_and_says_what_it_found() {
     }
 }
 
+/// Averages of a motion without a period are those of a window, and a best one among them is said to be so.
+#[test]
+fn a_best_motion_that_does_not_repeat_is_said_to_be_uncertain() {
+    let said = |restitution: f64| {
+        let line = format!(
+            "best paper --set stops.restitution={restitution} --over stops.travel_limit_mm=2.2:2.35:0.03"
+        );
+        let output = headless(&line).assert().success().get_output().clone();
+        String::from_utf8(output.stderr).unwrap()
+    };
+    let words = "the motion there does not repeat: followed for twice as long it gives 0.";
+    assert!(said(0.9964).contains(words), "{}", said(0.9964));
+    assert!(!said(0.36).contains("does not repeat"), "{}", said(0.36));
+}
+
 /// Every number that is said has its unit, and a constraint is spoken of only where there is one.
 #[test]
 fn what_is_said_has_units() {

@@ -272,7 +272,7 @@ fn below_ui(
         }
         Step::Do { .. } => {
             let starts = lesson.step().conditions().into_iter().flat_map(Condition::all_starts).count();
-            let how = judged_by(lesson.lesson(), session.scene().start, starts);
+            let how = judged_by(lesson.lesson(), session.scene().start, starts, session.is_continued);
             let task = lesson.task(session);
             let is_met = matches!(task, TaskState::Met);
             let (state, color) = match task {

@@ -4,7 +4,7 @@ use eframe::egui::{self, Align2, Ui, UiBuilder, vec2};
 
 use crate::app::session::explore::Level;
 use crate::app::ui::widgets::tell;
-use crate::app::words::numbers::three;
+use crate::app::words::numbers::{three, with_minus};
 use crate::output::{Cell, Chart, Panel, PlotAxis, Role};
 
 use super::hand::axes_input;
@@ -90,7 +90,7 @@ fn pointer_ui(ui: &Ui, context: &mut ViewContext<'_>, pane: &Pane, level: &Level
     };
     let target = words().map_or("to no known attractor".to_owned(), |words| format!("to {words}"));
     let coarse = if is_whole { "" } else { " (coarse)" };
-    let text = format!("{} mm, {} mm/s: {target}{coarse}", three(x_mm), three(v * 1e3));
+    let text = with_minus(&format!("{} mm, {} mm/s: {target}{coarse}", three(x_mm), three(v * 1e3)));
     let at = (frame.right_bottom() - vec2(6.0, 4.0), Align2::RIGHT_BOTTOM);
     plated(ui.painter(), &context.style, at, &text, (context.style.small(), context.style.ink()));
     if pane.response.clicked() {

@@ -461,6 +461,8 @@ impl Window {
         else {
             return;
         };
+        // so that an outline around a control keeps clear of the views
+        let around = if compact { around } else { 2 * around };
         bare(Panel::top("controls of the lesson"), 12, around).show(ui, |ui| {
             if lesson.is_covering() {
                 ui.disable();

@@ -79,8 +79,9 @@ pub fn solved(solution: &[(String, String)]) -> String {
     all.map_or_else(String::new, |all| format!(": {}", all.join(", ")))
 }
 
-/// On what a task is judged, in a scene with this start, by a goal that names so many starts.
-pub fn judged_by(lesson: &Lesson, start: Start, starts: usize) -> String {
+/// On what a task is judged, in a scene with this start, by a goal that names so many starts. The motion that
+/// is shown is another one if the scene was changed while it went on.
+pub fn judged_by(lesson: &Lesson, start: Start, starts: usize, is_continued: bool) -> String {
     if starts > 1 {
         return format!("Judged on runs from {starts} starts.");
     }
@@ -88,7 +89,8 @@ pub fn judged_by(lesson: &Lesson, start: Start, starts: usize) -> String {
     match (&lesson.walk, lesson.seeds) {
         (Some(_), _) => "Judged on runs up and down, each from the end of the one before.".to_owned(),
         (None, Some(seeds)) => format!("Judged on {seeds} full runs {from}, each with another noise."),
-        (None, None) => format!("Judged on a full run {from}, not on the motion shown."),
+        (None, None) if is_continued => format!("Judged on a full run {from}, not on the motion shown."),
+        (None, None) => format!("Judged on a full run {from}."),
     }
 }
 

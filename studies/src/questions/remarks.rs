@@ -34,7 +34,8 @@ impl Threshold {
             let blocked = blocked(document, grid, mechanism, &scan.field);
             missing(table, &scan, self.of, grid, blocked.filter(|_| self.of != Onset::Release))
         });
-        [missing, undecided(table), without_melnikov(table)].into_iter().flatten().collect()
+        let first = self.scan(document, grid).ok().and_then(|scan| at_first(table, &scan));
+        [missing, first, undecided(table), without_melnikov(table)].into_iter().flatten().collect()
     }
 }
 
@@ -135,6 +136,17 @@ fn without_melnikov(table: &Table) -> Option<String> {
         "{rows}: it needs linear damping above 0, no current or voltage as a third state, a barrier without \
          a kink, a well whose homoclinic orbit meets neither a stop nor the end of the force curve, and a \
          drive that is not far faster than motions at the barrier"
+    ))
+}
+
+/// Explains a `value` that is the first of the range, if a row has one.
+fn at_first(table: &Table, scan: &Scan) -> Option<String> {
+    let (values, first) = (table.numbers("value")?, *scan.values.first()?);
+    let count = values.iter().filter(|value| **value == first).count();
+    let rows = of_rows(count, values.len(), ["has its value", "have their value"])?;
+    Some(format!(
+        "{rows} at {first}, the first that was tried: below it nothing is known; give a range that begins \
+         lower, and see windows for how often the answer changes above"
     ))
 }
 

@@ -106,6 +106,10 @@ fn thresholds_are_tables() {
     let words = "the row has no value: no excitation.amplitude_g that was tried from 0 to 0.5 makes";
     assert!(told(line).contains(words), "{}", told(line));
     assert_eq!(told(&format!("{line} --quiet")), "");
+    // at the first value of the range it may not begin
+    let line = "threshold paper --field stops.travel_limit_mm=2:3:0.1";
+    let words = "the row has its value at 2, the first that was tried: below it nothing is known";
+    assert!(told(line).contains(words), "{}", told(line));
     let some = "threshold paper --of release --field excitation.amplitude_g=0:0.7:0.1 \
                 --over stops.travel_limit_mm=1.5,4";
     assert!(told(some).contains("1 of 2 rows have no value"), "{}", told(some));

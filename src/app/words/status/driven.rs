@@ -77,7 +77,9 @@ impl DrivenMotion<'_> {
         match (settled, regime, steady) {
             (Some(false), Regime::Irregular, Some(true)) => " Its averages are steady.".to_owned(),
             (Some(false), Regime::Irregular, Some(false)) => " Its averages drift.".to_owned(),
-            (Some(false), _, Some(true)) => format!(" No period up to {after}; its averages are steady."),
+            (Some(false), _, Some(true)) => {
+                format!(" It does not repeat within {after}; its averages are steady.")
+            }
             (Some(false), ..) => format!(" Not settled after {after}."),
             _ => String::new(),
         }

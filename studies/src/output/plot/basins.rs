@@ -148,7 +148,10 @@ fn names(basins: &Basins, answer: &Answer) -> Vec<String> {
 
 /// Description of an attractor with its share; for random starts also the interval of the share.
 fn words(kind: &str, attractor: &Attractor, is_grid: bool) -> String {
-    let percent = |share: f64| short((1e3 * share).round() / 10.0);
+    let percent = |share: f64| match (1e3 * share).round() / 10.0 {
+        0.0 if share > 0.0 => "below 0.1".to_owned(),
+        percent => short(percent),
+    };
     let Shares { share, low, high } = attractor.share;
     let interval = || format!(" ({} to {})", percent(low), percent(high));
     let interval = if is_grid { String::new() } else { interval() };

@@ -7,7 +7,7 @@ use crate::dynamics::{Model, Outcome, Request, Run, Summary};
 use crate::mechanics::{BuildError, Mechanism};
 use crate::scene::{Fault, FieldPath, Scene, check, is_whole};
 use crate::study::Task;
-use crate::study::settled::{followed, shared_runs};
+use crate::study::settled::{followed, followed_until, settled_within, shared_runs, widened};
 use crate::system::threads::Pool;
 
 #[derive(Debug, Clone, PartialEq)]
@@ -105,6 +105,27 @@ impl<'a> Evaluator<'a> {
         });
         self.tried.lock().unwrap_or_else(PoisonError::into_inner).extend(tried);
         Ok(judged)
+    }
+
+    /// The value of a design whose motion does not repeat in some environment, from runs that are followed
+    /// for twice as long; `None` if it repeats, or has no such value.
+    pub fn later(&self, at: &[f64]) -> Result<Option<f64>, NoBest> {
+        let runs = |longer: f64| -> Vec<Ran> {
+            let run = |environment: usize| {
+                let model = widened(self.model((at, &[]), environment)?);
+                let until = longer * self.question.until_settled.unwrap_or_else(|| followed_until(&model));
+                let summary = settled_within(&model, Some(until), self.task.cancel);
+                summary.map(Box::new).ok_or_else(Vec::new)
+            };
+            (0..self.question.environments.len()).map(run).collect()
+        };
+        let repeats = |run: &Ran| run.as_ref().is_ok_and(|summary| summary.settled != Some(false));
+        let later = if runs(1.0).iter().all(repeats) { None } else { Some(self.judged(&runs(2.0))) };
+        self.check_cancelled()?;
+        Ok(match later {
+            Some(Judged::Value(value, _) | Judged::Broken(_, _, value)) => Some(value),
+            _ => None,
+        })
     }
 
     /// All designs that were judged, in order.

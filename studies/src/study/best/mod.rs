@@ -161,6 +161,9 @@ pub struct BestDesign {
     pub stepped_back: Option<(Optimum, Spread)>,
     /// Whether all designs that were tried have the same value.
     pub flat: bool,
+    /// The value from runs that are followed for twice as long, if the motion does not repeat, so that the
+    /// value depends on the time over which it is taken.
+    pub later: Option<f64>,
     /// The designs that were tried, in order: first those of the scan, `scan_places` of them, then those
     /// nearer to the best ones and those beside the optimum. Samples of the fields that vary are left out.
     pub tried: Vec<Tried>,
@@ -231,6 +234,7 @@ pub fn best(
     Ok(BestDesign {
         at_border: evaluator.over.iter().zip(&found.optimum.at).map(border).collect(),
         resolution: evaluator.over.iter().map(search::resolution).collect(),
+        later: evaluator.later(&found.optimum.at)?,
         optimum: found.optimum,
         flat: found.flat,
         margins,

@@ -17,6 +17,13 @@ impl BestDesign {
         if self.flat {
             lines.push(format!("{maximised} is the same wherever it was looked, so that no place is better"));
         }
+        if let Some(later) = self.later {
+            lines.push(format!(
+                "the motion there does not repeat: followed for twice as long it gives {}; place and margins \
+                 are uncertain by such differences",
+                value(later)
+            ));
+        }
         for (i, name) in names.iter().enumerate() {
             let (range, resolution) = (&question.over[i], quantity(self.resolution[i], name));
             let side = |margin: Option<f64>, way: &str, end: f64| match margin {

@@ -66,6 +66,7 @@ pub fn damping(times: &[f64], channel: &Channel) -> Result<Identified, Unidentif
     };
     let rows: Vec<Decay> = (0..groups).filter_map(group).collect();
     Ok(Identified {
+        tolerance: None,
         rows: table(&rows, &format!("amplitude{}", channel.quantity.ending())),
         fitted: whole.lines(),
         summary: vec![whole.ratio, whole.frequency, whole.natural, whole.rate],

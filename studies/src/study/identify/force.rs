@@ -112,14 +112,16 @@ pub fn force(x: &[f64], force: &[f64], points: Option<usize>) -> Result<Identifi
     } else {
         remarks.push("pulled in one direction alone: what of the force is friction is not known".to_owned());
     }
-    remarks.push(curve.tolerance(&rests));
+    let (remark, tolerance) = curve.tolerance(&rests);
+    remarks.push(remark);
     let forces: Vec<f64> = curve.mean.iter().map(|row| row.0.value).collect();
     let inside = x.iter().zip(force).filter(|sample| (low..=high).contains(sample.0));
     let left: Vec<(f64, f64)> =
         inside.map(|(x, force)| (*x, force - through_four((x - low) / curve.step, &forces))).collect();
     let fitted =
         Table::new().each("x_m", &left, |sample| sample.0).each("residual_n", &left, |sample| sample.1);
-    Ok(Identified { rows, fitted, summary, remarks })
+    let tolerance = Some(tolerance).filter(|share| share.is_finite());
+    Ok(Identified { rows, fitted, summary, remarks, tolerance })
 }
 
 impl Curve {
@@ -237,7 +239,7 @@ impl Curve {
     }
 
     /// A text with the accuracy of the curve, and the tolerance for a table made of it.
-    fn tolerance(&self, rests: &[Rest]) -> String {
+    fn tolerance(&self, rests: &[Rest]) -> (String, f64) {
         let between = |x: &f64| match (rests.first(), rests.last()) {
             (Some(first), Some(last)) if rests.len() > 1 => (first.x.0..last.x.0).contains(x),
             _ => true,
@@ -246,12 +248,14 @@ impl Curve {
         let largest = inside.map(|point| point.1.0.value.abs()).fold(0.0, f64::max);
         let half = median(self.mean.iter().map(|row| row.0.half()).collect());
         let share = half.unwrap_or(f64::NAN) / largest;
-        format!(
+        let tolerance = share.clamp(1e-4, 0.1);
+        let text = format!(
             "the curve is known to {} % of its force{}; as a mechanism: Table(path: \"FILE\", tolerance: {})",
             short(100.0 * share),
             if rests.len() > 1 { " between the wells" } else { "" },
-            short(share.clamp(1e-4, 0.1))
-        )
+            short(tolerance)
+        );
+        (text, tolerance)
     }
 }
 

@@ -73,6 +73,8 @@ pub struct Identified {
     pub fitted: Table,
     /// Remarks, each a sentence.
     pub remarks: Vec<String>,
+    /// Of a force, the tolerance of a curve through the rows: how closely they are known, 1e-4 to 0.1.
+    pub tolerance: Option<f64>,
 }
 
 /// Why nothing could be identified.

@@ -67,7 +67,7 @@ pub fn restitution(
         )
     }));
     let (rows, fitted) = (rows(&contacts, &singles), fitted(&motion, &contacts, &singles));
-    Ok(Identified { rows, fitted, summary, remarks })
+    Ok(Identified { rows, fitted, summary, remarks, tolerance: None })
 }
 
 /// The restitutions, the number of impacts of the first one, and remarks.
@@ -270,5 +270,5 @@ pub fn restitution_of_times(times: &[f64]) -> Result<Identified, Unidentified> {
             .to_owned(),
     ];
     let summary = vec![Identity::new(RESTITUTION, e, half)];
-    Ok(Identified { rows, fitted: Table::new(), summary, remarks })
+    Ok(Identified { rows, fitted: Table::new(), summary, remarks, tolerance: None })
 }
