@@ -27,7 +27,7 @@ pub(super) enum Part {
     /// The optimum of the coarse scan.
     Preview(Optimum),
     /// The answer, or why there is none.
-    Whole(Result<BestDesign, String>),
+    Whole(Result<Box<BestDesign>, String>),
 }
 
 /// A search: the scene, from rest with its least travel limit, and the range of travel limits.
@@ -48,7 +48,7 @@ impl Question for Search {
     type Part = Part;
 
     fn answer(&self, cancel: &AtomicBool, each: Each<Part>) -> Option<Part> {
-        told(self.found(cancel, each)).map(Part::Whole)
+        told(self.found(cancel, each).map(Box::new)).map(Part::Whole)
     }
 }
 

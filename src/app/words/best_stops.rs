@@ -23,7 +23,7 @@ pub fn looking(runs: u64, best: Option<&Optimum>, column: &str) -> String {
 /// The answer of a search with runs from rest. Each run lasts `duration_s` seconds or, if that is `None`,
 /// until its motion repeats.
 pub fn answer_guide(
-    answer: &Result<BestDesign, String>,
+    answer: &Result<Box<BestDesign>, String>,
     column: &str,
     (low, high): (f64, f64),
     duration_s: Option<f64>,
