@@ -216,7 +216,8 @@ class Table(Mapping[str, Array]):
         """Sentences about the answer, a list of str; empty where there is nothing to say.
 
         Of a branch: where it ended inside the range and why; of a spectrum: its settings; of basins: each
-        attractor; of a best design and of a record: the result.
+        attractor; of a best design, a record, escapes and exponents of one scene: the result; of thresholds
+        and compared scenes: what their rows lack, and why.
         """
         return self._answer.words
 

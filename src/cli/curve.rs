@@ -68,7 +68,8 @@ pub struct Arguments {
     #[arg(long, value_name = "FILE", allow_hyphen_values = true, group = "picture")]
     pub mechanism_plot: Option<PathBuf>,
 
-    /// With --well-plot: the acceleration of the base in g [default: the largest of the excitation]
+    /// With --well-plot: the acceleration of the base in g [default: the largest that the excitation may
+    /// have]
     #[arg(long, value_name = "G", allow_hyphen_values = true, requires = "well_plot")]
     pub base_accel_g: Option<String>,
 
@@ -236,7 +237,7 @@ impl<'a> Asked<'a> {
             .map_err(|problem| Failure::argument(format!("--mechanism-plot: {name}: {problem}")))
     }
 
-    /// The chart of the well while the base has this acceleration in g, by default its largest.
+    /// The chart of the well while the base has this acceleration in g, by default its bound.
     fn well_chart(&self, model: &Model, accel_g: Option<f64>) -> Chart {
         let accel =
             accel_g.map_or_else(|| model.extreme_base_acceleration(), |accel| accel * STANDARD_GRAVITY);

@@ -264,9 +264,9 @@ fn a_best_motion_that_does_not_repeat_is_said_to_be_uncertain() {
         let output = headless(&line).assert().success().get_output().clone();
         String::from_utf8(output.stderr).unwrap()
     };
-    let words = "the motion there does not repeat: followed for twice as long it gives 0.";
+    let words = "has not repeated by the end of its run: followed for twice as long it gives 0.";
     assert!(said(0.9964).contains(words), "{}", said(0.9964));
-    assert!(!said(0.36).contains("does not repeat"), "{}", said(0.36));
+    assert!(!said(0.36).contains("has not repeated"), "{}", said(0.36));
 }
 
 /// Every number that is said has its unit, and a constraint is spoken of only where there is one.

@@ -336,7 +336,7 @@ fn a_task_is_passed_by_page_down_twice_or_by_skip_and_is_then_shown_solved() {
         assert!(harness.query_by_label("Next").is_none());
         if by_key {
             press(&mut harness, Key::PageDown);
-            assert!(number(&harness) == at && is_painted(&harness, "PageDown once more shows it solved"));
+            assert!(number(&harness) == at && is_painted(&harness, "PageDown once more passes it"));
             press(&mut harness, Key::PageDown);
         } else {
             click_on(&mut harness, "Skip");
@@ -365,6 +365,7 @@ fn votes_are_counted_beside_a_prediction() {
     for text in ["A   crosses every period, 1\u{a0}vote", "C   does not move at all, 2\u{a0}votes"] {
         harness.get_by_label(text);
     }
+    assert!(is_painted(&harness, "1\u{a0}vote") && is_painted(&harness, "2\u{a0}votes"));
     // in the notes by buttons
     press_with_ctrl(&mut harness, Key::L);
     harness.query_all_by_label("B 0").next().unwrap().click();
@@ -376,6 +377,7 @@ fn votes_are_counted_beside_a_prediction() {
     for text in ["A   crosses every period, 1\u{a0}vote", "C   does not move at all, 2\u{a0}votes"] {
         harness.get_by_label(text);
     }
+    assert!(is_painted(&harness, "1\u{a0}vote") && is_painted(&harness, "2\u{a0}votes"));
     assert_eq!(harness.state().lesson().unwrap().answer().choice, None);
     // too late: no vote, and nothing is covered
     shift(&mut harness, Key::C);

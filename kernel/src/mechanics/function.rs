@@ -321,7 +321,7 @@ impl<F: Fn(f64) -> f64> Sampled<'_, F> {
             let curve = fitted(&table, AT_SAMPLES * tolerance, self.cancel)?;
             let compared = self.compared(&curve, &table, tolerance)?;
             if compared.refined.is_empty() {
-                let corners = self.corners_beside(&curve, &ends)?;
+                let corners = self.corners_beside(&curve, &table, &ends)?;
                 return Ok(match corners.is_empty() {
                     true => Attempt::Curve(curve.with_fit(compared.report)),
                     false => Attempt::Corners(corners),
@@ -392,12 +392,26 @@ impl<F: Fn(f64) -> f64> Sampled<'_, F> {
     }
 
     /// The corners at breaks that the fit has put on samples, which may lie beside them within the tolerance.
-    fn corners_beside(&self, curve: &ForceCurve, ends: &[f64]) -> Result<Vec<f64>, FunctionError> {
+    fn corners_beside(
+        &self,
+        curve: &ForceCurve,
+        table: &ForceTable,
+        ends: &[f64],
+    ) -> Result<Vec<f64>, FunctionError> {
         let (mut corners, mut known) = (Vec::new(), ends.to_vec());
-        for at in curve.breaks().iter().filter(|at| !ends.contains(at)) {
-            // so narrow that the samples beside it reach to no other corner
-            let apart = known.iter().fold(f64::MAX, |apart, x| apart.min((x - at).abs()));
-            let corner = self.corner((at - 0.1 * apart, at + 0.1 * apart), &known)?;
+        let breaks = curve.breaks();
+        for at in breaks.iter().filter(|at| !ends.contains(at)) {
+            let next = table.x.partition_point(|x| x <= at);
+            let before = table.x[..next].iter().rfind(|x| *x < at);
+            let (Some(from), Some(to)) = (before, table.x.get(next)) else { continue };
+            // between samples it may reach to another corner; then in an interval that is narrower by far
+            let others = breaks.iter().chain(&known).filter(|x| *x != at);
+            let apart = others.fold(f64::MAX, |apart, x| apart.min((x - at).abs()));
+            let half = (0.1 * apart).min(0.1 * (to - from));
+            let corner = match self.corner((*from, *to), &known)? {
+                None => self.corner((at - half, at + half), &known)?,
+                found => found,
+            };
             corners.extend(corner);
             known.extend(corner);
         }

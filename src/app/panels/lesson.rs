@@ -362,12 +362,15 @@ fn buttons_ui(ui: &mut Ui, lesson: &OpenLesson, urged: bool) -> Option<LessonAct
     };
     let is_skipped = !lesson.may_go_on() && !lesson.is_covering() && !lesson.is_last();
     let (button, hover) = match following {
-        _ if is_skipped => (Button::new("Skip"), "The next step, with the task shown solved (PageDown)"),
+        _ if is_skipped => (Button::new("Skip"), "The next step, without the task (PageDown twice)"),
         None => (primary(ui, name), hover),
         Some(_) => (Button::new(name), hover),
     };
     let next = ui.add_enabled(lesson.may_go_on() || is_skipped, button);
-    let next = next.on_disabled_hover_text("First choose what you expect, or Reveal.");
+    let next = next.on_disabled_hover_text(match lesson.step() {
+        Step::Predict { .. } => "First choose what you expect, or Reveal.",
+        _ => "First the task.",
+    });
     urge(&next, urged && lesson.is_last() && following.is_none());
     if next.on_hover_text(hover).clicked() {
         action = Some(if is_skipped { LessonAction::Skip } else { chosen });

@@ -31,7 +31,7 @@ const ROWS: (f32, f32) = (17.0, 30.0);
 
 /// Number of rows of the view, including the headings and the bar of the present energy.
 const COUNT: f32 = 10.0;
-/// A larger unit is taken where a number has this value.
+/// The unit is a larger one from this number on.
 const MANY: f64 = 1e4;
 
 /// Height in points of the names below the bar of the present energy.
@@ -97,7 +97,7 @@ pub fn energy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let all = heads.iter().map(|head| &head.0).chain(ghosts).flatten();
     let energies = all.flat_map(|ledger| LedgerTerm::ALL.map(|term| (term.energy)(ledger).abs()));
     let largest = energies.fold(0.0, f64::max);
-    // of a long motion
+    // the energies of a long motion need a larger unit
     let (unit, name) = if largest < MANY * unit { (unit, name) } else { unit_of(largest) };
     let mut y = area.top();
     for (i, (_, head, hover)) in heads.iter().rev().enumerate() {

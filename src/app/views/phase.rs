@@ -155,7 +155,7 @@ pub(super) fn starts(painter: &egui::Painter, context: &ViewContext<'_>, pane: &
 fn points_ui(ui: &mut Ui, area: egui::Rect, points_only: &mut bool) {
     let free = LegendRow::of(ui, area);
     let right = free.right - 4.0;
-    // a view over the whole window (Z) has room for it
+    // left out without room; over the whole window (Z) the view has some
     if right - free.left < BUTTON {
         return;
     }

@@ -156,6 +156,14 @@ impl View {
         matches!(self, Self::Mechanism | Self::Well | Self::ForceCurve)
     }
 
+    /// The view that a word in lower case names; the barrier and the stops are shown in the well.
+    pub fn named(word: &str) -> Option<Self> {
+        match word {
+            "barrier" | "stops" | "stop" => Some(Self::Well),
+            _ => Self::ALL.into_iter().find(|view| view.name().to_lowercase() == word),
+        }
+    }
+
     /// Whether it shows results of other settings or starts than the present ones.
     pub fn is_survey(self) -> bool {
         matches!(self, Self::Map | Self::UpAndDown | Self::Basins)

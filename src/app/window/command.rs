@@ -290,7 +290,7 @@ pub(super) static MENUS: [(&str, &[Part]); 6] = [
         Row("Lesson", "PageUp, PageDown", "in a lesson: the step before, after"),
         Row("Lesson", "A, B, C or 1, 2, 3", "choose what you expect (C then does not cover)"),
         Row("Lesson", "H", "the hint of a task"),
-        Row("Lesson", "Shift+A, B, C", "count a vote for it; then A, B, C count too"),
+        Row("Lesson", "Shift+A, B, C", "count a vote for it; after the first, A, B, C do so too"),
         Line,
         Item("Copy my answers", None, C::CopyAnswers, No),
         Item("Lecturer's notes", control(Key::L), C::LecturerNotes,

@@ -43,7 +43,7 @@ pub(super) struct Lessons {
     finished: Option<Finished>,
     /// Whether the button that goes on is to have the keyboard focus.
     urged: bool,
-    /// The step whose covered prediction was asked about by a key that goes on.
+    /// The step that a key that goes on shall pass at its second press, while the notice about it is shown.
     asked: Option<usize>,
     /// The action of the buttons beside the status line in this frame.
     chosen: Option<LessonAction>,
@@ -261,6 +261,7 @@ impl Window {
                 let votes: u32 = lesson.answer().votes.iter().sum();
                 let counted = if votes == 0 { "Nobody has chosen yet" } else { "The votes are counted" };
                 return self.messages.notify(match (lesson.is_covering(), lesson.following()) {
+                    (false, _) if !lesson.may_go_on() => "The last step: first the task".to_owned(),
                     (true, _) => format!("{counted}: PageDown once more shows what it does"),
                     (false, Some(name)) => format!("The last step: Enter goes on to {}", numbered(name)),
                     (false, None) => "The last step: Enter finishes the lesson".to_owned(),
@@ -268,7 +269,7 @@ impl Window {
             }
             LessonAction::Next if !lesson.may_go_on() && self.lessons.asked != Some(lesson.number()) => {
                 self.lessons.asked = Some(lesson.number());
-                return self.messages.notify("The task is not done: PageDown once more shows it solved");
+                return self.messages.notify("The task is not done: PageDown once more passes it");
             }
             LessonAction::Next | LessonAction::Skip => {
                 self.lessons.asked = None;
@@ -300,7 +301,8 @@ impl Window {
             }
         };
         self.take_turn(turn);
-        if let Some(solution) = skipped {
+        let tells = |open: &OpenLesson| matches!(open.step(), Step::Say(_) | Step::Explain(_));
+        if let Some(solution) = skipped.filter(|_| self.lesson().is_some_and(tells)) {
             self.messages.notify(format!("The task is shown solved{solution}"));
         }
     }
@@ -359,7 +361,7 @@ impl Window {
     /// Brings the views to the front that bold words in the text of the step name, the first of them last.
     pub(super) fn show_named_views(&mut self) {
         let Some(lesson) = &self.lessons.open else { return };
-        let named = bold_words(lesson.step().text()).filter_map(|word| view_named(&word));
+        let named = bold_words(lesson.step().text()).filter_map(|word| View::named(&word));
         named.collect::<Vec<View>>().into_iter().rev().for_each(|view| self.tiling.show_in_front(view));
     }
 
@@ -389,6 +391,7 @@ impl Window {
     }
 
     pub(super) fn lesson_keys(&mut self, ctx: &egui::Context) {
+        self.lessons.asked = self.lessons.asked.filter(|_| self.messages.notice.is_some());
         let Some(lesson) = self.lessons.open.as_ref().filter(|_| !ctx.text_edit_focused()) else { return };
         let plain = |key, act| (Modifiers::NONE, key, act);
         let mut keys = vec![plain(Key::PageDown, LessonAction::Next), plain(Key::PageUp, LessonAction::Back)];
@@ -484,17 +487,9 @@ impl Window {
                 self.lessons.controls.iter().find(|shown| controls::is_named(&word, &shown.0))
             {
                 painter.rect_stroke(control.1.expand(OUTLINE_DISTANCE), 4.0, stroke, StrokeKind::Outside);
-            } else if let Some(rect) = view_named(&word).and_then(|view| self.tiling.place_of(view)) {
+            } else if let Some(rect) = View::named(&word).and_then(|view| self.tiling.place_of(view)) {
                 painter.rect_stroke(rect, 4.0, stroke, StrokeKind::Inside);
             }
         }
-    }
-}
-
-/// The view that a word in lower case names; the barrier and the stops are shown in the well.
-fn view_named(word: &str) -> Option<View> {
-    match word {
-        "barrier" | "stops" | "stop" => Some(View::Well),
-        _ => View::ALL.into_iter().find(|view| view.name().to_lowercase() == word),
     }
 }

@@ -73,7 +73,10 @@ pub fn script(notes: &str) -> Vec<(f64, &str, &str)> {
 pub fn solved(solution: &[(String, String)]) -> String {
     let one = |(path, value): &(String, String)| {
         let (name, unit) = name_and_unit(path);
-        value.parse::<f64>().ok().map(|_| format!("{name} {} {unit}", with_minus(value)))
+        value
+            .parse::<f64>()
+            .ok()
+            .map(|_| format!("{name} {} {unit}", with_minus(value)).trim_end().to_owned())
     };
     let all: Option<Vec<String>> = solution.iter().map(one).collect();
     all.map_or_else(String::new, |all| format!(": {}", all.join(", ")))

@@ -1,6 +1,6 @@
 //! What the rows of thresholds, escapes and comparisons lack, in sentences.
 //!
-//! They name options of the command line, as [`Error::message`](super::Error::message) does.
+//! Those of cells name options of the command line, as [`Error::message`](super::Error::message) does.
 
 use super::error::with_argument_names;
 use super::escape::grid_or_one;
@@ -142,11 +142,13 @@ fn without_melnikov(table: &Table) -> Option<String> {
 /// Explains a `value` that is the first of the range, if a row has one.
 fn at_first(table: &Table, scan: &Scan) -> Option<String> {
     let (values, first) = (table.numbers("value")?, *scan.values.first()?);
-    let count = values.iter().filter(|value| **value == first).count();
+    let known = table.numbers("low")?;
+    let is_first = |(value, low): (&f64, &f64)| *value == first && low.is_nan();
+    let count = values.iter().zip(known).filter(|row| is_first(*row)).count();
     let rows = of_rows(count, values.len(), ["has its value", "have their value"])?;
     Some(format!(
-        "{rows} at {first}, the first that was tried: below it nothing is known; give a range that begins \
-         lower, and see windows for how often the answer changes above"
+        "{rows} at {first}, the first that was tried: lower ones, where the field can have them, may do so \
+         too; windows counts how often the answer changes above"
     ))
 }
 

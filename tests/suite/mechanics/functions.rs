@@ -137,14 +137,15 @@ proptest! {
 
 #[test]
 fn a_corner_beside_a_sample_and_one_in_the_middle_are_where_they_are() {
-    let found = |places: &[f64], steps: &[f64], tolerance: f64| {
+    let wavy = |wave: f64, places: &[f64], steps: &[f64], tolerance: f64| {
         let force = |x: f64| {
             let bends = places.iter().zip(steps).map(|(at, step)| step * (x - at).max(0.0));
-            -40.0 * x + 8e5 * x.powi(3) + bends.sum::<f64>()
+            -40.0 * x + 8e5 * x.powi(3) + wave * (x / 1e-3).sin() + bends.sum::<f64>()
         };
         let curve = ForceCurve::from_fn(force, (-9e-3, 9e-3), tolerance, &[]).unwrap();
         Mechanism::new(curve).landscape
     };
+    let found = |places: &[f64], steps: &[f64], tolerance: f64| wavy(0.0, places, steps, tolerance);
     let places = [-1.167_757_077_873_290_2e-3, 2.286_109_608_505_83e-3, -1.420_466_877_074_472_5e-3];
     let kinks = found(&places, &[10.0; 3], 1e-6).kinks;
     assert!(kinks.len() == 3 && (kinks[1].x - places[0]).abs() < 1e-12, "{kinks:?}");
@@ -153,6 +154,14 @@ fn a_corner_beside_a_sample_and_one_in_the_middle_are_where_they_are() {
         let at = cell * 18e-3 / 64.0 + beside;
         let kinks = found(&[at], &[94.0], 3.5e-8).kinks;
         assert!(kinks.len() == 1 && (kinks[0].x - at).abs() < 1e-12, "{at} {kinks:?}");
+    }
+    for wave in [0.0, 0.02] {
+        for cells in [[4.0, 14.0], [-13.0, 0.0], [4.0, 11.0], [3.0, 20.0]] {
+            let places = cells.map(|cell| cell * 18e-3 / 64.0 + 1e-9);
+            let kinks = wavy(wave, &places, &[94.0; 2], 3.5e-8).kinks;
+            let are_found = kinks.iter().zip(places).all(|(kink, at)| (kink.x - at).abs() < 1e-12);
+            assert!(kinks.len() == 2 && are_found, "{wave} {places:?} {kinks:?}");
+        }
     }
     let landscape = found(&[-8.243_429e-3, 0.0, 9.231_25e-4], &[10.0, 199.9, 10.0], 1e-6);
     assert!(landscape.kinks[1].x == 0.0, "{:?}", landscape.kinks);

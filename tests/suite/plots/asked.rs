@@ -205,7 +205,7 @@ fn a_picture_of_a_run_has_the_numbers_of_the_times_that_it_shows() {
 }
 
 #[test]
-fn the_push_of_a_well_is_one_that_the_scene_has() {
+fn the_push_of_a_well_has_the_direction_of_a_constant_drive() {
     let well = |set: &str, words: &str| {
         says(&format!("curve paper --set excitation={set} > --well-plot"), &[words]);
     };

@@ -189,9 +189,9 @@ pub const KINDS: [Ink; 8] = [
     Ink(0xa6, 0xa8, 0x9c),
 ];
 
-/// The places of the cool and of the warm [`KINDS`], each in the order in which they are used: neighbours
-/// differ in lightness.
+/// The places of the cool [`KINDS`] in the order in which they are used: neighbours differ in lightness.
 pub const COOL: [usize; 5] = [0, 3, 2, 6, 7];
+/// Those of the warm ones.
 pub const WARM: [usize; 3] = [4, 1, 5];
 
 /// The hatching of a kind whose colour is used a second time.

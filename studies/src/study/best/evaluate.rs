@@ -107,25 +107,28 @@ impl<'a> Evaluator<'a> {
         Ok(judged)
     }
 
-    /// The value of a design whose motion does not repeat in some environment, from runs that are followed
-    /// for twice as long; `None` if it repeats, or has no such value.
+    /// The value of a design from runs that are followed for twice as long, if a motion has not repeated by
+    /// the end of its run under a drive that does; NaN if it then has no value.
     pub fn later(&self, at: &[f64]) -> Result<Option<f64>, NoBest> {
-        let runs = |longer: f64| -> Vec<Ran> {
-            let run = |environment: usize| {
-                let model = widened(self.model((at, &[]), environment)?);
-                let until = longer * self.question.until_settled.unwrap_or_else(|| followed_until(&model));
-                let summary = settled_within(&model, Some(until), self.task.cancel);
-                summary.map(Box::new).ok_or_else(Vec::new)
-            };
-            (0..self.question.environments.len()).map(run).collect()
+        let model = |environment: usize| self.model((at, &[]), environment).map(widened);
+        let run = |environment: usize, longer: f64| -> Ran {
+            let model = model(environment)?;
+            let until = longer * self.question.until_settled.unwrap_or_else(|| followed_until(&model));
+            let summary = settled_within(&model, Some(until), self.task.cancel);
+            summary.map(Box::new).ok_or_else(Vec::new)
         };
-        let repeats = |run: &Ran| run.as_ref().is_ok_and(|summary| summary.settled != Some(false));
-        let later = if runs(1.0).iter().all(repeats) { None } else { Some(self.judged(&runs(2.0))) };
+        let environments = 0..self.question.environments.len();
+        let is_open = |environment: usize| {
+            model(environment).is_ok_and(|model| model.repeats())
+                && run(environment, 1.0).is_ok_and(|summary| summary.settled == Some(false))
+        };
+        let runs =
+            environments.clone().any(is_open).then(|| environments.map(|each| run(each, 2.0)).collect());
         self.check_cancelled()?;
-        Ok(match later {
-            Some(Judged::Value(value, _) | Judged::Broken(_, _, value)) => Some(value),
-            _ => None,
-        })
+        Ok(runs.map(|runs: Vec<Ran>| match self.judged(&runs) {
+            Judged::Value(value, _) | Judged::Broken(_, _, value) => value,
+            Judged::Invalid(_) | Judged::Missing => f64::NAN,
+        }))
     }
 
     /// All designs that were judged, in order.

@@ -161,8 +161,8 @@ pub struct BestDesign {
     pub stepped_back: Option<(Optimum, Spread)>,
     /// Whether all designs that were tried have the same value.
     pub flat: bool,
-    /// The value from runs that are followed for twice as long, if the motion does not repeat, so that the
-    /// value depends on the time over which it is taken.
+    /// The value from runs that are followed for twice as long, if the motion has not repeated by the end of
+    /// its run, so that the value depends on the time over which it is taken; NaN if it then has no value.
     pub later: Option<f64>,
     /// The designs that were tried, in order: first those of the scan, `scan_places` of them, then those
     /// nearer to the best ones and those beside the optimum. Samples of the fields that vary are left out.
