@@ -137,7 +137,7 @@ pub enum Role {
 }
 
 /// Dash and gap of the pinned motions, by which they can be distinguished.
-const PINS: [(f64, f64); 3] = [(24.0, 9.0), (4.5, 9.0), (14.0, 9.0)];
+const PINS: [(f64, f64); 3] = [(22.0, 8.0), (4.5, 9.0), (11.0, 8.0)];
 
 /// Strength of the oldest part of a motion that fades.
 const FAINTEST: f64 = 0.12;
