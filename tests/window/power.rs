@@ -275,6 +275,17 @@ fn short(changes: &[&str]) -> Session {
     settled("paper", &[&["run.duration_s=4", "run.settle_s=2"], changes].concat())
 }
 
+/// Between stops that lose little the fastest motion is irregular: its average is that of a window.
+#[test]
+fn the_best_stops_of_a_motion_that_does_not_repeat_have_no_margins() {
+    let mut session = short(&["stops.restitution=0.95"]);
+    session.find_best_stops();
+    assert!(session.wait_for_best_stops(LONG));
+    let text = session.best.guide().text;
+    let later = "of a motion that has not repeated; followed for twice as long it has 9";
+    assert!(text.contains(later) && !text.contains("nine tenths"), "{text}");
+}
+
 #[test]
 fn the_best_stops_are_found_and_taken() {
     let mut session = short(&["stops=None"]);

@@ -406,6 +406,7 @@ fn rows_of(count: usize) -> usize {
     count.div_ceil(SIDE_BY_SIDE).max(1)
 }
 
+/// An option with its letter.
 fn option_text(option: usize, choice: &Choice) -> String {
     format!("{}   {}", letter(option), plain(&choice.text))
 }

@@ -198,8 +198,8 @@ fn scrub_ui(ui: &mut Ui, session: &mut Session, style: &Style, covered: bool, no
     let watch = session.player.watch();
     let (begin, seen) = (watch.begin(), watch.time());
     let end = session.end_of_run().max(seen);
-    let length = if end - begin > LONG { LENGTH.1 } else { LENGTH.0 };
-    let width = (ui.available_width() - if note.is_some() { length } else { 0.0 }).max(40.0);
+    let beside = if end - begin > LONG { LENGTH.1 } else { LENGTH.0 };
+    let width = (ui.available_width() - if note.is_some() { beside } else { 0.0 }).max(40.0);
     let height = if note.is_some() { SIGNS + BELOW } else { SIGNS };
     let (whole, _) = ui.allocate_exact_size(vec2(width, height), Sense::hover());
     let rect = whole.with_max_y(whole.top() + SIGNS);

@@ -70,7 +70,7 @@ impl Place {
         let room = Room {
             left: unit(GUTTER),
             legend: unit(legend),
-            rows: unit(LEGEND_LEFT),
+            below: unit(LEGEND_LEFT),
             beside: unit(beside + area.right() - row.right),
             between: unit(between),
         };

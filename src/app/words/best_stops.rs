@@ -56,10 +56,18 @@ pub fn answer_guide(
     let from = inward.map_or(low, |margin| rounded(at - margin, f64::ceil));
     let to = outward.map_or(high, |margin| rounded(at + margin, f64::floor));
     let border = if design.at_border[0] { " It is an end of the range that was searched." } else { "" };
-    let text = format!(
-        "{name} {value}; at least nine tenths of it from ±{} to ±{} mm.{border}",
-        three(from),
-        three(to)
-    );
+    let text = match design.later {
+        // its margins say nothing then
+        Some(later) => {
+            let later = if later.is_nan() { "none".to_owned() } else { value_of(column, later) };
+            let open = "of a motion that has not repeated; followed for twice as long it has";
+            format!("{name} {value}, {open} {later}.{border}")
+        }
+        None => format!(
+            "{name} {value}; at least nine tenths of it from ±{} to ±{} mm.{border}",
+            three(from),
+            three(to)
+        ),
+    };
     guide(&format!("Best stops: ±{}.", mm(at)), capital(&text))
 }

@@ -12,10 +12,11 @@ use crate::scene::{Document, RunSettings, Stops, Transducer};
 use crate::study::{Grid, Onset, Rated, Scan, Table, Values, can_cross};
 
 impl Threshold {
-    /// Why `table`, the answer of [`run`](Self::run), has rows without a value, undecided ones, or ones
-    /// without Melnikov's threshold: a sentence each, none if there are no such rows.
+    /// Why `table`, the answer of [`run`](Self::run), has rows without a value, with the first value of the
+    /// range, undecided ones, or ones without Melnikov's threshold: a sentence each, none if there are no
+    /// such rows.
     pub fn remarks(&self, simulation: &Simulation, table: &Table) -> Vec<String> {
-        let grid = grid_or_one(&self.over, simulation).unwrap_or_else(|_| Grid::of_one());
+        let Ok(grid) = grid_or_one(&self.over, simulation) else { return Vec::new() };
         let mechanism = Some(&**simulation.mechanism()).filter(|_| !grid.changes_mechanism());
         let remarks = self.remarks_in_cells(simulation.document(), &grid, mechanism, table);
         remarks.iter().map(|text| with_argument_names(text)).collect()
@@ -30,19 +31,20 @@ impl Threshold {
         mechanism: Option<&Mechanism>,
         table: &Table,
     ) -> Vec<String> {
-        let missing = self.scan(document, grid).ok().and_then(|scan| {
-            let blocked = blocked(document, grid, mechanism, &scan.field);
-            missing(table, &scan, self.of, grid, blocked.filter(|_| self.of != Onset::Release))
-        });
-        let first = self.scan(document, grid).ok().and_then(|scan| at_first(table, &scan));
-        [missing, first, undecided(table), without_melnikov(table)].into_iter().flatten().collect()
+        let Ok(scan) = self.scan(document, grid) else { return Vec::new() };
+        let blocked = blocked(document, grid, mechanism, &scan.field);
+        let missing = missing(table, &scan, self.of, grid, blocked.filter(|_| self.of != Onset::Release));
+        [missing, at_first(table, &scan), undecided(table), without_melnikov(table)]
+            .into_iter()
+            .flatten()
+            .collect()
     }
 }
 
 impl ProbableThreshold {
     /// Why `table`, the answer of [`run`](Self::run), has rows without a value; none if all have one.
     pub fn remarks(&self, simulation: &Simulation, table: &Table) -> Vec<String> {
-        let grid = grid_or_one(&self.over, simulation).unwrap_or_else(|_| Grid::of_one());
+        let Ok(grid) = grid_or_one(&self.over, simulation) else { return Vec::new() };
         let remarks = self.remarks_in_cells(simulation.document(), &grid, table);
         remarks.iter().map(|text| with_argument_names(text)).collect()
     }
@@ -147,8 +149,8 @@ fn at_first(table: &Table, scan: &Scan) -> Option<String> {
     let count = values.iter().zip(known).filter(|row| is_first(*row)).count();
     let rows = of_rows(count, values.len(), ["has its value", "have their value"])?;
     Some(format!(
-        "{rows} at {first}, the first that was tried: lower ones, where the field can have them, may do so \
-         too; windows counts how often the answer changes above"
+        "{rows} at {first}, the first that was tried: where the field can have a lower one, that may do as \
+         well; windows counts how often the answer changes above"
     ))
 }
 

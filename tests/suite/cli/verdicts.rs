@@ -108,7 +108,7 @@ fn thresholds_are_tables() {
     assert_eq!(told(&format!("{line} --quiet")), "");
     // at the first value of the range it may not begin
     let line = "threshold paper --field stops.travel_limit_mm=2:3:0.1";
-    let words = "the row has its value at 2, the first that was tried: lower ones";
+    let words = "the row has its value at 2, the first that was tried: where the field can have a lower";
     assert!(told(line).contains(words), "{}", told(line));
     let some = "threshold paper --of release --field excitation.amplitude_g=0:0.7:0.1 \
                 --over stops.travel_limit_mm=1.5,4";

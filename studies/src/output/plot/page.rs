@@ -118,8 +118,8 @@ pub struct Room {
     pub left: f64,
     /// From the left edge to the legend.
     pub legend: f64,
-    /// The same of a legend that stands in rows below its first one, since it is too wide for that.
-    pub rows: f64,
+    /// From the left edge to a legend that is too wide for the row of the titles and stands in rows below it.
+    pub below: f64,
     /// To the right of the legend.
     pub beside: f64,
     /// Between the legend and the frames.
@@ -198,8 +198,8 @@ impl Chart {
         let mut legend = Legend::new(&named, width - left - margin, beside);
         let mut top = 0.0;
         if let Some(room) = room {
-            if room.rows < left && !legend.is_one_row(width - left - margin - beside) {
-                (left, top) = (room.rows, ROW + UNDER_TITLE);
+            if room.below < left && !legend.is_one_row(width - left - margin - beside) {
+                (left, top) = (room.below, ROW + UNDER_TITLE);
                 legend = Legend::new(&named, width - left - margin, 0.0);
             }
             legend = legend.within(height - top);
