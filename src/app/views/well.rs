@@ -114,8 +114,6 @@ pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let at = on_curve(state.x, &tipped);
     stops_ui(ui, context, frame, (frame.top() + 4.0, frame.bottom()), 0.0);
     mass_ui(ui, context, at, frame);
-    // over the mass, which may pass them
-    travel_limits(&painter, context, frame, &mut taken);
     // drawn after the stops, since their letters may overlap one; whole at an end of an axis
     let over = ui.painter().with_clip_rect(frame.expand(BALL + 1.0).intersect(area));
     balls.iter().for_each(|(at, ghost)| ghost.ball(&over, &style, *at, BALL));
@@ -129,6 +127,8 @@ pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     over.circle(at, BALL, style.mass(), Stroke::new(1.5, style.mass_edge()));
     // its displacement is that of its middle
     over.circle_filled(at, MIDDLE, style.mass_edge());
+    // over the mass, which may pass them
+    travel_limits(&painter, context, frame, &mut taken);
     if let Some(ago) = ago(context.session) {
         pane.reading(ui, &style, 0.0, &ago);
     }

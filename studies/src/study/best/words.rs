@@ -18,16 +18,11 @@ impl BestDesign {
             lines.push(format!("{maximised} is the same wherever it was looked, so that no place is better"));
         }
         if let Some(later) = self.later {
-            let then = match later.is_nan() {
-                true => "has no result".to_owned(),
-                false => format!(
-                    "gives {}; place and margins are uncertain by about this difference",
-                    value(later)
-                ),
-            };
+            let then =
+                if later.is_nan() { "has no result".to_owned() } else { format!("gives {}", value(later)) };
             lines.push(format!(
                 "the motion there has not repeated by the end of its run: followed for twice as long it \
-                 {then}"
+                 {then}, so place and margins are uncertain"
             ));
         }
         for (i, name) in names.iter().enumerate() {
