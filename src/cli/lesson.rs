@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use interwell::questions::check_lessons;
 use interwell::scene::Fault;
-use interwell::scene::lesson::{LESSONS, LessonDocument, LessonError, Step, TEMPLATE};
+use interwell::scene::lesson::{Choice, LESSONS, LessonDocument, LessonError, Step, TEMPLATE};
 use interwell::system::files;
 use interwell_studies::study::{LessonFinding, result_fields};
 
@@ -81,8 +81,13 @@ fn full_text(document: &LessonDocument) -> String {
             Step::Say(_) => ("", String::new()),
             Step::Predict { options, .. } => {
                 let lettered = ('a'..).zip(options);
-                let lines = lettered.map(|(letter, option)| format!("   ({letter}) {}\n", option.text));
-                ("Predict: ", lines.collect())
+                let reply = |option: &Choice| {
+                    option.reply.iter().map(|reply| format!("       Reply: {reply}\n")).collect::<String>()
+                };
+                let line = |(letter, option): (char, &Choice)| {
+                    format!("   ({letter}) {}\n{}", option.text, reply(option))
+                };
+                ("Predict: ", lettered.map(line).collect())
             }
             Step::Do { hint, .. } => ("Do: ", hint.iter().map(|hint| format!("   Hint: {hint}\n")).collect()),
             Step::Explain(_) => ("Explained: ", String::new()),

@@ -26,11 +26,14 @@ impl Told {
     fn new(number: usize) -> Self {
         let lesson = &LESSONS[number - 1];
         let read = LessonDocument::load(lesson.name, &result_fields()).unwrap();
-        let hint = |step: &Step| match step {
+        let more = |step: &Step| match step {
             Step::Do { hint: Some(hint), .. } => format!(" {hint}"),
+            Step::Predict { options, .. } => {
+                options.iter().flat_map(|option| &option.reply).map(|reply| format!(" {reply}")).collect()
+            }
             _ => String::new(),
         };
-        let steps = read.lesson.steps.iter().map(|step| format!("{}{} ", step.text(), hint(step)));
+        let steps = read.lesson.steps.iter().map(|step| format!("{}{} ", step.text(), more(step)));
         let words = steps.collect::<String>() + &read.lesson.lecturer;
         Self { name: lesson.name, words, scene: read.begin(0).clone() }
     }
@@ -175,7 +178,7 @@ fn stops_that_help() {
     let share = -told.model(&[]).mechanism().curve.potential(4e-3) / told.hill(&[]);
     near(share, 0.5, 0.03);
     told.says(&format!("Shaking at 1 g pushes with {:.3} N at most", MASS * STANDARD_GRAVITY));
-    told.says(&format!("with {:.3} N at 1.5 mm", told.press(1.5)));
+    told.says(&format!("at 1.5 mm with {:.3} N", told.press(1.5)));
     let at = |limit: f64| told.run(&[&stopped(limit)]);
     assert!([0.1, 0.3, 0.5, 1.0, 1.5, 2.0, 2.1, 2.19].iter().all(|limit| crosses(&at(*limit))));
     assert!(hops(&at(2.2)));
@@ -219,6 +222,7 @@ fn release() {
     told.says(&format!("at 0.5 Hz it crosses from {:.3} g on", from(0.5)));
     told.says(&format!("at 10 Hz, it takes {:.2} g", from(10.0)));
     told.says(&format!("The release is at {frees:.3} g in all three"));
+    told.says(&format!("0.91 g is more than the {frees:.3} g with which the flexures press"));
     for hz in ["0.5", "10"] {
         let frequency = format!("excitation.frequency_hz={hz}");
         near(told.least(Onset::Release, &[&frequency], 0.5..1.5), frees, 1e-9);

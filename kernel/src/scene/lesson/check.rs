@@ -2,7 +2,7 @@
 
 use super::condition::Condition;
 use super::document::Stage;
-use super::{LESSON_FORMAT, Lesson, MAX_OPTION_LENGTH, MAX_STEP_LENGTH, Step};
+use super::{LESSON_FORMAT, Lesson, MAX_OPTION_LENGTH, MAX_REPLY_LENGTH, MAX_STEP_LENGTH, Step};
 use crate::numeric::number_text;
 use crate::scene::axis::Axis;
 use crate::scene::check::check;
@@ -85,6 +85,9 @@ pub(super) fn faults(lesson: &Lesson, stages: &[Stage], results: &[ResultField])
                 for (number, option) in options.iter().enumerate() {
                     let at = |part: &str| format!("steps.{index}.options.{number}.{part}");
                     found.check_length(&at("text"), &option.text, MAX_OPTION_LENGTH);
+                    if let Some(reply) = &option.reply {
+                        found.check_length(&at("reply"), reply, MAX_REPLY_LENGTH);
+                    }
                     condition(&option.holds, &at("holds"), &known, &stage.end.scene, false, &mut found);
                 }
             }

@@ -24,6 +24,8 @@ pub const LESSON_FORMAT: u32 = 1;
 pub const MAX_STEP_LENGTH: usize = 240;
 /// Largest number of characters of an option.
 pub const MAX_OPTION_LENGTH: usize = 80;
+/// Largest number of characters of a reply to a choice.
+pub const MAX_REPLY_LENGTH: usize = 160;
 
 /// A lesson in the form of its file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -146,6 +148,9 @@ pub struct Choice {
     pub text: String,
     /// Condition under which the option is correct.
     pub holds: Condition,
+    /// A reply to whoever has chosen the option where it does not hold.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reply: Option<String>,
 }
 
 impl Step {
@@ -171,7 +176,10 @@ impl Step {
         match self {
             Self::Say(text) | Self::Explain(text) => vec![text],
             Self::Predict { ask, options, .. } => {
-                [ask].into_iter().chain(options.iter_mut().map(|option| &mut option.text)).collect()
+                let of_options = options
+                    .iter_mut()
+                    .flat_map(|option| [&mut option.text].into_iter().chain(&mut option.reply));
+                [ask].into_iter().chain(of_options).collect()
             }
             Self::Do { ask, hint, .. } => [ask].into_iter().chain(hint).collect(),
         }
