@@ -31,30 +31,25 @@ pub fn first_look(text: &mut Text) {
         near(high, 7.28e-3, 3e-5);
         within(rms(&summary), 16.2..18.5);
     }
-    text.says("between 5.65 and 7.28 mm");
+    text.says("between 5.6 and 7.3 mm");
     text.says("of 16 to 18 mm/s");
-    text.says("irregularly at first, for some seconds or even minutes");
+    // what the questions ask about is there to be found
     for tolerance in TOLERANCES {
         let summary = settled("first-look", &["excitation.amplitude_g=1.3", tolerance]);
         crosses(&summary);
         within(summary.settles_at.unwrap(), 3.0..600.0);
-        text.says(&format!("goes over and back once in every period, at {:.0} mm/s", rms(&summary)));
     }
-    text.says("At 1.3 g it crosses");
+    text.says("Does it find a rhythm");
     let at = |limit: f64| settled("first-look", &[&stopped(limit)]);
     crosses(&at(1.5));
-    text.says(&format!("With stops at 1.5 mm it does so at 0.9 g, at {:.0} mm/s", rms(&at(1.5))));
     let speeds = [1.5, 1.6, 1.7, 1.8, 1.9].map(|limit| rms(&at(limit)));
     assert!(speeds[..4].is_sorted() && speeds[4] < speeds[3], "{speeds:?}");
-    text.says("the velocity rises as far as 1.8 mm");
     assert!(at(1.95).regime == Regime::Intrawell && at(1.95).releases > 0);
     assert_eq!(at(2.1).regime, Regime::Rest);
-    text.says("at 1.95 mm the mass only hops, at 2.1 mm it rests");
+    text.says("where is the mass fastest, and what comes after that");
     let from = |changes: &[&str]| least(Onset::Crossing, "first-look", changes, 1.0..1.4);
-    within(from(&[]), 1.15..1.16);
-    text.says("From rest it begins to cross between 1.15 and 1.16 g");
-    let wide = from(&[&stopped(7.0)]);
-    text.says(&format!("at 7 mm, take energy at every impact: with them it crosses from {wide:.2} g on"));
+    assert!(from(&[]) + 0.1 < from(&[&stopped(7.0)]));
+    text.says("Try stops just inside the wells, at 7 mm");
 }
 
 pub fn paper(text: &mut Text) {
