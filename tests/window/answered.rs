@@ -92,7 +92,9 @@ fn a_key_that_does_nothing_says_why() {
 /// Whether a hover text is on the screen.
 fn has_hover_text(harness: &Harness<'static, Window>) -> bool {
     harness.ctx.memory(|memory| {
-        memory.areas().visible_layer_ids().into_iter().any(|layer| layer.order == Order::Tooltip)
+        let mut layers = memory.areas().visible_layer_ids().into_iter();
+        let has_size = |id| memory.area_rect(id).is_some_and(|rect| rect.width() > 1.0);
+        layers.any(|layer| layer.order == Order::Tooltip && has_size(layer.id))
     })
 }
 

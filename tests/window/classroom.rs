@@ -261,23 +261,28 @@ fn a_projector_leaves_the_height_to_the_views() {
 #[test]
 fn the_starts_of_a_question_are_seen_in_the_phase_portrait() {
     let mut harness = opened("07-a-coin-toss", WIDE);
-    let dots = |harness: &Shown| {
+    // a dash at both sides of each
+    let marks = |harness: &Shown| {
         let place = harness.state().tiling.place_of(View::PhasePortrait).unwrap();
-        let is_dot = |clipped: &&eframe::egui::epaint::ClippedShape| match &clipped.shape {
+        let is_dash = |clipped: &&eframe::egui::epaint::ClippedShape| match &clipped.shape {
+            Shape::LineSegment { points, stroke } => {
+                stroke.color == Color32::BLACK && place.contains(points[0])
+            }
             Shape::Circle(circle) => circle.fill == Color32::WHITE && place.contains(circle.center),
             _ => false,
         };
-        harness.output().shapes.iter().filter(is_dot).count()
+        harness.output().shapes.iter().filter(is_dash).count()
     };
-    assert_eq!(dots(&harness), 0);
+    assert_eq!(marks(&harness), 0);
     assert!(go_to(&mut harness, |step| matches!(step, Step::Predict { .. })));
     press(&mut harness, Key::A);
     harness.run_steps(2);
-    assert_eq!(dots(&harness), 31);
+    assert_eq!(marks(&harness), 2 * 31);
     assert!(harness.state().lesson().unwrap().starts().contains(&(0.0, -0.3)));
     // those of a task take their place
     assert!(go_to(&mut harness, |step| matches!(step, Step::Do { .. })));
-    assert_eq!(dots(&harness), 2);
+    // two, far enough apart for dots
+    assert_eq!(marks(&harness), 2);
 }
 
 #[test]
@@ -297,12 +302,20 @@ fn a_view_over_the_window_has_the_whole_window() {
     assert!(whole - (foot - head) < 90.0, "{head} {foot} of {whole}");
     press(&mut harness, Key::Z);
     harness.get_by_label("File");
-    // in a lesson a step on brings the text back
+    // in a lesson the step stands above it in words, and its options with their votes
     let mut harness = opened_own(PROJECTED);
     press(&mut harness, Key::Z);
-    assert!(!is_painted(&harness, "Shaken at 1 g"));
+    assert!(is_painted(&harness, "Shaken at 1 g"));
+    let top = harness.get_by_label("all views").rect().top();
     press(&mut harness, Key::PageDown);
-    assert!(is_painted(&harness, "We put stops at"));
+    assert!(is_painted(&harness, "We put stops at") && harness.query_by_label("File").is_none());
+    harness.key_press_modifiers(Modifiers::SHIFT, Key::B);
+    harness.run_steps(2);
+    assert!(is_painted(&harness, "B rattles between home and stop (1 vote)"));
+    press(&mut harness, Key::Enter);
+    until(&mut harness, "the answer", |shown| is_painted(shown, "Answer: "));
+    assert_eq!(harness.get_by_label("all views").rect().top(), top);
+    assert!(harness.query_by_label("File").is_none());
 }
 
 #[test]

@@ -8,7 +8,9 @@ use interwell::app::views::View;
 use interwell::dynamics::Regime;
 use interwell::scene::{Excitation, PRESETS, Stops};
 
-use crate::support::{LONG, PROJECTED, WIDE, is_painted, press, session, window, window_with};
+use crate::support::{
+    LONG, PROJECTED, WIDE, is_painted, painted, press, session, sliced, window, window_with,
+};
 
 /// What is said of the ways to cross, once it is found.
 fn ways(preset: &str, changes: &[&str]) -> String {
@@ -136,7 +138,7 @@ fn no_sentence_has_smaller_letters() {
 }
 
 #[test]
-fn by_a_projector_what_it_would_take_stands_in_place_of_the_sentence() {
+fn by_a_projector_what_it_would_take_stands_below_the_sentence() {
     let settings = Settings { projector: true, ..Settings::default() };
     let mut harness = window_with("paper", PROJECTED, settings);
     let place = harness.state().tiling.place_of(View::Well).unwrap();
@@ -146,7 +148,9 @@ fn by_a_projector_what_it_would_take_stands_in_place_of_the_sentence() {
     harness.run_steps(2);
     let text = harness.get_by_label_contains("It crosses already").rect();
     assert!(text.bottom() < place.top() && harness.state().tiling.place_of(View::Well) == Some(place));
-    assert!(!is_painted(&harness, "will cross twice a period"));
+    let sentence = painted(&harness).into_iter().find(|text| text.0.contains("will cross twice a period"));
+    assert!(sentence.unwrap().1.bottom() <= text.top() + 1.0);
+    assert_eq!(sliced(&harness), [""; 0]);
     press(&mut harness, Key::H);
     assert!(is_painted(&harness, "will cross twice a period"));
 }

@@ -253,6 +253,8 @@ fn a_prediction_covers_every_result() {
         for view in View::ALL {
             command(&mut harness, Command::Show(view, true));
         }
+        // one of them takes the whole window
+        command(&mut harness, Command::Fill);
         harness.state_mut().session.wait_settled(LONG);
         let scene = harness.state().session.scene().clone();
         let keys =

@@ -31,6 +31,8 @@ const SHAKING_WIDTH: f32 = 74.0;
 const BESIDE_SLIDER: f32 = 136.0;
 const LEAST_SLIDER: f32 = 60.0;
 const WIDEST_SLIDER: f32 = 280.0;
+/// Additional space in points between the controls of a lesson, one below another.
+const COLUMN_SPACE: f32 = 6.0;
 
 const MORE_HOVER: &str = "Restitution, preload, damping and mass; spring, magnets and transducer, if there \
                           are any.";
@@ -136,6 +138,50 @@ pub fn row_ui(ui: &mut Ui, session: &mut Session, more: &mut bool) {
     });
 }
 
+/// Whether a field has another value in the scene about which a lesson `asks`: its control is left out, with its
+/// place.
+fn is_asked(session: &Session, path: &str, asks: Option<&Scene>) -> bool {
+    let present = session.number(path);
+    asks.is_some_and(|scene| FieldPath::new(path).get(scene).is_some_and(|asked| Some(asked) != present))
+}
+
+/// The controls that a lesson names and the scene has.
+fn named<'a>(session: &Session, controls: &'a [String]) -> Vec<&'a String> {
+    controls.iter().filter(|path| *path == SWITCH || session.number(path).is_some()).collect()
+}
+
+/// The controls that a lesson names, one below another. A field that has another value in the scene about which
+/// the lesson `asks` is left out, with its place. Returns the rectangle of each control.
+pub fn named_column_ui(
+    ui: &mut Ui,
+    session: &mut Session,
+    controls: &[String],
+    asks: Option<&Scene>,
+) -> Vec<(String, Rect)> {
+    let width = (ui.available_width() - 84.0).max(LEAST_SLIDER);
+    let has_switch = controls.iter().any(|path| path == SWITCH);
+    let mut places = Vec::new();
+    // so that an outline around a control keeps clear of the others
+    ui.spacing_mut().item_spacing.y += COLUMN_SPACE;
+    for path in named(session, controls) {
+        let control = ui.scope(|ui| match path.as_str() {
+            SWITCH => stops_switch_ui(ui, session),
+            path => {
+                ui.spacing_mut().item_spacing.y -= COLUMN_SPACE;
+                if is_asked(session, path, asks) {
+                    ui.set_invisible();
+                }
+                if AMPLITUDE.contains(&path) {
+                    ui.heading(SHAKING);
+                }
+                knob_ui(ui, session, path, width, has_switch && is_off(session, path));
+            }
+        });
+        places.push((path.clone(), control.response.rect));
+    }
+    places
+}
+
 /// The controls that a lesson names, in rows that fill the width. A field that has another value in the scene
 /// about which the lesson `asks` is left out, with its place. Returns the rectangle of each control.
 pub fn named_ui(
@@ -144,17 +190,12 @@ pub fn named_ui(
     controls: &[String],
     asks: Option<&Scene>,
 ) -> Vec<(String, Rect)> {
-    let is_asked = |session: &Session, path: &str| {
-        let present = session.number(path);
-        asks.is_some_and(|scene| FieldPath::new(path).get(scene).is_some_and(|asked| Some(asked) != present))
-    };
     let font = egui::TextStyle::Body.resolve(ui.style());
     let name_width = |ui: &Ui, path: &str| {
         let name = name_and_unit(path).0;
         ui.painter().layout_no_wrap(name, font.clone(), Color32::PLACEHOLDER).size().x
     };
-    let shown = controls.iter().filter(|path| *path == SWITCH || session.number(path).is_some());
-    let shown: Vec<&String> = shown.collect();
+    let shown = named(session, controls);
     let is_amplitude = |path: &str| AMPLITUDE.contains(&path);
     let rows_of = |has_heading: bool| {
         let width_of = |path: &str| match path {
@@ -190,7 +231,7 @@ pub fn named_ui(
                 let control = ui.scope(|ui| match path.as_str() {
                     SWITCH => stops_switch_ui(ui, session),
                     path => {
-                        if is_asked(session, path) {
+                        if is_asked(session, path, asks) {
                             ui.set_invisible();
                         }
                         if has_heading && is_amplitude(path) {

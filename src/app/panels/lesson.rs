@@ -3,7 +3,7 @@
 use eframe::egui::text::{LayoutJob, TextFormat};
 use eframe::egui::{
     self, Align, Button, Color32, FontId, Id, Label, Layout, Popup, Pos2, Response, RichText, Sense,
-    SetOpenCommand, Stroke, TextEdit, Ui, Vec2, vec2,
+    SetOpenCommand, Stroke, TextEdit, Ui, vec2,
 };
 
 use crate::app::session::Session;
@@ -15,6 +15,7 @@ use crate::app::words::meanings::{meaning, terms};
 use crate::app::words::numbers::unbroken;
 use crate::scene::lesson::{Choice, Condition, Step};
 
+use super::lesson_options::{option_size, options_text, options_ui};
 use super::status_line::spoken_ui;
 
 /// Width in points of the column with the dots of the steps and the navigation buttons.
@@ -23,17 +24,18 @@ const SPACE: f32 = 4.0;
 /// Least height in points of the text, beside which the dots and the buttons stand.
 const LEAST: f32 = 20.0 + SPACE + CONTROL;
 const HINT: &str = "Hint: ";
-/// The longest result of a prediction that is judged, where there is room for it and where there is little.
+/// The longest result of a prediction that is judged, in a column and in a strip.
 const LONGEST_RESULT: &str = "Answer: B. You chose C. ";
 const SHORT_RESULT: &str = "Answer: B. ";
 const DOT: f32 = 4.5;
 const DOT_SPACING: f32 = 15.0;
 /// Greatest number of characters of the reason that a student gives.
 const MAX_REASON: usize = 60;
-const REASON: f32 = 150.0;
 const MEANING: f32 = 320.0;
 /// Greatest number of options side by side.
 const SIDE_BY_SIDE: usize = 3;
+/// Space in points between the parts of a column.
+const COLUMN_SPACE: f32 = 8.0;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LessonAction {
@@ -51,10 +53,39 @@ pub enum LessonAction {
     NextLesson(&'static str),
 }
 
-/// Draws the strip, which has the same height in every step, with the dots of the steps and the buttons
-/// unless `urged` is `None`; if it is true, the button that continues gets the keyboard focus. Returns the
-/// chosen action.
-pub fn lesson_ui(
+/// Draws the column of a wide window without its buttons: the dots of the steps, the text, the options one
+/// below another, the reply to a choice, the state of a task. Returns the chosen action.
+pub fn lesson_column_ui(
+    ui: &mut Ui,
+    lesson: &mut OpenLesson,
+    session: &Session,
+    style: &Style,
+) -> Option<LessonAction> {
+    ui.spacing_mut().item_spacing.y = COLUMN_SPACE;
+    speak_ui(ui, lesson, session);
+    dots_ui(ui, lesson, style);
+    let width = ui.available_width();
+    ui.scope(|ui| {
+        if let Step::Predict { ask, .. } = lesson.step() {
+            // the options stay where they are when the result comes
+            ui.set_min_height(height_of_text(ui, style, (LONGEST_RESULT, ask), width));
+        }
+        step_ui(ui, lesson, style, true);
+    });
+    let chosen = options_ui(ui, lesson, style, 1);
+    if let Some(reply) = lesson.reply() {
+        text_ui(ui, style, "", reply);
+    }
+    if lesson.answer().choice.is_some() && !lesson.is_covering() {
+        reason_ui(ui, lesson, style);
+    }
+    chosen.or(task_ui(ui, lesson, session, style, true))
+}
+
+/// Draws the strip of a compact window, which has the same height in every step, with the dots of the steps
+/// and the buttons unless `urged` is `None`; if it is true, the button that continues gets the keyboard
+/// focus. Returns the chosen action.
+pub fn lesson_strip_ui(
     ui: &mut Ui,
     lesson: &mut OpenLesson,
     session: &Session,
@@ -63,8 +94,7 @@ pub fn lesson_ui(
 ) -> Option<LessonAction> {
     let mut action = None;
     ui.spacing_mut().item_spacing.y = SPACE;
-    let text = spoken(lesson, session);
-    spoken_ui(ui, Id::unique(("step of a lesson", lesson.number(), &text)), &text);
+    speak_ui(ui, lesson, session);
     let beside = urged.map_or((0.0, 0.0), |_| (NAVIGATION + 16.0, LEAST));
     let width = (ui.available_width() - beside.0).max(120.0);
     let steps = lesson.lesson().steps.iter();
@@ -73,16 +103,12 @@ pub fn lesson_ui(
     ui.horizontal_top(|ui| {
         ui.allocate_ui_with_layout(vec2(width, 0.0), Layout::top_down(Align::Min), |ui| {
             ui.set_width(width);
-            let step = lesson.step();
-            if matches!(step, Step::Predict { .. }) {
-                // the options stay where they are when the result comes
-                ui.set_min_height(above_options(ui, style, step, (width, beside.1)));
+            if let Step::Predict { ask, .. } = lesson.step() {
+                let height = height_of_text(ui, style, (SHORT_RESULT, ask), width);
+                ui.set_min_height(height.max(beside.1));
             }
-            let result = matches!(step, Step::Predict { .. }) && !lesson.is_covering();
-            let result = result.then(|| short_verdict(lesson, urged.is_some()) + " ");
-            let heading = result.unwrap_or_else(|| heading(step).to_owned());
-            text_ui(ui, style, &heading, step.text());
-            action = below_ui(ui, lesson, session, style, urged.is_some());
+            step_ui(ui, lesson, style, false);
+            action = task_ui(ui, lesson, session, style, false);
         });
         if let Some(urged) = urged {
             ui.allocate_ui_with_layout(vec2(NAVIGATION, 0.0), Layout::top_down(Align::Max), |ui| {
@@ -94,54 +120,70 @@ pub fn lesson_ui(
             });
         }
     });
-    action.or(options_ui(ui, lesson, style))
+    action.or(options_ui(ui, lesson, style, SIDE_BY_SIDE))
 }
 
-/// A button for each option of a prediction, with the votes for it.
-pub fn votes_ui(ui: &mut Ui, lesson: &OpenLesson) -> Option<LessonAction> {
-    let mut action = None;
-    for option in 0..lesson.options().len() {
-        let (letter, votes) = (letter(option), lesson.answer().votes.get(option).unwrap_or(&0));
-        let hover = format!("One more vote for {letter} (Shift+{letter}). Right button: one less.");
-        let button = ui.button(format!("{letter} {votes}")).on_hover_text(hover);
-        let more = i32::from(button.clicked()) - i32::from(button.secondary_clicked());
-        action = action.or((more != 0).then_some(LessonAction::Vote(option, more)));
+/// Draws the step in words, as high in every step, above a view that has the whole window: its text, and the
+/// options of a prediction with their votes.
+pub fn lesson_words_ui(ui: &mut Ui, lesson: &OpenLesson, session: &Session, style: &Style) {
+    ui.spacing_mut().item_spacing.y = SPACE;
+    speak_ui(ui, lesson, session);
+    let width = ui.available_width();
+    let height = |step: &Step| {
+        let (result, options): (&str, &[Choice]) = match step {
+            Step::Predict { options, .. } => (SHORT_RESULT, options),
+            step => (heading(step), &[]),
+        };
+        let text = height_of_text(ui, style, (result, step.text()), width);
+        let most = vec![MOST_VOTES; options.len()];
+        let below = SPACE + height_of_text(ui, style, ("", &options_text(options, &most)), width);
+        if options.is_empty() { text } else { text + below }
+    };
+    ui.set_min_height(lesson.lesson().steps.iter().map(height).fold(0.0, f32::max));
+    step_ui(ui, lesson, style, false);
+    if !lesson.options().is_empty() {
+        text_ui(ui, style, "", &options_text(lesson.options(), &lesson.answer().votes));
     }
-    action
+}
+
+/// Gives the step to screen readers.
+fn speak_ui(ui: &mut Ui, lesson: &OpenLesson, session: &Session) {
+    let text = spoken(lesson, session);
+    spoken_ui(ui, Id::unique(("step of a lesson", lesson.number(), &text)), &text);
+}
+
+/// Draws the text of the step after its heading, which is the result of a prediction once that is shown.
+fn step_ui(ui: &mut Ui, lesson: &OpenLesson, style: &Style, is_column: bool) {
+    let step = lesson.step();
+    let is_shown = matches!(step, Step::Predict { .. }) && !lesson.is_covering();
+    let result = is_shown.then(|| short_verdict(lesson, is_column) + " ");
+    text_ui(ui, style, &result.unwrap_or_else(|| heading(step).to_owned()), step.text());
 }
 
 /// Height in points of the strip in a step, with everything that may appear below its text. The text has this
 /// width and, above options, this least height.
 fn height_of(ui: &Ui, style: &Style, step: &Step, (width, least): (f32, f32)) -> f32 {
-    let of = |heading: &str, text: &str| {
-        let mut job = job(style, heading, text);
-        job.wrap.max_width = width;
-        ui.painter().layout_job(job).size().y
-    };
-    let (text, row) = (of(heading(step), step.text()), ui.spacing().interact_size.y.max(1.4 * BODY));
+    let of = |heading: &str, text: &str| height_of_text(ui, style, (heading, text), width);
     match step {
-        Step::Say(_) | Step::Explain(_) => text,
-        Step::Predict { options, .. } => {
-            let rows = rows_of(options.len()) as f32;
-            let below = option_size(ui, options).y * rows + SPACE * (rows - 1.0);
-            above_options(ui, style, step, (width, least)) + SPACE + below
+        Step::Say(text) | Step::Explain(text) => of(heading(step), text),
+        Step::Predict { ask, options, .. } => {
+            let rows = options.len().div_ceil(SIDE_BY_SIDE).max(1) as f32;
+            let below = option_size(ui, options, SIDE_BY_SIDE).y * rows + SPACE * (rows - 1.0);
+            of(SHORT_RESULT, ask).max(least) + SPACE + below
         }
-        Step::Do { hint, .. } => {
+        Step::Do { ask, hint, .. } => {
+            let state = ui.spacing().interact_size.y.max(1.4 * BODY);
             let hint = hint.as_deref().map_or(0.0, |hint| of(HINT, hint) + SPACE);
-            text + row + hint + SPACE
+            of(heading(step), ask) + state + hint + SPACE
         }
     }
 }
 
-/// Height in points of what is above the options of a prediction: its text with the result in front, and
-/// where the text has this least height, the row of the reason.
-fn above_options(ui: &Ui, style: &Style, step: &Step, (width, least): (f32, f32)) -> f32 {
-    let result = if least > 0.0 { LONGEST_RESULT } else { SHORT_RESULT };
-    let mut job = job(style, result, step.text());
+/// Height in points of a text after a heading.
+fn height_of_text(ui: &Ui, style: &Style, (heading, text): (&str, &str), width: f32) -> f32 {
+    let mut job = job(style, heading, text);
     job.wrap.max_width = width;
-    let text = ui.painter().layout_job(job).size().y;
-    let reason = if least > 0.0 { SPACE + ui.spacing().interact_size.y.max(1.4 * BODY) } else { 0.0 };
-    (text + reason).max(least)
+    ui.painter().layout_job(job).size().y
 }
 
 fn heading(step: &Step) -> &'static str {
@@ -169,7 +211,7 @@ fn spoken(lesson: &OpenLesson, session: &Session) -> String {
     format!("Step {number} of {count}. {}{}{options}{hint}", heading(step), plain(step.text()))
 }
 
-/// The result of a prediction beside its options, which stay and have their letters. A ring marks the one
+/// The result of a prediction above its options, which stay and have their letters. A ring marks the one
 /// that was chosen; words say it too if there `is_room`.
 fn short_verdict(lesson: &OpenLesson, is_room: bool) -> String {
     match lesson.outcome() {
@@ -254,53 +296,49 @@ fn text_ui(ui: &mut Ui, style: &Style, heading: &str, text: &str) {
     }
 }
 
-/// Below the text: the reason of a choice, if there is room for it, or the state of a task.
-fn below_ui(
+/// Draws the state of a task, and its hint.
+fn task_ui(
     ui: &mut Ui,
-    lesson: &mut OpenLesson,
+    lesson: &OpenLesson,
     session: &Session,
     style: &Style,
-    has_reason: bool,
+    is_column: bool,
 ) -> Option<LessonAction> {
+    let Step::Do { .. } = lesson.step() else { return None };
     let mut action = None;
-    match lesson.step() {
-        Step::Say(_) | Step::Explain(_) => {}
-        Step::Predict { .. } => {
-            if has_reason && lesson.answer().choice.is_some() && !lesson.is_covering() {
-                ui.horizontal(|ui| reason_ui(ui, lesson, style));
-            }
+    let starts = lesson.step().conditions().into_iter().flat_map(Condition::all_starts).count();
+    let how = judged_by(lesson.lesson(), session.scene().start, starts, session.is_continued);
+    let task = lesson.task(session);
+    let is_met = matches!(task, TaskState::Met);
+    let (state, color) = match task {
+        TaskState::Met => ("Done.".to_owned(), style.accent()),
+        TaskState::Unjudged(why) => (format!("It cannot be judged: {why}"), style.ink()),
+        TaskState::Moving => ("Will be judged once you let go.".to_owned(), style.faint()),
+        TaskState::NotYet(lack) => (not_yet(&lack, is_on_stops(session)), style.ink()),
+        TaskState::Judging => ("Being judged.".to_owned(), style.faint()),
+    };
+    let layout = match is_column {
+        true => Layout::top_down(Align::Min),
+        false => Layout::left_to_right(Align::Center).with_main_wrap(true),
+    };
+    let size = vec2(ui.available_width(), 0.0);
+    ui.allocate_ui_with_layout(size, layout, |ui| {
+        let state = RichText::new(state).color(color);
+        let state = ui.label(if is_met { state.heading() } else { state });
+        if is_met {
+            ui.label(RichText::new(how).color(style.faint()));
+        } else {
+            state.on_hover_text(how);
         }
-        Step::Do { .. } => {
-            let starts = lesson.step().conditions().into_iter().flat_map(Condition::all_starts).count();
-            let how = judged_by(lesson.lesson(), session.scene().start, starts, session.is_continued);
-            let task = lesson.task(session);
-            let is_met = matches!(task, TaskState::Met);
-            let (state, color) = match task {
-                TaskState::Met => ("Done.".to_owned(), style.accent()),
-                TaskState::Unjudged(why) => (format!("It cannot be judged: {why}"), style.ink()),
-                TaskState::Moving => ("Will be judged once you let go.".to_owned(), style.faint()),
-                TaskState::NotYet(lack) => (not_yet(&lack, is_on_stops(session)), style.ink()),
-                TaskState::Judging => ("Being judged.".to_owned(), style.faint()),
-            };
-            ui.horizontal_wrapped(|ui| {
-                let state = RichText::new(state).color(color);
-                let state = ui.label(if is_met { state.heading() } else { state });
-                if is_met {
-                    ui.label(RichText::new(how).color(style.faint()));
-                } else {
-                    state.on_hover_text(how);
-                }
-                if lesson.offered_hint().is_some() && lesson.hint().is_none() {
-                    let name = if lesson.offers_hint() { "Would a hint help? (H)" } else { "Hint (H)" };
-                    let button = ui.add(Button::new(name).small().selected(lesson.offers_hint()));
-                    let is_wanted = button.on_hover_text("Shows the hint").clicked();
-                    action = is_wanted.then_some(LessonAction::Hint);
-                }
-            });
-            if let Some(hint) = lesson.hint() {
-                text_ui(ui, style, HINT, hint);
-            }
+        if lesson.offered_hint().is_some() && lesson.hint().is_none() {
+            let name = if lesson.offers_hint() { "Would a hint help? (H)" } else { "Hint (H)" };
+            let button = ui.add(Button::new(name).small().selected(lesson.offers_hint()));
+            let is_wanted = button.on_hover_text("Shows the hint").clicked();
+            action = is_wanted.then_some(LessonAction::Hint);
         }
+    });
+    if let Some(hint) = lesson.hint() {
+        text_ui(ui, style, HINT, hint);
     }
     action
 }
@@ -313,11 +351,13 @@ fn is_on_stops(session: &Session) -> bool {
 }
 
 fn reason_ui(ui: &mut Ui, lesson: &mut OpenLesson, style: &Style) {
-    let text = "Why, in one word?";
-    let name = ui.label(RichText::new(text).color(style.faint()));
-    let word = lesson.why_mut();
-    let field = TextEdit::singleline(word).desired_width(REASON).char_limit(MAX_REASON);
-    ui.add(field.hint_text("if you like")).labelled_by(name.id);
+    ui.horizontal(|ui| {
+        let text = "Why, in one word?";
+        let name = ui.label(RichText::new(text).color(style.faint()));
+        let width = ui.available_width();
+        let field = TextEdit::singleline(lesson.why_mut()).desired_width(width).char_limit(MAX_REASON);
+        ui.add(field.hint_text("if you like")).labelled_by(name.id);
+    });
 }
 
 /// The steps as dots: filled once they are settled and passed, with a ring around the present one.
@@ -347,8 +387,8 @@ pub fn navigation_ui(ui: &mut Ui, lesson: &OpenLesson, style: &Style, urged: boo
     action
 }
 
-/// The buttons, the last one first.
-fn buttons_ui(ui: &mut Ui, lesson: &OpenLesson, urged: bool) -> Option<LessonAction> {
+/// The buttons, the last one first, in a layout from right to left.
+pub fn buttons_ui(ui: &mut Ui, lesson: &OpenLesson, urged: bool) -> Option<LessonAction> {
     let mut action = None;
     let following = lesson.following().filter(|_| lesson.is_last() && lesson.may_go_on());
     if let Some(name) = following {
@@ -399,87 +439,4 @@ fn urge(button: &Response, urged: bool) {
     } else if urged {
         button.request_focus();
     }
-}
-
-/// Number of rows of `count` options.
-fn rows_of(count: usize) -> usize {
-    count.div_ceil(SIDE_BY_SIDE).max(1)
-}
-
-/// An option with its letter.
-fn option_text(option: usize, choice: &Choice) -> String {
-    format!("{}   {}", letter(option), plain(&choice.text))
-}
-
-/// The votes for an option, if there are any.
-fn votes_text(votes: u32) -> String {
-    match votes {
-        0 => String::new(),
-        1 => "1\u{a0}vote".to_owned(),
-        votes => format!("{votes}\u{a0}votes"),
-    }
-}
-
-/// Width and height in points of each option.
-fn option_size(ui: &Ui, options: &[Choice]) -> Vec2 {
-    let columns = options.len().div_ceil(rows_of(options.len())) as f32;
-    let (space, padding) = (ui.spacing().item_spacing.x, ui.spacing().button_padding);
-    let width = (ui.available_width() - space * (columns - 1.0)) / columns;
-    let font = || FontId::proportional(BODY);
-    let votes = ui.painter().layout_no_wrap(votes_text(MOST_VOTES), font(), Color32::PLACEHOLDER).size().x;
-    let room = width - 2.0 * padding.x - votes - 2.0 * space;
-    let height = |(option, choice): (usize, &Choice)| {
-        let text = option_text(option, choice);
-        ui.painter().layout(text, font(), Color32::PLACEHOLDER, room).size().y
-    };
-    let tallest = options.iter().enumerate().map(height).fold(0.0, f32::max);
-    vec2(width, tallest + 2.0 * padding.y + 4.0)
-}
-
-/// The options of a prediction side by side, all of one height. Once the answer is shown, the one that
-/// holds is filled, and a ring marks another one that was chosen.
-fn options_ui(ui: &mut Ui, lesson: &OpenLesson, style: &Style) -> Option<LessonAction> {
-    let options = lesson.options();
-    if options.is_empty() {
-        return None;
-    }
-    let mut action = None;
-    let columns = options.len().div_ceil(rows_of(options.len()));
-    let each = option_size(ui, options);
-    for (row, choices) in options.chunks(columns).enumerate() {
-        ui.horizontal(|ui| {
-            for (i, choice) in choices.iter().enumerate() {
-                let option = row * columns + i;
-                let votes = *lesson.answer().votes.get(option).unwrap_or(&0);
-                let (text, votes) = (option_text(option, choice), votes_text(votes));
-                let spoken = if votes.is_empty() { text.clone() } else { format!("{text}, {votes}") };
-                if !lesson.is_covering() {
-                    let button = match lesson.outcome() == Outcome::Holds(option) {
-                        true => primary(ui, &text),
-                        false if lesson.answer().choice.as_ref() == Some(&choice.text) => {
-                            Button::new(text).stroke(Stroke::new(2.0, style.accent()))
-                        }
-                        false => Button::new(text),
-                    };
-                    let shown = ui.add_sized(each, button.right_text(votes).wrap().sense(Sense::hover()));
-                    tell(&shown, egui::Role::Label, &spoken);
-                    continue;
-                }
-                let button = ui.add_sized(each, Button::new(text).right_text(votes).wrap());
-                let letter = letter(option);
-                let hover = format!(
-                    "Choose this: nothing is scored (key {letter}). Right button or Shift+{letter}: count a \
-                     vote."
-                );
-                let button = button.on_hover_text(hover);
-                tell(&button, egui::Role::Button, &spoken);
-                if button.clicked() {
-                    action = Some(LessonAction::Choose(option));
-                } else if button.secondary_clicked() {
-                    action = Some(LessonAction::Vote(option, 1));
-                }
-            }
-        });
-    }
-    action
 }

@@ -4,6 +4,7 @@ mod advanced;
 pub mod controls;
 pub(super) mod hint;
 pub(super) mod lesson;
+mod lesson_options;
 pub(super) mod notes;
 pub(super) mod status_line;
 pub mod transport;

@@ -12,7 +12,8 @@ use crate::app::words::meanings::{GLOSSARY, meaning};
 use crate::scene::Scene;
 use crate::scene::lesson::Step;
 
-use super::lesson::{LessonAction, votes_ui};
+use super::lesson::LessonAction;
+use super::lesson_options::votes_ui;
 
 /// Height in points of the heading.
 const HEADING: f32 = 42.0;

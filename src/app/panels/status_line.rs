@@ -39,23 +39,41 @@ pub fn has_column(ui: &Ui) -> bool {
     ui.ctx().content_rect().width() >= NARROW
 }
 
+/// What stands beside the sentence.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Beside {
+    /// A column with the accuracy, where there is room for it.
+    Accuracy,
+    /// The buttons of a lesson.
+    Buttons,
+    /// Nothing, and below it the guide line: it has one row, without what it would take to cross.
+    Guide,
+}
+
 /// Draws the line; without a column beside the sentence, the hover text has the accuracy.
-pub fn status_ui(ui: &mut Ui, session: &mut Session, announcer: &mut Announcer, style: &Style, column: bool) {
-    let has_column = column && has_column(ui);
+pub fn status_ui(
+    ui: &mut Ui,
+    session: &mut Session,
+    announcer: &mut Announcer,
+    style: &Style,
+    beside: Beside,
+) {
+    let has_column = beside == Beside::Accuracy && has_column(ui);
     let sentence = session.sentence();
     announcer.say(ui, &sentence);
     ui.horizontal_centered(|ui| {
-        let (rect, _) = ui.allocate_exact_size(Vec2::splat(STATUS + 6.0), Sense::hover());
+        let height = ui.available_height().min(STATUS + 6.0);
+        let (rect, _) = ui.allocate_exact_size(Vec2::new(STATUS + 6.0, height), Sense::hover());
         let (kind, color) = (sentence.kind, style.kind(sentence.kind));
-        ui.painter().extend(kind_shapes(kind, rect.center(), STATUS * 0.42, color));
+        ui.painter().extend(kind_shapes(kind, rect.center(), height.min(STATUS) * 0.42, color));
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             if has_column {
                 beside_ui(ui, session, style);
-            } else if column {
+            } else if beside == Beside::Accuracy {
                 stop_ui(ui, session);
             }
             ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
-                let text = sentence.whole();
+                let text = if beside == Beside::Guide { sentence.text.clone() } else { sentence.whole() };
                 // the name of the motion is read first, in larger letters where there is room
                 let (name, rest) = text.split_at(text.find(':').map_or(0, |at| at + 1));
                 let is_compact = ui.ctx().content_rect().width() < COMPACT_BELOW;

@@ -211,7 +211,7 @@ impl Knob<'_> {
 
     /// Width of the slider, reduced for a long number so that both together keep their width.
     fn slider_width(&self, ui: &Ui, value: f64, decimals: usize) -> f32 {
-        let text = format!("{} {}", shown(value, decimals), self.unit);
+        let text = format!("{} {}", with_minus(&shown(value, decimals)), self.unit);
         let font = egui::TextStyle::Button.resolve(ui.style());
         let text = ui.painter().layout_no_wrap(text, font, Color32::PLACEHOLDER).size().x;
         let number = text + 2.0 * ui.spacing().button_padding.x;

@@ -5,7 +5,7 @@ use eframe::egui::{self, Align2, Ui, UiBuilder, vec2};
 use crate::app::session::explore::Level;
 use crate::app::ui::widgets::tell;
 use crate::app::words::numbers::{three, with_minus};
-use crate::output::{Cell, Chart, Panel, PlotAxis, Role};
+use crate::output::{Cell, Chart, Layer, Marks, Panel, PlotAxis, Role};
 
 use super::hand::axes_input;
 use super::labels::{plated, pointer_rests};
@@ -56,12 +56,22 @@ fn plane_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     }
     stops_ui(ui, context, frame, (frame.top(), frame.bottom()), 0.0);
     if let Some(Ok(level)) = &level {
+        // over the stops, at which a mass may rest
+        let states = level.chart.panels().flat_map(|panel| &panel.layers);
+        let states: Vec<Layer> = states.filter(|layer| is_state(layer)).cloned().collect();
+        pane.draw(&ui.painter().with_clip_rect(frame), &style, 0, &states);
         starts(&ui.painter().with_clip_rect(frame), context, &pane, level.per_speed);
         pointer_ui(ui, context, &pane, level, is_whole);
     }
 }
 
-/// The picture over these ends of its axes, without the stops, which the view draws to be dragged.
+/// Whether it has the states of an attractor.
+fn is_state(layer: &Layer) -> bool {
+    matches!(layer.marks, Marks::Points(_))
+}
+
+/// The picture over these ends of its axes, without the stops, which the view draws to be dragged, and without
+/// the states of the attractors.
 fn shown(mut chart: Chart, across: (f64, f64), up: (f64, f64)) -> Chart {
     if chart.first_panel().is_none() {
         let axis = |words: &str| PlotAxis::between(0.0, 1.0, words);
@@ -69,7 +79,7 @@ fn shown(mut chart: Chart, across: (f64, f64), up: (f64, f64)) -> Chart {
         chart = Chart::stack(vec![panel], "", interwell_studies::study::Table::new());
     }
     if let Some(panel) = chart.first_panel() {
-        panel.layers.retain(|layer| layer.role != Role::Stop);
+        panel.layers.retain(|layer| layer.role != Role::Stop && !is_state(layer));
         (panel.x, panel.y) = (panel.x.zoomed(across), panel.y.zoomed(up));
     }
     chart

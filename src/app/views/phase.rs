@@ -47,9 +47,8 @@ const MAX_STROBES: f64 = 300.0;
 
 /// Radius in points of the mark of the present state.
 const STATE: f32 = 6.0;
-/// Radius in points of the dot of a start, and that of one among many.
-const START: f32 = 2.0;
-const LEAST_START: f32 = 1.0;
+/// Radius in points of the dot of a start.
+const START: f32 = 3.0;
 /// Width in points of the button beside the legend.
 const BUTTON: f32 = 88.0;
 
@@ -138,16 +137,26 @@ fn still(model: &Model, axes: (PlotAxis, PlotAxis), points_only: bool) -> Chart 
     Chart::stack(vec![panel], "", Table::new())
 }
 
-/// Dots at the starts of which a lesson speaks; the axis upward has a velocity in m/s times `per_speed`.
+/// Marks of the starts of which a lesson speaks; the axis upward has a velocity in m/s times `per_speed`: dots
+/// or, where these would touch or hide what is below, dashes at both sides of each place.
 pub(super) fn starts(painter: &egui::Painter, context: &ViewContext<'_>, pane: &Pane, per_speed: f64) {
     let starts = context.memory.starts.iter();
     let places: Vec<Pos2> = starts.filter_map(|(x, v)| pane.place(0, (x * 1e3, v * per_speed))).collect();
-    // dots side by side do not touch
     let apart = places.windows(2).map(|pair| pair[0].distance(pair[1])).fold(f32::INFINITY, f32::min);
-    let radius = START.min(0.4 * apart).max(LEAST_START);
+    if apart >= 2.5 * START {
+        for at in places {
+            // seen on the colour of any basin
+            painter.circle(at, START, Color32::WHITE, Stroke::new(0.3 * START, Color32::BLACK));
+        }
+        return;
+    }
+    let width = (0.5 * apart).clamp(0.5, 1.0);
     for at in places {
-        // seen on the colour of any basin
-        painter.circle(at, radius, Color32::WHITE, Stroke::new(0.3 * radius, Color32::BLACK));
+        for side in [-1.0, 1.0] {
+            let dash = [START, 3.0 * START].map(|far| at + vec2(side * far, 0.0));
+            painter.line_segment(dash, Stroke::new(width + 1.0, Color32::WHITE));
+            painter.line_segment(dash, Stroke::new(width, Color32::BLACK));
+        }
     }
 }
 

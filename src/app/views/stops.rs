@@ -108,6 +108,16 @@ pub fn best_stops(context: &ViewContext<'_>) -> Option<f64> {
     session.best.limit_mm().filter(|_| is_apart)
 }
 
+/// The stops that are outlined: their displacements in mm, their sides, and the lines. A question asks about
+/// some, and the best stops are shown while their card is open.
+pub(super) fn outlined(context: &ViewContext<'_>) -> impl Iterator<Item = (f64, f32, Stroke)> {
+    let asked = context.memory.asked_stops.map(|mm| (mm, context.style.stop_stroke()));
+    let best = best_stops(context);
+    let best = [best.map(|mm| -mm), best].map(|mm| (mm, context.style.stroke(Role::BestStop)));
+    let all = asked.into_iter().chain(best).zip([-1.0, 1.0, -1.0, 1.0]);
+    all.filter_map(|((mm, stroke), side)| Some((mm?, side, stroke)))
+}
+
 /// Draws the stops over `rect` between the heights `top` and `bottom`, and lets them be dragged. The face of
 /// a stop is drawn `radius` points, the half width of the mass, outside its travel limit.
 pub fn stops_ui(
@@ -119,11 +129,7 @@ pub fn stops_ui(
 ) {
     walls_ui(ui, context, rect, (top, bottom), radius);
     // over the walls, so that an edge behind a wall is seen
-    let asked = context.memory.asked_stops.map(|mm| (mm, context.style.stop_stroke()));
-    let best = best_stops(context);
-    let best = [best.map(|mm| -mm), best].map(|mm| (mm, context.style.stroke(Role::BestStop)));
-    for ((mm, stroke), side) in asked.into_iter().chain(best).zip([-1.0_f32, 1.0, -1.0, 1.0]) {
-        let Some(mm) = mm else { continue };
+    for (mm, side, stroke) in outlined(context) {
         let x = context.span.screen_from_world(mm / 1e3, rect) + side * radius;
         let ends = [pos2(x, top), pos2(x + side * WALL, top), pos2(x + side * WALL, bottom), pos2(x, bottom)];
         let outline = Shape::dashed_line(&[&ends[..], &ends[..1]].concat(), stroke, 5.0, 4.0);

@@ -25,7 +25,7 @@ use super::labels::{Taken, ago, free_place};
 use super::mass::mass_ui;
 use super::pane::{LEGEND, Pane, Place, kept_pane_ui};
 use super::ranges::{bottom, room_for_push};
-use super::stops::{BEST_STOPS, WALL, best_stops, sides, stops_ui, travel_limits, wall};
+use super::stops::{BEST_STOPS, WALL, best_stops, outlined, sides, stops_ui, travel_limits, wall};
 use super::view::Axis;
 use super::{Span, View, ViewContext};
 
@@ -177,7 +177,8 @@ fn landmarks(
     let Some(barrier) = model.mechanism().landscape.barrier else { return };
     let look = (style.small(), style.faint());
     let screen = |x: f64| context.span.screen_from_world(x, rect);
-    taken.places.extend(sides(model).map(|(x, side)| wall(rect, screen(x), side)));
+    let outlined = outlined(context).map(|(mm, side, _)| (mm / 1e3, side));
+    taken.places.extend(sides(model).chain(outlined).map(|(x, side)| wall(rect, screen(x), side)));
     let potential = |x: f64| model.mechanism().curve.potential(x);
     let joule = potential(barrier.x) - bottom(model).0;
     let place = |x: f64, energy: f64| pane.place(0, (x * 1e3, energy)).unwrap_or(rect.min);

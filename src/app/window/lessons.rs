@@ -3,16 +3,14 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use eframe::egui::{self, Id, Key, LayerId, Modifiers, Order, Panel, Rect, StrokeKind, Ui};
+use eframe::egui::{self, Key, Modifiers, Rect, Ui};
 
-use crate::app::panels::controls;
 use crate::app::panels::hint::Hint;
-use crate::app::panels::lesson::{LessonAction, lesson_ui, navigation_ui};
+use crate::app::panels::lesson::LessonAction;
 use crate::app::session::Session;
 use crate::app::session::editor::Editor;
 use crate::app::session::lesson::{OpenLesson, Records, Turn};
-use crate::app::ui::style::Style;
-use crate::app::ui::widgets::{bare, close_ui, dialog_ui, panel_frame, primary};
+use crate::app::ui::widgets::{close_ui, dialog_ui, primary};
 use crate::app::views::{Cover, Memory, View};
 use crate::app::words::lesson::{bold_words, letter, numbered, question, solved};
 use crate::questions::Error;
@@ -27,9 +25,6 @@ use super::lecturer::Notes;
 
 pub(super) const CANNOT_OPEN_LESSON: &str = "This lesson cannot be opened";
 
-/// Distance in points between a control and the outline around it.
-const OUTLINE_DISTANCE: f32 = 2.0;
-
 /// Number of the letters that count votes at a prediction with as many options.
 const MOST_LETTERS: usize = 3;
 
@@ -42,13 +37,13 @@ pub(super) struct Lessons {
     /// The lesson that was finished, until its closing dialog is closed.
     finished: Option<Finished>,
     /// Whether the button that goes on is to have the keyboard focus.
-    urged: bool,
+    pub urged: bool,
     /// The step that a key that goes on shall pass at its second press, while the notice about it is shown.
     asked: Option<usize>,
     /// The action of the buttons beside the status line in this frame.
-    chosen: Option<LessonAction>,
+    pub chosen: Option<LessonAction>,
     /// Rectangles of the controls in this frame.
-    controls: Vec<(String, Rect)>,
+    pub controls: Vec<(String, Rect)>,
 }
 
 /// The content of a lesson's closing dialog, and the lesson that comes next.
@@ -243,8 +238,6 @@ impl Window {
 
     pub(super) fn act_in_lesson(&mut self, act: LessonAction) {
         let Some(lesson) = &mut self.lessons.open else { return };
-        // the result appears in the strip, which a view over the whole window hides
-        self.filled = self.filled.filter(|_| matches!(act, LessonAction::Vote(..)));
         self.lessons.asked = self.lessons.asked.filter(|_| act == LessonAction::Next);
         let mut skipped = None;
         let turn = match act {
@@ -257,6 +250,8 @@ impl Window {
             }
             LessonAction::Next if lesson.is_covering() || lesson.is_last() => {
                 self.lessons.urged = true;
+                // the buttons of a last step stand beside the views
+                self.filled = self.filled.filter(|_| lesson.is_covering());
                 self.lessons.asked = Some(lesson.number()).filter(|_| lesson.is_covering());
                 let votes: u32 = lesson.answer().votes.iter().sum();
                 let counted = if votes == 0 { "Nobody has chosen yet" } else { "The votes are counted" };
@@ -294,7 +289,10 @@ impl Window {
                 lesson.vote(option, more);
                 Turn::Stay
             }
-            LessonAction::NextLesson(name) => return self.open_lesson(name),
+            LessonAction::NextLesson(name) => {
+                self.filled = None;
+                return self.open_lesson(name);
+            }
             LessonAction::Hint => {
                 lesson.hinted = !lesson.hinted;
                 Turn::Stay
@@ -358,11 +356,13 @@ impl Window {
         turn.into_iter().for_each(|turn| self.take_turn(turn));
     }
 
-    /// Brings the views to the front that bold words in the text of the step name, the first of them last.
-    pub(super) fn show_named_views(&mut self) {
-        let Some(lesson) = &self.lessons.open else { return };
-        let named = bold_words(lesson.step().text()).filter_map(|word| View::named(&word));
-        named.collect::<Vec<View>>().into_iter().rev().for_each(|view| self.tiling.show_in_front(view));
+    /// Brings the views to the front that bold words in the text of the step name, the first of them last, and
+    /// returns that one.
+    pub(super) fn show_named_views(&mut self) -> Option<View> {
+        let named = bold_words(self.lessons.open.as_ref()?.step().text());
+        let named: Vec<View> = named.filter_map(|word| View::named(&word)).collect();
+        named.iter().rev().for_each(|view| self.tiling.show_in_front(*view));
+        named.into_iter().find(|view| self.tiling.shows(*view))
     }
 
     fn take_turn(&mut self, turn: Turn) {
@@ -372,8 +372,10 @@ impl Window {
         if !matches!(turn, Turn::Stay) {
             // what was said of the step before
             self.messages.notice = None;
+            let named = self.show_named_views();
+            // it takes the place of a view that has the whole window
+            self.filled = self.filled.map(|filled| named.unwrap_or(filled));
         }
-        self.show_named_views();
         let (Some(lesson), Turn::Show(scene, plays)) = (&self.lessons.open, turn) else { return };
         match self.session_on(lesson, *scene, plays) {
             Ok(mut session) => {
@@ -434,62 +436,5 @@ impl Window {
             ctx.request_repaint_after_secs(left as f32);
         }
         self.session.keeps_remedy = !lesson.tells_remedy();
-    }
-
-    /// The dots of the steps and the buttons of the open lesson.
-    pub(super) fn lesson_navigation_ui(&mut self, ui: &mut Ui, style: &Style) {
-        let urged = std::mem::take(&mut self.lessons.urged);
-        self.lessons.chosen =
-            self.lessons.open.as_ref().and_then(|open| navigation_ui(ui, open, style, urged));
-    }
-
-    /// The strip of the open lesson, which in a `compact` window has no buttons, and its controls; they are
-    /// disabled while the motion is covered.
-    pub(super) fn lesson_panels_ui(&mut self, ui: &mut Ui, style: &Style, compact: bool) {
-        let urged = (!compact).then(|| std::mem::take(&mut self.lessons.urged));
-        let Some(lesson) = &mut self.lessons.open else { return };
-        let around = if compact { 2 } else { 4 };
-        // not a panel, whose height would follow its contents one frame late
-        let spacing = std::mem::take(&mut ui.spacing_mut().item_spacing.y);
-        let strip = panel_frame(12, around + 2).show(ui, |ui| {
-            ui.spacing_mut().item_spacing.y = spacing;
-            ui.set_min_width(ui.available_width());
-            lesson_ui(ui, lesson, &self.session, style, urged)
-        });
-        ui.spacing_mut().item_spacing.y = spacing;
-        if let Some(action) = strip.inner.or(self.lessons.chosen.take()) {
-            self.act_in_lesson(action);
-        }
-        let Some(lesson) = self.lessons.open.as_ref().filter(|open| !open.lesson().controls.is_empty())
-        else {
-            return;
-        };
-        // so that an outline around a control keeps clear of the views
-        let around = if compact { around } else { 2 * around };
-        bare(Panel::top("controls of the lesson"), 12, around).show(ui, |ui| {
-            if lesson.is_covering() {
-                ui.disable();
-            }
-            let (named, asks) = (&lesson.lesson().controls, lesson.covered_answer());
-            self.lessons.controls = controls::named_ui(ui, &mut self.session, named, asks);
-        });
-    }
-
-    /// Outlines around the controls and views on the screen that bold words in the text of the step name.
-    pub(super) fn pointing_ui(&self, ctx: &egui::Context, style: &Style) {
-        let shown = |open: &&OpenLesson| self.filled.is_none() && !open.is_covering();
-        let Some(lesson) = self.lessons.open.as_ref().filter(shown) else { return };
-        let layer = LayerId::new(Order::Middle, Id::unique("pointing"));
-        let painter = ctx.layer_painter(layer);
-        for word in bold_words(lesson.step().text()) {
-            let stroke = style.pointing_stroke();
-            if let Some(control) =
-                self.lessons.controls.iter().find(|shown| controls::is_named(&word, &shown.0))
-            {
-                painter.rect_stroke(control.1.expand(OUTLINE_DISTANCE), 4.0, stroke, StrokeKind::Outside);
-            } else if let Some(rect) = View::named(&word).and_then(|view| self.tiling.place_of(view)) {
-                painter.rect_stroke(rect, 4.0, stroke, StrokeKind::Inside);
-            }
-        }
     }
 }

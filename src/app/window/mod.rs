@@ -8,7 +8,7 @@ use eframe::CreationContext;
 use eframe::egui::{self, CentralPanel, Panel, RichText, Ui};
 
 use crate::app::panels::hint::guide_ui;
-use crate::app::panels::status_line::{self, covered_ui, has_column, status_ui};
+use crate::app::panels::status_line::{self, Beside, covered_ui, has_column, status_ui};
 use crate::app::panels::{controls, notes, transport};
 use crate::app::session::lesson::Records;
 use crate::app::ui::settings::Settings;
@@ -49,6 +49,7 @@ mod keys;
 pub mod layouts;
 pub mod leave;
 mod lecturer;
+mod lesson_bars;
 mod lessons;
 mod measured_dialog;
 mod menu;
@@ -121,9 +122,12 @@ impl Window {
         let mut commands = self.bars_ui(ui, &style, compact);
         self.follow_lesson(&ctx);
         if self.filled.is_some() {
-            // the view has the whole window
+            self.lesson_words_ui(ui, &style);
         } else if self.lessons.open.is_some() {
-            self.lesson_panels_ui(ui, &style, compact && has_column(ui));
+            match compact {
+                true => self.lesson_strip_ui(ui, &style, !has_column(ui)),
+                false => self.lesson_column_ui(ui, &style),
+            }
         } else {
             commands.extend(self.controls_ui(ui, compact));
             self.session.follow_best();
@@ -150,11 +154,18 @@ impl Window {
         focus_ui(&ctx, &style);
     }
 
-    /// Closes hover texts once a dialog has opened: one that is open would stay as long as the pointer does,
-    /// over the dialog. A layer has one hover text at a time: an empty one takes the place of any other.
+    /// Closes hover texts once a dialog has opened, and from a press of a key until the pointer moves: one that
+    /// is open would stay as long as the pointer does. A layer has one hover text at a time: an empty one takes
+    /// the place of any other.
     fn hide_hover_texts(&mut self, ui: &Ui) {
+        let (is_pressed, is_moved) = ui.input(|input| {
+            let is_key = |event: &egui::Event| matches!(event, egui::Event::Key { pressed: true, .. });
+            let is_move = |event: &egui::Event| matches!(event, egui::Event::PointerMoved(_));
+            (input.events.iter().any(is_key), input.events.iter().any(is_move))
+        });
+        self.hushed = (self.hushed || is_pressed) && !is_moved;
         let waits = self.waits_for_answer();
-        if waits && !self.waited {
+        if waits && !self.waited || self.hushed {
             let (ctx, id) = (ui.ctx().clone(), egui::Id::unique("no hover text"));
             let mut empty = egui::Tooltip::always_open(ctx, ui.layer_id(), id, egui::Pos2::ZERO);
             empty.popup = empty.popup.frame(egui::Frame::NONE);
@@ -195,28 +206,32 @@ impl Window {
         let covered = self.motion_is_covered();
         let status = bare(Panel::top("status"), 12, 2).exact_size(status_line::height(ui));
         let leads = compact && has_column(ui) && self.lessons.open.is_some();
-        // a compact window has no guide line of the scene: what was asked for stands in place of the sentence
+        // a compact window has no guide line of the scene: what was asked for stands below the sentence
         let asked = self.ways || self.session.best.is_shown();
-        let guides = asked && compact && !self.hint.has_line && self.lessons.open.is_none();
+        let guides = asked && compact && !covered && !self.hint.has_line && self.lessons.open.is_none();
         let chosen = status.show(ui, |ui| {
+            if guides {
+                ui.spacing_mut().item_spacing.y = 0.0;
+                let row = egui::vec2(ui.available_width(), 0.5 * ui.available_height());
+                let layout = egui::Layout::left_to_right(egui::Align::Center);
+                ui.allocate_ui_with_layout(row, layout, |ui| {
+                    status_ui(ui, &mut self.session, &mut self.announcer, style, Beside::Guide);
+                });
+                return ui.allocate_ui_with_layout(row, layout, |ui| self.guide_line_ui(ui, style)).inner;
+            }
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 if leads {
                     self.lesson_navigation_ui(ui, style);
                 }
-                let row = ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
-                    match covered {
-                        true => covered_ui(ui, !self.covered),
-                        false if guides => {
-                            self.announcer.say(ui, &self.session.sentence());
-                            return self.guide_line_ui(ui, style);
-                        }
-                        false => status_ui(ui, &mut self.session, &mut self.announcer, style, !leads),
+                ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| match covered {
+                    true => covered_ui(ui, !self.covered),
+                    false => {
+                        let beside = if leads { Beside::Buttons } else { Beside::Accuracy };
+                        status_ui(ui, &mut self.session, &mut self.announcer, style, beside);
                     }
-                    None
                 });
-                row.inner
-            })
-            .inner
+            });
+            None
         });
         bar.inner.into_iter().chain(chosen.inner).collect()
     }

@@ -79,6 +79,8 @@ pub struct Window {
     pub(super) glossary: bool,
     /// Whether a dialog was open in the last frame.
     pub(super) waited: bool,
+    /// Whether a key was pressed since the pointer moved last.
+    pub(super) hushed: bool,
     pub(super) wake: Wake,
     /// The settings that were applied last; they are applied again only if they change.
     pub(super) applied: Option<Settings>,
@@ -152,6 +154,7 @@ impl Window {
             lessons: Lessons::default(),
             glossary: false,
             waited: false,
+            hushed: false,
             wake,
             applied: None,
             pace: Pace::default(),
@@ -213,7 +216,8 @@ impl Window {
             let views: Vec<View> = lesson.lesson().views.iter().map(|view| View::from(*view)).collect();
             self.tiling = Tiling::of_lesson(&views, room);
             self.tiling.cover_surveys(lesson.hides_surveys());
-            return self.show_named_views();
+            self.show_named_views();
+            return;
         }
         self.tiling = match (self.arrangement, &self.custom) {
             (Arrangement::Custom, Some(saved)) => Tiling::custom(saved, room),

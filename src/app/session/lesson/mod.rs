@@ -155,6 +155,15 @@ impl OpenLesson {
         if let Step::Predict { options, .. } = self.step() { options } else { &[] }
     }
 
+    /// The reply to the option that was chosen, once it is known that another one holds.
+    pub fn reply(&self) -> Option<&str> {
+        let Outcome::Holds(holding) = self.outcome() else { return None };
+        let chosen = self.answer().choice.as_ref().filter(|_| self.answer().shown);
+        let is_chosen = |choice: &&Choice| Some(&choice.text) == chosen;
+        let chosen = self.options().iter().find(is_chosen)?;
+        chosen.reply.as_deref().filter(|_| self.options()[holding].text != chosen.text)
+    }
+
     /// Whether the motion and all results are covered: in a prediction that has not been shown.
     pub fn is_covering(&self) -> bool {
         matches!(self.step(), Step::Predict { .. }) && !self.answer().shown
