@@ -161,12 +161,12 @@ fn page_down_stops_at_a_covered_prediction_and_at_the_last_step() {
     while !harness.state().lesson().unwrap().is_last() {
         go_on(&mut harness);
     }
-    for _ in 0..3 {
-        press(&mut harness, Key::PageDown);
-        assert!(harness.state().lesson().unwrap().is_last());
-    }
+    press(&mut harness, Key::PageDown);
+    assert!(harness.state().lesson().unwrap().is_last());
     assert!(harness.state().notice().is_some_and(|text| text.contains("Lesson 2")));
-    press(&mut harness, Key::Enter);
+    // the second press holds for as long as nothing else is done
+    harness.run_steps(600);
+    press(&mut harness, Key::PageDown);
     assert_eq!(harness.state().lesson().unwrap().key(), LESSONS[1].name);
 }
 
@@ -184,12 +184,12 @@ fn a_choice_by_its_key_leaves_no_button_with_the_keyboard() {
 
 /// A clicker has no Enter.
 #[test]
-fn page_down_twice_reveals_and_a_vote_between_does_not() {
+fn page_down_twice_reveals_also_with_a_late_vote_between() {
     let (mut harness, at) = asked();
     press(&mut harness, Key::PageDown);
+    harness.run_steps(600);
     harness.key_press_modifiers(Modifiers::SHIFT, Key::A);
     harness.run_steps(3);
-    press(&mut harness, Key::PageDown);
     assert!(harness.state().lesson().unwrap().is_covering());
     press(&mut harness, Key::PageDown);
     assert!(!harness.state().lesson().unwrap().is_covering());

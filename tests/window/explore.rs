@@ -9,7 +9,7 @@ use interwell::scene::{Layout, Start};
 use interwell_studies::study::{Direction, Signal};
 
 use crate::shared::axis;
-use crate::support::{PROJECTED, WIDE, command, press_with_ctrl, wait_until, window};
+use crate::support::{LONG, PROJECTED, WIDE, command, painted, press_with_ctrl, wait_until, window};
 
 const AMPLITUDE: &str = "excitation.amplitude_g";
 
@@ -134,6 +134,23 @@ fn basins_come_coarse_first_and_a_click_begins_there() {
     // the start has no part in the question
     assert!(session.explore.basins.is_whole());
     assert!(session.undo() && *session.scene() == before);
+}
+
+#[test]
+fn basins_that_come_between_two_frames_are_drawn() {
+    let mut harness = window("paper", WIDE);
+    command(&mut harness, Command::Arrange(Layout::Explore));
+    harness.get_by_label("Basins").click();
+    for (mm, share) in [(4.0, "rest left"), (1.5, "interwell"), (4.0, "rest left")] {
+        harness.state_mut().session.set_number("stops.travel_limit_mm", mm).unwrap();
+        harness.state_mut().session.end_gesture();
+        harness.run_steps(2);
+        // all levels of the answer come at once
+        assert!(harness.state_mut().session.explore.basins.wait(LONG));
+        harness.run_steps(3);
+        let legend: Vec<String> = painted(&harness).into_iter().map(|text| text.0).collect();
+        assert!(legend.iter().any(|text| text.contains(share) && text.contains('%')), "{mm} {legend:?}");
+    }
 }
 
 #[test]

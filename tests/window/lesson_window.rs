@@ -1,6 +1,6 @@
 //! The window of a lesson: its strip, controls, views, notes, glossary and files.
 
-use eframe::egui::{self, Key, accesskit::Role};
+use eframe::egui::{self, Key, Modifiers, accesskit::Role};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use interwell::app::ui::settings::Settings;
 use interwell::app::ui::style::Style;
@@ -13,7 +13,7 @@ use interwell_studies::study::result_fields;
 use crate::lessons::{
     OWN, Shown, go_on, go_to, is_anywhere, number, opened, opened_own, step, until, written,
 };
-use crate::support::{PROJECTED, WIDE, command, press, press_with_ctrl, sliced, window};
+use crate::support::{PROJECTED, WIDE, command, is_painted, press, press_with_ctrl, sliced, window};
 
 #[test]
 fn a_built_in_lesson_opens_by_its_name_number_or_words() {
@@ -240,4 +240,79 @@ fn the_command_line_of_a_lesson_says_all_that_was_changed() {
     assert_eq!(document.scene, *harness.state().session.scene(), "{line}");
     assert_ne!(document.scene, Document::load("first-look").unwrap().scene);
     harness.run_steps(1);
+}
+
+#[test]
+fn what_does_not_hold_gets_a_reply_by_choice_or_by_most_votes() {
+    let asked = || {
+        let mut harness = opened(LESSONS[0].name, WIDE);
+        assert!(go_to(&mut harness, |step| matches!(step, Step::Predict { .. })));
+        harness
+    };
+    let replies = ["It did get there.", "The hilltop is a place of balance"];
+    for (key, reply) in [(Key::A, Some(0)), (Key::B, None), (Key::C, Some(1))] {
+        let mut harness = asked();
+        press(&mut harness, key);
+        until(&mut harness, "the result", |shown| shown.state().lesson().unwrap().answer().outcome.is_some());
+        harness.run_steps(2);
+        for (number, text) in replies.iter().enumerate() {
+            assert_eq!(is_painted(&harness, text), reply == Some(number), "{key:?}");
+        }
+    }
+    // most of those that do not hold, whatever holds has
+    let mut harness = asked();
+    for key in [Key::A, Key::B, Key::B, Key::B, Key::C, Key::C] {
+        harness.key_press_modifiers(Modifiers::SHIFT, key);
+        harness.run_steps(2);
+    }
+    press(&mut harness, Key::Enter);
+    until(&mut harness, "the reply", |shown| is_painted(shown, replies[1]));
+    assert!(!is_painted(&harness, replies[0]));
+}
+
+#[test]
+fn sliders_keep_their_ranges_from_step_to_step() {
+    let mut harness = opened("design-it", WIDE);
+    let ranges = |harness: &Shown| {
+        let sliders = harness.query_all_by_role(Role::Slider).map(|node| node.accesskit_node());
+        let of_controls = sliders.filter(|node| {
+            node.label().is_some_and(|name| ["preload", "travel limit ±", "amplitude"].contains(&&*name))
+        });
+        of_controls.map(|node| (node.label(), node.max_numeric_value())).collect::<Vec<_>>()
+    };
+    let before = ranges(&harness);
+    assert_eq!(before.len(), 3);
+    // the preload goes from 2.7 to 1.0 mm
+    assert!(go_to(&mut harness, |step| matches!(step, Step::Do { .. })));
+    assert_eq!(harness.state().session.number("mechanism.preload_mm"), Some(1.0));
+    assert_eq!(ranges(&harness), before);
+}
+
+#[test]
+fn a_survey_takes_no_room_until_the_first_prediction_is_shown() {
+    let mut harness = opened("the-price-of-a-stop", WIDE);
+    let place = |harness: &Shown| harness.state().tiling.place_of(View::Map);
+    assert_eq!(place(&harness), None);
+    assert!(go_to(&mut harness, |step| matches!(step, Step::Predict { .. })));
+    assert_eq!(place(&harness), None);
+    go_on(&mut harness);
+    harness.run_steps(2);
+    assert!(place(&harness).is_some_and(|map| map.width() > 400.0));
+}
+
+#[test]
+fn a_task_that_was_done_says_so_when_the_scene_is_changed_after_it() {
+    let mut harness = opened("a-stop-that-helps", WIDE);
+    assert!(go_to(&mut harness, |step| matches!(step, Step::Do { .. })));
+    let limit = |harness: &mut Shown, mm: f64| {
+        harness.state_mut().session.set_number("stops.travel_limit_mm", mm).unwrap();
+        harness.state_mut().session.end_gesture();
+        harness.run_steps(2);
+    };
+    limit(&mut harness, 1.5);
+    until(&mut harness, "the task is done", |shown| is_painted(shown, "Done."));
+    limit(&mut harness, 3.0);
+    assert!(is_painted(&harness, "Done, before your last changes."));
+    limit(&mut harness, 1.5);
+    assert!(is_painted(&harness, "Done.") && !is_painted(&harness, "last changes"));
 }

@@ -138,8 +138,8 @@ pub fn row_ui(ui: &mut Ui, session: &mut Session, more: &mut bool) {
     });
 }
 
-/// Whether a field has another value in the scene about which a lesson `asks`: its control is left out, with its
-/// place.
+/// Whether a field has another value in the scene about which a lesson `asks`: its control is left out, with
+/// its place.
 fn is_asked(session: &Session, path: &str, asks: Option<&Scene>) -> bool {
     let present = session.number(path);
     asks.is_some_and(|scene| FieldPath::new(path).get(scene).is_some_and(|asked| Some(asked) != present))
@@ -150,8 +150,8 @@ fn named<'a>(session: &Session, controls: &'a [String]) -> Vec<&'a String> {
     controls.iter().filter(|path| *path == SWITCH || session.number(path).is_some()).collect()
 }
 
-/// The controls that a lesson names, one below another. A field that has another value in the scene about which
-/// the lesson `asks` is left out, with its place. Returns the rectangle of each control.
+/// The controls that a lesson names, one below another. A field that has another value in the scene about
+/// which the lesson `asks` is left out, with its place. Returns the rectangle of each control.
 pub fn named_column_ui(
     ui: &mut Ui,
     session: &mut Session,

@@ -2,7 +2,7 @@
 
 use eframe::egui::text::{LayoutJob, TextFormat};
 use eframe::egui::{
-    self, Align, Button, Color32, FontId, Id, Label, Layout, Popup, Pos2, Response, RichText, Sense,
+    self, Align, Button, Color32, FontId, Id, Label, Layout, Popup, Pos2, Rect, Response, RichText, Sense,
     SetOpenCommand, Stroke, TextEdit, Ui, vec2,
 };
 
@@ -15,6 +15,7 @@ use crate::app::words::meanings::{meaning, terms};
 use crate::app::words::numbers::unbroken;
 use crate::scene::lesson::{Choice, Condition, Step};
 
+use super::controls;
 use super::lesson_options::{option_size, options_text, options_ui};
 use super::status_line::spoken_ui;
 
@@ -53,33 +54,64 @@ pub enum LessonAction {
     NextLesson(&'static str),
 }
 
-/// Draws the column of a wide window without its buttons: the dots of the steps, the text, the options one
-/// below another, the reply to a choice, the state of a task. Returns the chosen action.
+/// Draws the column of a wide window: the dots of the steps and the buttons, which stay where they are, and
+/// below them the text, the options one below another, the reply to a choice, the controls and the state of a
+/// task. If `urged`, the button that continues gets the keyboard focus. Returns the chosen action and the
+/// rectangle of each control.
 pub fn lesson_column_ui(
     ui: &mut Ui,
     lesson: &mut OpenLesson,
-    session: &Session,
+    session: &mut Session,
     style: &Style,
-) -> Option<LessonAction> {
-    ui.spacing_mut().item_spacing.y = COLUMN_SPACE;
+    urged: bool,
+) -> (Option<LessonAction>, Vec<(String, Rect)>) {
     speak_ui(ui, lesson, session);
-    dots_ui(ui, lesson, style);
-    let width = ui.available_width();
-    ui.scope(|ui| {
-        if let Step::Predict { ask, .. } = lesson.step() {
-            // the options stay where they are when the result comes
-            ui.set_min_height(height_of_text(ui, style, (LONGEST_RESULT, ask), width));
-        }
-        step_ui(ui, lesson, style, true);
+    let row = vec2(ui.available_width(), CONTROL);
+    let buttons = ui.allocate_ui_with_layout(row, Layout::right_to_left(Align::Center), |ui| {
+        let action = buttons_ui(ui, lesson, urged);
+        ui.with_layout(Layout::left_to_right(Align::Center), |ui| dots_ui(ui, lesson, style));
+        action
     });
-    let chosen = options_ui(ui, lesson, style, 1);
-    if let Some(reply) = lesson.reply() {
-        text_ui(ui, style, "", reply);
-    }
-    if lesson.answer().choice.is_some() && !lesson.is_covering() {
-        reason_ui(ui, lesson, style);
-    }
-    chosen.or(task_ui(ui, lesson, session, style, true))
+    ui.add_space(COLUMN_SPACE);
+    let below = egui::ScrollArea::vertical().id_salt(lesson.number()).auto_shrink(false).show(ui, |ui| {
+        let usual = ui.spacing().item_spacing.y;
+        ui.spacing_mut().item_spacing.y = COLUMN_SPACE;
+        let width = ui.available_width();
+        ui.scope(|ui| {
+            if let Step::Predict { ask, .. } = lesson.step() {
+                // the options stay where they are when the result comes
+                ui.set_min_height(height_of_text(ui, style, (LONGEST_RESULT, ask), width));
+            }
+            step_ui(ui, lesson, style, true);
+        });
+        let mut action = options_ui(ui, lesson, style, 1);
+        if lesson.is_covering() {
+            action = action.or(reveal_ui(ui, urged));
+        }
+        if let Some((option, reply)) = lesson.reply() {
+            text_ui(ui, style, &format!("{}: ", letter(option)), reply);
+        }
+        if lesson.answer().choice.is_some() && !lesson.is_covering() {
+            reason_ui(ui, lesson, style);
+        }
+        ui.spacing_mut().item_spacing.y = usual;
+        ui.add_space(COLUMN_SPACE);
+        let (named, asks) = (&lesson.lesson().controls, lesson.covered_answer());
+        let enabled = ui
+            .add_enabled_ui(!lesson.is_covering(), |ui| controls::named_column_ui(ui, session, named, asks));
+        ui.add_space(COLUMN_SPACE);
+        ui.spacing_mut().item_spacing.y = COLUMN_SPACE;
+        (action.or(task_ui(ui, lesson, session, style, true)), enabled.inner)
+    });
+    let (action, places) = below.inner;
+    (buttons.inner.or(action), places)
+}
+
+/// A button that shows the answer of a prediction without a choice.
+fn reveal_ui(ui: &mut Ui, urged: bool) -> Option<LessonAction> {
+    let reveal = ui.button("Reveal").on_hover_text("Shows what it does, without a choice");
+    urge(&reveal, urged);
+    reveal.clicked().then_some(LessonAction::Reveal)
 }
 
 /// Draws the strip of a compact window, which has the same height in every step, with the dots of the steps
@@ -115,7 +147,7 @@ pub fn lesson_strip_ui(
                 dots_ui(ui, lesson, style);
                 let buttons = Layout::right_to_left(Align::Center);
                 ui.allocate_ui_with_layout(vec2(NAVIGATION, CONTROL), buttons, |ui| {
-                    action = action.or(buttons_ui(ui, lesson, urged));
+                    action = action.or(buttons_of_strip_ui(ui, lesson, urged));
                 });
             });
         }
@@ -155,6 +187,10 @@ fn speak_ui(ui: &mut Ui, lesson: &OpenLesson, session: &Session) {
 /// Draws the text of the step after its heading, which is the result of a prediction once that is shown.
 fn step_ui(ui: &mut Ui, lesson: &OpenLesson, style: &Style, is_column: bool) {
     let step = lesson.step();
+    // a strip has no room for both
+    if let Some(hint) = lesson.hint().filter(|_| !is_column) {
+        return text_ui(ui, style, HINT, hint);
+    }
     let is_shown = matches!(step, Step::Predict { .. }) && !lesson.is_covering();
     let result = is_shown.then(|| short_verdict(lesson, is_column) + " ");
     text_ui(ui, style, &result.unwrap_or_else(|| heading(step).to_owned()), step.text());
@@ -172,9 +208,8 @@ fn height_of(ui: &Ui, style: &Style, step: &Step, (width, least): (f32, f32)) ->
             of(SHORT_RESULT, ask).max(least) + SPACE + below
         }
         Step::Do { ask, hint, .. } => {
-            let state = ui.spacing().interact_size.y.max(1.4 * BODY);
-            let hint = hint.as_deref().map_or(0.0, |hint| of(HINT, hint) + SPACE);
-            of(heading(step), ask) + state + hint + SPACE
+            let hint = hint.as_deref().map_or(0.0, |hint| of(HINT, hint));
+            of(heading(step), ask).max(hint) + ui.spacing().interact_size.y.max(1.4 * BODY) + SPACE
         }
     }
 }
@@ -311,10 +346,13 @@ fn task_ui(
     let task = lesson.task(session);
     let is_met = matches!(task, TaskState::Met);
     let (state, color) = match task {
+        TaskState::Met if lesson.was_changed_since(session) => {
+            ("Done, before your last changes.".to_owned(), style.accent())
+        }
         TaskState::Met => ("Done.".to_owned(), style.accent()),
         TaskState::Unjudged(why) => (format!("It cannot be judged: {why}"), style.ink()),
         TaskState::Moving => ("Will be judged once you let go.".to_owned(), style.faint()),
-        TaskState::NotYet(lack) => (not_yet(&lack, is_on_stops(session)), style.ink()),
+        TaskState::NotYet(lack) => (unbroken(&not_yet(&lack, is_on_stops(session))), style.ink()),
         TaskState::Judging => ("Being judged.".to_owned(), style.faint()),
     };
     let layout = match is_column {
@@ -330,14 +368,19 @@ fn task_ui(
         } else {
             state.on_hover_text(how);
         }
-        if lesson.offered_hint().is_some() && lesson.hint().is_none() {
-            let name = if lesson.offers_hint() { "Would a hint help? (H)" } else { "Hint (H)" };
-            let button = ui.add(Button::new(name).small().selected(lesson.offers_hint()));
-            let is_wanted = button.on_hover_text("Shows the hint").clicked();
-            action = is_wanted.then_some(LessonAction::Hint);
+        let is_shown = lesson.hint().is_some();
+        if lesson.offered_hint().is_some() && !(is_shown && is_column) {
+            let (name, hover) = match is_shown {
+                true => ("Task (H)", "Shows the task again"),
+                false if lesson.offers_hint() => ("Would a hint help? (H)", "Shows the hint"),
+                false => ("Hint (H)", "Shows the hint"),
+            };
+            let button = Button::new(name).selected(lesson.offers_hint());
+            let button = if is_column { button } else { button.small() };
+            action = ui.add(button).on_hover_text(hover).clicked().then_some(LessonAction::Hint);
         }
     });
-    if let Some(hint) = lesson.hint() {
+    if let Some(hint) = lesson.hint().filter(|_| is_column) {
         text_ui(ui, style, HINT, hint);
     }
     action
@@ -363,7 +406,8 @@ fn reason_ui(ui: &mut Ui, lesson: &mut OpenLesson, style: &Style) {
 /// The steps as dots: filled once they are settled and passed, with a ring around the present one.
 fn dots_ui(ui: &mut Ui, lesson: &OpenLesson, style: &Style) {
     let count = lesson.lesson().steps.len();
-    let spacing = DOT_SPACING.min((NAVIGATION - 2.0 * DOT) / count as f32);
+    let room = ui.available_width().min(NAVIGATION);
+    let spacing = DOT_SPACING.min((room - 2.0 * DOT) / count as f32).max(2.0);
     let (rect, response) = ui.allocate_exact_size(vec2(spacing * count as f32, 18.0), Sense::hover());
     let name = format!("step {} of {count}", lesson.number() + 1);
     tell(&response, egui::Role::Label, &name);
@@ -382,13 +426,13 @@ fn dots_ui(ui: &mut Ui, lesson: &OpenLesson, style: &Style) {
 
 /// The buttons and, left of them, the dots of the steps; in a layout from right to left.
 pub fn navigation_ui(ui: &mut Ui, lesson: &OpenLesson, style: &Style, urged: bool) -> Option<LessonAction> {
-    let action = buttons_ui(ui, lesson, urged);
+    let action = buttons_of_strip_ui(ui, lesson, urged);
     dots_ui(ui, lesson, style);
     action
 }
 
 /// The buttons, the last one first, in a layout from right to left.
-pub fn buttons_ui(ui: &mut Ui, lesson: &OpenLesson, urged: bool) -> Option<LessonAction> {
+fn buttons_ui(ui: &mut Ui, lesson: &OpenLesson, urged: bool) -> Option<LessonAction> {
     let mut action = None;
     let following = lesson.following().filter(|_| lesson.is_last() && lesson.may_go_on());
     if let Some(name) = following {
@@ -419,16 +463,23 @@ pub fn buttons_ui(ui: &mut Ui, lesson: &OpenLesson, urged: bool) -> Option<Lesso
     if back.on_hover_text("The step before (PageUp)").clicked() {
         action = Some(LessonAction::Back);
     }
-    if lesson.lesson().steps.iter().any(|step| matches!(step, Step::Predict { .. })) {
-        // its place stays free, so that a second click meets no other button
-        let reveal = ui.add_visible(lesson.is_covering(), Button::new("Reveal"));
-        let reveal = reveal.on_hover_text("Shows what it does, without a choice");
-        urge(&reveal, urged && lesson.is_covering());
-        if reveal.clicked() {
-            action = Some(LessonAction::Reveal);
-        }
-    }
     action
+}
+
+/// The buttons of a strip, the last one first.
+fn buttons_of_strip_ui(ui: &mut Ui, lesson: &OpenLesson, urged: bool) -> Option<LessonAction> {
+    let action = buttons_ui(ui, lesson, urged);
+    if !lesson.lesson().steps.iter().any(|step| matches!(step, Step::Predict { .. })) {
+        return action;
+    }
+    // its place stays free, so that a second click meets no other button
+    let reveal = ui.scope(|ui| {
+        if !lesson.is_covering() {
+            ui.set_invisible();
+        }
+        reveal_ui(ui, urged && lesson.is_covering())
+    });
+    action.or(reveal.inner)
 }
 
 /// Gives a button the keyboard focus if `urged`, so that Enter presses it. A pressed button loses the focus,

@@ -1,14 +1,20 @@
 //! The options of a prediction, with the votes for them.
 
-use eframe::egui::{self, Button, Color32, FontId, Sense, Stroke, Ui, Vec2, vec2};
+use std::sync::Arc;
+
+use eframe::egui::{self, Align2, Button, Color32, FontId, Galley, Sense, Stroke, Ui, Vec2, pos2, vec2};
 
 use crate::app::session::lesson::{MOST_VOTES, OpenLesson, Outcome};
-use crate::app::ui::style::{BODY, Style};
+use crate::app::ui::style::{BODY, CONTROL, Style};
 use crate::app::ui::widgets::{primary, tell};
 use crate::app::words::lesson::{letter, plain};
+use crate::app::words::numbers::unbroken;
 use crate::scene::lesson::Choice;
 
 use super::lesson::LessonAction;
+
+/// Distance in points between the letter of an option and its text, from left to left.
+const INDENT: f32 = 22.0;
 
 /// A button for each option of a prediction, with the votes for it.
 pub fn votes_ui(ui: &mut Ui, lesson: &OpenLesson) -> Option<LessonAction> {
@@ -21,11 +27,6 @@ pub fn votes_ui(ui: &mut Ui, lesson: &OpenLesson) -> Option<LessonAction> {
         action = action.or((more != 0).then_some(LessonAction::Vote(option, more)));
     }
     action
-}
-
-/// An option with its letter.
-fn option_text(option: usize, choice: &Choice) -> String {
-    format!("{}   {}", letter(option), plain(&choice.text))
 }
 
 /// All options in one text, with their votes.
@@ -48,27 +49,28 @@ fn votes_text(votes: u32) -> String {
     }
 }
 
-/// Width and height in points of each of these options with as many votes, `columns` of them side by side.
-fn size_of(ui: &Ui, options: &[(usize, &Choice)], columns: usize, votes: u32) -> Vec2 {
-    let columns = columns as f32;
-    let (space, padding) = (ui.spacing().item_spacing.x, ui.spacing().button_padding);
-    let width = (ui.available_width() - space * (columns - 1.0)) / columns;
+/// The letter and the text of an option, with room for its votes in a button as wide as this.
+fn parts_of(ui: &Ui, (option, choice): (usize, &Choice), width: f32, ink: Color32) -> [Arc<Galley>; 2] {
     let font = || FontId::proportional(BODY);
-    let votes = ui.painter().layout_no_wrap(votes_text(votes), font(), Color32::PLACEHOLDER).size().x;
-    let beside = if votes > 0.0 { votes + 2.0 * space } else { 0.0 };
-    let room = width - 2.0 * padding.x - beside;
-    let height = |(option, choice): &(usize, &Choice)| {
-        let text = option_text(*option, choice);
-        ui.painter().layout(text, font(), Color32::PLACEHOLDER, room).size().y
-    };
-    let tallest = options.iter().map(height).fold(0.0, f32::max);
-    vec2(width, tallest + 2.0 * padding.y + 4.0)
+    let votes = ui.painter().layout_no_wrap(votes_text(MOST_VOTES), font(), ink).size().x;
+    let room = width - 2.0 * ui.spacing().button_padding.x - INDENT - votes - ui.spacing().item_spacing.x;
+    let letter = ui.painter().layout_no_wrap(letter(option).to_string(), font(), ink);
+    [letter, ui.painter().layout(unbroken(&plain(&choice.text)), font(), ink, room)]
 }
 
-/// Width and height in points of each option, with at most `most` side by side and any number of votes.
+/// Width and height in points of each of these options, `columns` of them side by side.
+fn size_of(ui: &Ui, options: &[(usize, &Choice)], columns: usize) -> Vec2 {
+    let (columns, space) = (columns as f32, ui.spacing().item_spacing.x);
+    let width = (ui.available_width() - space * (columns - 1.0)) / columns;
+    let height = |option: &(usize, &Choice)| parts_of(ui, *option, width, Color32::PLACEHOLDER)[1].size().y;
+    let tallest = options.iter().map(height).fold(0.0, f32::max);
+    vec2(width, (tallest + 2.0 * ui.spacing().button_padding.y + 4.0).max(CONTROL))
+}
+
+/// Width and height in points of each option, with at most `most` side by side.
 pub(super) fn option_size(ui: &Ui, options: &[Choice], most: usize) -> Vec2 {
     let all: Vec<_> = options.iter().enumerate().collect();
-    size_of(ui, &all, columns_of(options.len(), most), MOST_VOTES)
+    size_of(ui, &all, columns_of(options.len(), most))
 }
 
 /// Number of options side by side of `count`, at most `most`, in rows that are equally full.
@@ -76,8 +78,8 @@ fn columns_of(count: usize, most: usize) -> usize {
     count.div_ceil(count.div_ceil(most).max(1)).max(1)
 }
 
-/// The options of a prediction, at most `most` side by side, all of one height, or in a column each as high as
-/// its text. Once the answer is shown, the one that holds is filled, and a ring marks another one that was
+/// The options of a prediction, at most `most` side by side, all of one height, or in a column each as high
+/// as its text. Once the answer is shown, the one that holds is filled, and a ring marks another one that was
 /// chosen.
 pub(super) fn options_ui(
     ui: &mut Ui,
@@ -92,30 +94,39 @@ pub(super) fn options_ui(
     let mut action = None;
     let columns = columns_of(options.len(), most);
     for (row, choices) in options.chunks(columns).enumerate() {
-        let votes = |option: usize| *lesson.answer().votes.get(option).unwrap_or(&0);
         let each = match choices {
-            [choice] if columns == 1 => size_of(ui, &[(row, choice)], 1, votes(row)),
+            [choice] if columns == 1 => size_of(ui, &[(row, choice)], 1),
             _ => option_size(ui, options, most),
         };
         ui.horizontal(|ui| {
             for (i, choice) in choices.iter().enumerate() {
                 let option = row * columns + i;
-                let (text, votes) = (option_text(option, choice), votes_text(votes(option)));
-                let spoken = if votes.is_empty() { text.clone() } else { format!("{text}, {votes}") };
+                let votes = votes_text(*lesson.answer().votes.get(option).unwrap_or(&0));
+                let letter = letter(option);
+                let text = format!("{letter}   {}", plain(&choice.text));
+                let spoken = if votes.is_empty() { text } else { format!("{text}, {votes}") };
+                let holds = !lesson.is_covering() && lesson.outcome() == Outcome::Holds(option);
+                let is_chosen = lesson.answer().choice.as_ref() == Some(&choice.text);
+                let mut button = if holds { primary(ui, "") } else { Button::new("") };
                 if !lesson.is_covering() {
-                    let button = match lesson.outcome() == Outcome::Holds(option) {
-                        true => primary(ui, &text),
-                        false if lesson.answer().choice.as_ref() == Some(&choice.text) => {
-                            Button::new(text).stroke(Stroke::new(2.0, style.accent()))
-                        }
-                        false => Button::new(text),
-                    };
-                    let shown = ui.add_sized(each, button.right_text(votes).wrap().sense(Sense::hover()));
-                    tell(&shown, egui::Role::Label, &spoken);
+                    button = button.sense(Sense::hover());
+                    if is_chosen && !holds {
+                        button = button.stroke(Stroke::new(2.0, style.accent()));
+                    }
+                }
+                let button = ui.add_sized(each, button);
+                let ink = if holds { style.on_action() } else { style.ink() };
+                let [left, right] = parts_of(ui, (option, choice), each.x, ink);
+                let inside = button.rect.shrink2(ui.spacing().button_padding);
+                let top = inside.center().y - 0.5 * right.size().y;
+                ui.painter().galley(pos2(inside.left(), top), left, ink);
+                ui.painter().galley(pos2(inside.left() + INDENT, top), right, ink);
+                let at = inside.right_center();
+                ui.painter().text(at, Align2::RIGHT_CENTER, &votes, style.body(), ink);
+                if !lesson.is_covering() {
+                    tell(&button, egui::Role::Label, &spoken);
                     continue;
                 }
-                let button = ui.add_sized(each, Button::new(text).right_text(votes).wrap());
-                let letter = letter(option);
                 let hover = format!(
                     "Choose this: nothing is scored (key {letter}). Right button or Shift+{letter}: count a \
                      vote."

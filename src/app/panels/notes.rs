@@ -153,7 +153,10 @@ fn lecturer_notes_ui(ui: &mut Ui, open: &OpenLesson) -> Option<LessonAction> {
         match (open.step(), open.outcome()) {
             (Step::Predict { .. }, Outcome::Holds(option)) => {
                 let text = format!("{}: {}", letter(option), open.options()[option].text);
-                part_ui(ui, "What holds", &text);
+                // a mirrored screen would show it to the class
+                let heading = RichText::new("What holds").heading();
+                let answer = egui::CollapsingHeader::new(heading).id_salt(("holds", open.number()));
+                answer.default_open(!open.is_covering()).show_unindented(ui, |ui| ui.label(plain(&text)));
             }
             (Step::Do { hint, .. }, _) => {
                 part_ui(ui, "Hint", hint.as_deref().unwrap_or_default());

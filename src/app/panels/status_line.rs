@@ -73,7 +73,10 @@ pub fn status_ui(
                 stop_ui(ui, session);
             }
             ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
-                let text = if beside == Beside::Guide { sentence.text.clone() } else { sentence.whole() };
+                let all = [(&*sentence.whole(), egui::FontFamily::Proportional)];
+                let has_room = fitting(ui, &all, ui.available_size(), BODY).0 == BODY;
+                let is_whole = beside != Beside::Guide && has_room;
+                let text = if is_whole { sentence.whole() } else { sentence.text.clone() };
                 // the name of the motion is read first, in larger letters where there is room
                 let (name, rest) = text.split_at(text.find(':').map_or(0, |at| at + 1));
                 let is_compact = ui.ctx().content_rect().width() < COMPACT_BELOW;

@@ -284,9 +284,13 @@ fn to_present_ui(ui: &mut Ui, session: &mut Session, text: &str) {
     }
 }
 
+/// Least time in s that can be skipped.
+const LEAST_SKIPPED: f64 = 0.05;
+
 /// A link to the time from which on the motion has settled, while it settles. Returns whether there is one.
 fn skip_ui(ui: &mut Ui, session: &mut Session, covered: bool) -> bool {
     let settling = session.settling().filter(|_| !covered && !session.player.is_past());
+    let settling = settling.filter(|(gone, whole)| whole - gone >= LEAST_SKIPPED);
     let Some((gone, whole)) = settling else { return false };
     let hover = "What is left until the motion has settled after your last change. A click goes on to there \
                  at once.";

@@ -343,6 +343,11 @@ impl Session {
         Some(self.scene().harmonic()?.amplitude_g())
     }
 
+    /// Takes over the ranges of the sliders of another session, as for another step of a lesson.
+    pub fn keep_ranges_of(&mut self, other: &Self) {
+        self.opened = other.opened.clone();
+    }
+
     pub fn sentence(&self) -> Sentence {
         if let Some(fault) = &self.fault {
             return Sentence::fault(fault);

@@ -34,7 +34,8 @@ fn plane_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let (parts, current) = basins.parts();
     let level = parts.last().cloned();
     let is_whole = basins.is_whole() && current;
-    let key = (basins.question().cloned(), parts.len(), [span.low, span.high, low, high]);
+    // the newest part of an answer may be as many as the last one of the answer before
+    let key = (basins.question().cloned(), current, parts.len(), [span.low, span.high, low, high]);
     let mut child = ui.new_child(UiBuilder::new().max_rect(area));
     if !current {
         child.set_opacity(0.4);
@@ -70,8 +71,8 @@ fn is_state(layer: &Layer) -> bool {
     matches!(layer.marks, Marks::Points(_))
 }
 
-/// The picture over these ends of its axes, without the stops, which the view draws to be dragged, and without
-/// the states of the attractors.
+/// The picture over these ends of its axes, without the stops, which the view draws to be dragged, and
+/// without the states of the attractors.
 fn shown(mut chart: Chart, across: (f64, f64), up: (f64, f64)) -> Chart {
     if chart.first_panel().is_none() {
         let axis = |words: &str| PlotAxis::between(0.0, 1.0, words);

@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
-use eframe::egui::{Align2, Painter, Pos2, Rect, Shape, Stroke, Vec2, pos2, vec2};
+use eframe::egui::{Align2, FontId, Painter, Pos2, Rect, Shape, Stroke, Vec2, pos2, vec2};
 
 use crate::app::session::pins::Pin;
-use crate::app::ui::style::Style;
+use crate::app::ui::style::{BODY, Style, strong_family};
 use crate::dynamics::{Model, Sample};
 use crate::output::{Role, Theme};
 
@@ -102,7 +102,8 @@ impl Ghost {
 
     fn letter(&self, painter: &Painter, style: &Style, (at, align): (Pos2, Align2)) {
         let place = (at + vec2(self.aside, 0.0), align);
-        haloed(painter, style, place, PINNED[self.place], (style.small(), style.pin()));
+        let strong = FontId::new(BODY, strong_family());
+        haloed(painter, style, place, PINNED[self.place], (strong, style.pin()));
     }
 
     fn outline(&self, painter: &Painter, style: &Style, path: &[Pos2]) {

@@ -137,8 +137,8 @@ fn still(model: &Model, axes: (PlotAxis, PlotAxis), points_only: bool) -> Chart 
     Chart::stack(vec![panel], "", Table::new())
 }
 
-/// Marks of the starts of which a lesson speaks; the axis upward has a velocity in m/s times `per_speed`: dots
-/// or, where these would touch or hide what is below, dashes at both sides of each place.
+/// Marks of the starts of which a lesson speaks; the axis upward has a velocity in m/s times `per_speed`:
+/// dots or, where these would touch or hide what is below, dashes at both sides of each place.
 pub(super) fn starts(painter: &egui::Painter, context: &ViewContext<'_>, pane: &Pane, per_speed: f64) {
     let starts = context.memory.starts.iter();
     let places: Vec<Pos2> = starts.filter_map(|(x, v)| pane.place(0, (x * 1e3, v * per_speed))).collect();

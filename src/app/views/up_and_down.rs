@@ -34,6 +34,10 @@ type Branches<'a> = [Vec<&'a Visit>; 2];
 /// The quantity that is drawn, and the number of units of its axis in a watt.
 type Shown = (WalkQuantity, f64);
 
+/// Width in points of a button for a quantity, and of what stands beside the buttons.
+const CHOICE: f32 = 106.0;
+const BESIDE_CHOICES: f32 = 250.0;
+
 pub fn up_and_down_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let area = ui.max_rect();
     let wanted = context.session.want_walks();
@@ -66,8 +70,18 @@ fn tools_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axis: &SweepAxis) {
             (WalkQuantity::RmsVelocity, "RMS velocity", "Root of the mean square of the velocity."),
             (WalkQuantity::LoadPower, "Power", of_load),
         ];
-        for (value, name, hover) in &choices[..if has_load { 3 } else { 2 }] {
-            ui.selectable_value(quantity, *value, *name).on_hover_text(*hover);
+        let choices = &choices[..if has_load { 3 } else { 2 }];
+        let list_ui = |ui: &mut Ui, quantity: &mut WalkQuantity| {
+            for (value, name, hover) in choices {
+                ui.selectable_value(quantity, *value, *name).on_hover_text(*hover);
+            }
+        };
+        if ui.available_width() < CHOICE * choices.len() as f32 + BESIDE_CHOICES {
+            let chosen = choices.iter().find(|choice| choice.0 == *quantity).map_or("", |choice| choice.1);
+            let list = egui::ComboBox::from_id_salt("quantity of the walk").selected_text(chosen);
+            list.show_ui(ui, |ui| list_ui(ui, quantity));
+        } else {
+            list_ui(ui, quantity);
         }
         ui.label("over");
         if let Some(path) = field_ui(ui, axis, "over", &known) {

@@ -44,6 +44,10 @@ const BELOW: f32 = 43.0;
 /// Radius in points of the dot in the middle of the ball.
 const MIDDLE: f32 = 2.5;
 
+/// Greatest radius of the ball as a share of the distance between the stops, and its least in points.
+const GAP_SHARE: f64 = 0.3;
+const LEAST_BALL: f32 = 6.0;
+
 /// Half the width in points of an end of the bracket.
 const BRACKET: f32 = 5.0;
 
@@ -85,7 +89,7 @@ pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
             layers.push(Layer::new(Role::Pin(ghost.place), "", Marks::Path(pinned)));
         }
     }
-    let mut other: Vec<Role> = layers.iter().map(|layer| layer.role).collect();
+    let mut other: Vec<Role> = all.iter().map(|ghost| Role::Pin(ghost.place)).collect();
     other.extend(best_stops(context).map(|_| Role::BestStop));
     let key = (Identity(Arc::clone(&model)), [span.low, span.high, low, high], other.clone(), style);
     let pane = kept_pane_ui(ui, &style, Place::in_line(ui, area, Sense::DRAG, (0.0, 0.0)), key, || {
@@ -96,15 +100,18 @@ pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let Some(frame) = pane.frame(0) else { return };
     axes_input(ui, context.memory, View::Well, &pane.response, (area, frame));
     let (left, right) = model.stop_positions();
+    // a mass between close stops leaves the curve to be seen
+    let gap = left.zip(right).map_or(f64::INFINITY, |(left, right)| (right - left) * span.scale(frame));
+    let radius = BALL.min((GAP_SHARE * gap) as f32).max(LEAST_BALL);
     layers.extend(tipped.line(points));
     let painter = ui.painter().with_clip_rect(frame);
     pane.draw(&painter, &style, 0, &layers);
     let on_curve = |x: f64, curve: &TippedPotential<'_>| {
-        let ahead = 0.1 * f64::from(BALL) / context.span.scale(frame);
+        let ahead = 0.1 * f64::from(radius) / span.scale(frame);
         let [at, ahead] =
             [x * 1e3, (x + ahead) * 1e3].map(|mm| pane.place(0, (mm, curve.at(mm))).unwrap_or(frame.min));
         let slope = (ahead.y - at.y) / (ahead.x - at.x).max(1e-6);
-        at - vec2(0.0, BALL * 1.0_f32.hypot(slope).min(LIFT))
+        at - vec2(0.0, radius * 1.0_f32.hypot(slope).min(LIFT))
     };
     let balls: Vec<(Pos2, &Ghost)> =
         all.iter().zip(&of_ghosts).map(|(ghost, curve)| (on_curve(ghost.state.x, curve), ghost)).collect();
@@ -116,15 +123,15 @@ pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     mass_ui(ui, context, at, frame);
     // drawn after the stops, since their letters may overlap one; whole at an end of an axis
     let over = ui.painter().with_clip_rect(frame.expand(BALL + 1.0).intersect(area));
-    balls.iter().for_each(|(at, ghost)| ghost.ball(&over, &style, *at, BALL));
+    balls.iter().for_each(|(at, ghost)| ghost.ball(&over, &style, *at, radius));
     // set off from a wall, over which it stands as a mark
     let is_over = |stop: Option<f64>| {
-        stop.is_some_and(|x| (context.span.screen_from_world(x, frame) - at.x).abs() < BALL + WALL)
+        stop.is_some_and(|x| (context.span.screen_from_world(x, frame) - at.x).abs() < radius + WALL)
     };
     if is_over(left) || is_over(right) {
-        over.circle_stroke(at, BALL + 2.0, Stroke::new(2.5, style.ground()));
+        over.circle_stroke(at, radius + 2.0, Stroke::new(2.5, style.ground()));
     }
-    over.circle(at, BALL, style.mass(), Stroke::new(1.5, style.mass_edge()));
+    over.circle(at, radius, style.mass(), Stroke::new(1.5, style.mass_edge()));
     // its displacement is that of its middle
     over.circle_filled(at, MIDDLE, style.mass_edge());
     // over the mass, which may pass them
@@ -179,6 +186,10 @@ fn landmarks(
     let screen = |x: f64| context.span.screen_from_world(x, rect);
     let outlined = outlined(context).map(|(mm, side, _)| (mm / 1e3, side));
     taken.places.extend(sides(model).chain(outlined).map(|(x, side)| wall(rect, screen(x), side)));
+    let pinned = ghosts(context);
+    for (x, _) in pinned.iter().flat_map(|ghost| sides(&ghost.model)) {
+        taken.lines.push(vec![pos2(screen(x), rect.top()), pos2(screen(x), rect.bottom())]);
+    }
     let potential = |x: f64| model.mechanism().curve.potential(x);
     let joule = potential(barrier.x) - bottom(model).0;
     let place = |x: f64, energy: f64| pane.place(0, (x * 1e3, energy)).unwrap_or(rect.min);
@@ -233,6 +244,11 @@ fn landmarks(
         (lines.as_str(), foot + vec2(0.0, 4.0), Align2::CENTER_TOP),
         (line.as_str(), pos2(x, row), Align2::CENTER_BOTTOM),
         (lines.as_str(), pos2(x, row), Align2::CENTER_BOTTOM),
+        // between close stops there is no room
+        (line.as_str(), rect.left_top() + vec2(4.0, 4.0), Align2::LEFT_TOP),
+        (line.as_str(), rect.right_top() + vec2(-4.0, 4.0), Align2::RIGHT_TOP),
+        (lines.as_str(), rect.left_top() + vec2(4.0, 4.0), Align2::LEFT_TOP),
+        (lines.as_str(), rect.right_top() + vec2(-4.0, 4.0), Align2::RIGHT_TOP),
     ];
     // a bracket without its number says nothing
     if taken.write(painter, rect, look.clone(), places).is_some() {
@@ -283,7 +299,10 @@ fn energy_ends(ui: &Ui, context: &mut ViewContext<'_>, height: f32) -> (f64, f64
     if !(high - low > 0.0) {
         (low, high) = (low - 1e-3, low + 1e-3);
     }
-    let room = 0.22 * (high - low);
+    let frame = height - LEGEND - BELOW;
+    // room for the ball above the highest place
+    let ball = LIFT * BALL / (frame - LIFT * BALL).max(LIFT * BALL);
+    let room = f64::from(ball).max(0.22) * (high - low);
     let in_gesture = context.session.editor.in_gesture();
     let ends = (low - 0.5 * room, high + room);
     let frozen = &mut context.memory.frozen;
@@ -300,7 +319,6 @@ fn energy_ends(ui: &Ui, context: &mut ViewContext<'_>, height: f32) -> (f64, f64
         f64::from(ui.ctx().animate_value_with_time(id.with(name), target, 0.3)) * 1e-6
     };
     let (low, high) = (ease("low", low), ease("high", high));
-    let frame = height - LEGEND - BELOW;
     let names = if frame > 4.0 * NAMES { NAMES / (frame - NAMES) } else { 0.0 };
     (low - f64::from(names) * (high - low), high)
 }

@@ -3,9 +3,7 @@
 use std::collections::HashMap;
 
 use eframe::egui::{self, Stroke, Ui, Vec2, WidgetText};
-use egui_tiles::{
-    Container, LinearDir, ResizeState, SimplificationOptions, Tabs, Tile, TileId, Tree, UiResponse,
-};
+use egui_tiles::{Container, ResizeState, SimplificationOptions, Tabs, Tile, TileId, Tree, UiResponse};
 
 use crate::app::ui::style::{COMPACT_BELOW, GAP, LARGE_FROM, NARROW_BELOW};
 use crate::app::views::{View, ViewContext};
@@ -13,10 +11,7 @@ use crate::scene::Layout;
 
 use super::card::{Answer, Title, card_ui};
 
-use trees::{
-    COVERED_SHARE, MAP_SHARE, WIDE, compact_lesson_tree, compact_tree, lesson_tree, tabs_tree, views_of,
-    wide_tree,
-};
+use trees::{compact_lesson_tree, compact_tree, lesson_tree, tabs_tree, views_of, wide_tree};
 
 mod trees;
 
@@ -65,6 +60,8 @@ pub enum Arrangement {
 pub struct Tiling {
     tree: Tree<View>,
     room: Room,
+    /// Whether surveys are hidden while a lesson covers them.
+    hides_surveys: bool,
 }
 
 impl Tiling {
@@ -76,44 +73,28 @@ impl Tiling {
             Room::Narrow | Room::Compact => compact_tree(&views_of(layout), room),
             Room::Wide | Room::Large => wide_tree(layout, room == Room::Large),
         };
-        Self { tree, room }
+        Self { tree, room, hides_surveys: false }
     }
 
     pub fn of_lesson(views: &[View], room: Room) -> Self {
         let tree = if room.is_compact() { compact_lesson_tree(views, room) } else { lesson_tree(views) };
-        Self { tree, room }
+        Self { tree, room, hides_surveys: false }
     }
 
-    /// Gives most of the width to the views beside a map or another survey while that is `covered`.
+    /// Leaves the room of a map or another survey to the other views while it is `covered`, if there are any.
     pub fn cover_surveys(&mut self, covered: bool) {
-        let tiles = &self.tree.tiles;
-        let is_within = |view: &View, id: TileId| {
-            std::iter::successors(tiles.find_pane(view), |tile| tiles.parent_of(*tile)).any(|tile| tile == id)
-        };
-        let is_survey = |id: TileId| {
-            let mut panes = View::ALL.into_iter().filter(|view| is_within(view, id));
-            let first = panes.next().is_some_and(View::is_survey);
-            first && panes.all(View::is_survey)
-        };
-        let root = self.tree.root();
-        let Some(Container::Linear(row)) = root.and_then(|root| tiles.get_container(root)) else { return };
-        let [left, right] = row.children[..] else { return };
-        let now = row.shares[left] / (row.shares[left] + row.shares[right]);
-        // a width that was chosen by hand stays
-        let is_as_wanted = covered == ((now - COVERED_SHARE).abs() < 1e-3);
-        if !is_survey(left) || is_survey(right) || row.dir != LinearDir::Horizontal || is_as_wanted {
+        if covered == self.hides_surveys {
             return;
         }
-        let share = match (covered, self.room.is_compact()) {
-            (true, _) => COVERED_SHARE,
-            (false, true) => WIDE,
-            (false, false) => MAP_SHARE,
-        };
-        if let Some(Tile::Container(Container::Linear(row))) =
-            root.and_then(|root| self.tree.tiles.get_mut(root))
-        {
-            row.shares.set_share(left, 2.0 * share);
-            row.shares.set_share(right, 2.0 * (1.0 - share));
+        let shown = |view: &View| self.shows(*view);
+        let (surveys, others): (Vec<View>, Vec<View>) =
+            View::ALL.into_iter().filter(|view| !covered || shown(view)).partition(|view| view.is_survey());
+        if covered && others.is_empty() {
+            return;
+        }
+        self.hides_surveys = covered;
+        for id in surveys.iter().filter_map(|view| self.tree.tiles.find_pane(view)).collect::<Vec<_>>() {
+            self.tree.set_visible(id, !covered);
         }
     }
 
@@ -126,7 +107,7 @@ impl Tiling {
         } else {
             saved.clone()
         };
-        Self { tree, room }
+        Self { tree, room, hides_surveys: false }
     }
 
     /// The present tiles, to be saved; `None` in a compact window.
@@ -144,6 +125,12 @@ impl Tiling {
         let id = self.tree.tiles.find_pane(&view)?;
         let is_visible = self.tree.active_tiles().contains(&id);
         is_visible.then(|| self.tree.tiles.rect(id)).flatten()
+    }
+
+    /// The view with the largest place on the screen.
+    pub fn largest(&self) -> View {
+        let area = |view: &View| self.place_of(*view).map_or(0.0, |place| place.area());
+        View::ALL.into_iter().max_by(|a, b| area(a).total_cmp(&area(b))).unwrap_or(View::Well)
     }
 
     /// Whether a view is shown, if only as a tab behind another.

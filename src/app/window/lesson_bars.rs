@@ -3,11 +3,9 @@
 use eframe::egui::{self, Id, LayerId, Order, Panel, StrokeKind, Ui};
 
 use crate::app::panels::controls;
-use crate::app::panels::lesson::{
-    buttons_ui, lesson_column_ui, lesson_strip_ui, lesson_words_ui, navigation_ui,
-};
+use crate::app::panels::lesson::{lesson_column_ui, lesson_strip_ui, lesson_words_ui, navigation_ui};
 use crate::app::session::lesson::OpenLesson;
-use crate::app::ui::style::{CONTROL, Style};
+use crate::app::ui::style::Style;
 use crate::app::ui::widgets::{bare, panel_frame};
 use crate::app::views::View;
 use crate::app::words::lesson::bold_words;
@@ -28,33 +26,16 @@ impl Window {
             self.lessons.open.as_ref().and_then(|open| navigation_ui(ui, open, style, urged));
     }
 
-    /// The column of the open lesson, beside the views: its step above, its controls and buttons below, which
-    /// stay where they are from step to step.
+    /// The column of the open lesson, beside the views.
     pub(super) fn lesson_column_ui(&mut self, ui: &mut Ui, style: &Style) {
         let urged = std::mem::take(&mut self.lessons.urged);
         let Some(lesson) = &mut self.lessons.open else { return };
         let width = COLUMN.1.min(ui.ctx().content_rect().width() * COLUMN.0);
-        let key = lesson.key();
-        let column = bare(Panel::left("column of the lesson"), 12, 8).resizable(false).exact_size(width);
-        let action = column.show(ui, |ui| {
-            let buttons = bare(Panel::bottom("buttons of the lesson"), 0, 0).exact_size(CONTROL);
-            let pressed = buttons.show(ui, |ui| {
-                let row = egui::Layout::right_to_left(egui::Align::Center);
-                ui.with_layout(row, |ui| buttons_ui(ui, lesson, urged)).inner
-            });
-            bare(Panel::bottom(Id::unique(("controls of the lesson", key))), 0, 12).show(ui, |ui| {
-                if lesson.is_covering() {
-                    ui.disable();
-                }
-                let (named, asks) = (&lesson.lesson().controls, lesson.covered_answer());
-                self.lessons.controls = controls::named_column_ui(ui, &mut self.session, named, asks);
-            });
-            let text = egui::ScrollArea::vertical()
-                .auto_shrink(false)
-                .show(ui, |ui| lesson_column_ui(ui, lesson, &self.session, style));
-            pressed.inner.or(text.inner)
-        });
-        if let Some(action) = action.inner {
+        let column = bare(Panel::left("column of the lesson"), 12, 4).resizable(false).exact_size(width);
+        let column = column.show(ui, |ui| lesson_column_ui(ui, lesson, &mut self.session, style, urged));
+        let (action, places) = column.inner;
+        self.lessons.controls = places;
+        if let Some(action) = action {
             self.act_in_lesson(action);
         }
     }

@@ -10,7 +10,7 @@ use crate::app::panels::lesson::LessonAction;
 use crate::app::session::Session;
 use crate::app::session::editor::Editor;
 use crate::app::session::lesson::{OpenLesson, Records, Turn};
-use crate::app::ui::widgets::{close_ui, dialog_ui, primary};
+use crate::app::ui::widgets::{close_ui, dialog_ui, focus_first, primary};
 use crate::app::views::{Cover, Memory, View};
 use crate::app::words::lesson::{bold_words, letter, numbered, question, solved};
 use crate::questions::Error;
@@ -238,7 +238,8 @@ impl Window {
 
     pub(super) fn act_in_lesson(&mut self, act: LessonAction) {
         let Some(lesson) = &mut self.lessons.open else { return };
-        self.lessons.asked = self.lessons.asked.filter(|_| act == LessonAction::Next);
+        let is_vote = matches!(act, LessonAction::Vote(..));
+        self.lessons.asked = self.lessons.asked.filter(|_| is_vote || act == LessonAction::Next);
         let mut skipped = None;
         let turn = match act {
             LessonAction::Choose(option) => lesson.choose(option),
@@ -248,18 +249,31 @@ impl Window {
                 self.lessons.asked = None;
                 lesson.reveal()
             }
+            LessonAction::Next
+                if lesson.is_last() && lesson.may_go_on() && self.lessons.asked == Some(lesson.number()) =>
+            {
+                return match lesson.following() {
+                    Some(name) => self.act_in_lesson(LessonAction::NextLesson(name)),
+                    None => self.finish_lesson(),
+                };
+            }
             LessonAction::Next if lesson.is_covering() || lesson.is_last() => {
                 self.lessons.urged = true;
                 // the buttons of a last step stand beside the views
                 self.filled = self.filled.filter(|_| lesson.is_covering());
-                self.lessons.asked = Some(lesson.number()).filter(|_| lesson.is_covering());
+                self.lessons.asked =
+                    Some(lesson.number()).filter(|_| lesson.is_covering() || lesson.may_go_on());
                 let votes: u32 = lesson.answer().votes.iter().sum();
                 let counted = if votes == 0 { "Nobody has chosen yet" } else { "The votes are counted" };
                 return self.messages.notify(match (lesson.is_covering(), lesson.following()) {
                     (false, _) if !lesson.may_go_on() => "The last step: first the task".to_owned(),
                     (true, _) => format!("{counted}: PageDown once more shows what it does"),
-                    (false, Some(name)) => format!("The last step: Enter goes on to {}", numbered(name)),
-                    (false, None) => "The last step: Enter finishes the lesson".to_owned(),
+                    (false, Some(name)) => {
+                        format!("The last step: PageDown once more, or Enter, goes on to {}", numbered(name))
+                    }
+                    (false, None) => {
+                        "The last step: PageDown once more, or Enter, finishes the lesson".to_owned()
+                    }
                 });
             }
             LessonAction::Next if !lesson.may_go_on() && self.lessons.asked != Some(lesson.number()) => {
@@ -322,7 +336,11 @@ impl Window {
                 ui.add_space(8.0);
                 ui.horizontal(|ui| {
                     let name = |name: &&str| format!("Go on to {}", numbered(name));
-                    next = following.filter(|next| ui.add(primary(ui, &name(next))).clicked());
+                    next = following.filter(|next| {
+                        let button = ui.add(primary(ui, &name(next)));
+                        focus_first(ui, &button);
+                        button.clicked()
+                    });
                     close_ui(ui)
                 })
                 .inner
@@ -356,8 +374,8 @@ impl Window {
         turn.into_iter().for_each(|turn| self.take_turn(turn));
     }
 
-    /// Brings the views to the front that bold words in the text of the step name, the first of them last, and
-    /// returns that one.
+    /// Brings the views to the front that bold words in the text of the step name, the first of them last,
+    /// and returns that one.
     pub(super) fn show_named_views(&mut self) -> Option<View> {
         let named = bold_words(self.lessons.open.as_ref()?.step().text());
         let named: Vec<View> = named.filter_map(|word| View::named(&word)).collect();
@@ -380,6 +398,7 @@ impl Window {
         match self.session_on(lesson, *scene, plays) {
             Ok(mut session) => {
                 // what was computed of the same question is not computed again
+                session.keep_ranges_of(&self.session);
                 let chosen = session.explore.walks.chosen.take();
                 session.explore = std::mem::take(&mut self.session.explore);
                 session.explore.walks.chosen = chosen;
@@ -393,7 +412,6 @@ impl Window {
     }
 
     pub(super) fn lesson_keys(&mut self, ctx: &egui::Context) {
-        self.lessons.asked = self.lessons.asked.filter(|_| self.messages.notice.is_some());
         let Some(lesson) = self.lessons.open.as_ref().filter(|_| !ctx.text_edit_focused()) else { return };
         let plain = |key, act| (Modifiers::NONE, key, act);
         let mut keys = vec![plain(Key::PageDown, LessonAction::Next), plain(Key::PageUp, LessonAction::Back)];

@@ -18,6 +18,7 @@ use interwell_studies::study::result_fields;
 use super::Window;
 use super::command::{Command, DISCARD, MENUS, Part};
 use super::keys::SPEED_KEYS;
+use super::layouts::Arrangement;
 
 /// Name of the command that returns to the scene as it was opened, while nothing was changed.
 const BACK: &str = "From the start again";
@@ -84,6 +85,13 @@ impl Menus<'_> {
                 Part::Item(name, key, command, _) => {
                     let is_back = *command == Command::BackToStart && !self.is_dirty();
                     let mut button = Button::new(if is_back { BACK } else { *name });
+                    let is_lesson = self.window.lesson().is_some();
+                    let arranged = match command {
+                        Command::Arrange(layout) => Some(Arrangement::Layout(*layout)),
+                        Command::ArrangeOwn => Some(Arrangement::Custom),
+                        _ => None,
+                    };
+                    button = button.selected(!is_lesson && arranged == Some(self.window.arrangement));
                     if let Some(key) = key {
                         button = button.shortcut_text(ui.ctx().format_shortcut(key));
                     }

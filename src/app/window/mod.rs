@@ -154,9 +154,9 @@ impl Window {
         focus_ui(&ctx, &style);
     }
 
-    /// Closes hover texts once a dialog has opened, and from a press of a key until the pointer moves: one that
-    /// is open would stay as long as the pointer does. A layer has one hover text at a time: an empty one takes
-    /// the place of any other.
+    /// Closes hover texts once a dialog has opened, and from a press of a key until the pointer moves: one
+    /// that is open would stay as long as the pointer does. A layer has one hover text at a time: an empty
+    /// one takes the place of any other.
     fn hide_hover_texts(&mut self, ui: &Ui) {
         let (is_pressed, is_moved) = ui.input(|input| {
             let is_key = |event: &egui::Event| matches!(event, egui::Event::Key { pressed: true, .. });

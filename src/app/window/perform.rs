@@ -61,7 +61,8 @@ impl Window {
             Command::Save => self.save(ctx),
             Command::Choose(wanted) => self.choose(wanted),
             Command::Figure(view) => {
-                let view = view.unwrap_or_else(|| self.active_view());
+                let pointed = self.filled.or(self.memory.hovered);
+                let view = view.or(pointed).unwrap_or_else(|| self.tiling.largest());
                 self.figures.open(view, &self.session, &self.memory);
             }
             Command::CopyScene => self.copy_scene(ctx),
@@ -117,8 +118,7 @@ impl Window {
             Command::Zoom { upwards, closer } => self.memory.zoom_by_key(self.active_view(), upwards, closer),
             Command::Fill => {
                 let shown = |view: &View| self.tiling.place_of(*view).is_some();
-                let first = || View::ALL.into_iter().find(shown);
-                let wanted = self.memory.hovered.filter(shown).or_else(first).unwrap_or(View::Well);
+                let wanted = self.memory.hovered.filter(shown).unwrap_or_else(|| self.tiling.largest());
                 self.filled = self.filled.is_none().then_some(wanted);
             }
             Command::Cover => self.covered = !self.covered,

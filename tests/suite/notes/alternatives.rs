@@ -16,8 +16,8 @@ fn low_barrier(text: &mut Text, name: &str) {
     let climbed = 1e3 * (prototype.curve.potential(0.0) - prototype.curve.potential(1.5e-3));
     near_relative(height(name, &[]), climbed, 1e-9);
     let whole = 1e3 * prototype.landscape.barrier.unwrap().from_right_j;
-    text.says(&format!("Of the barrier of {whole:.3} mJ"));
-    text.says(&format!("{climbed:.4} mJ, as much as the mass has to climb from a stop at 1.5 mm"));
+    text.says(&format!("Of the barrier of {:.0} µJ", 1e3 * whole));
+    text.says(&format!("{:.1} µJ, as much as the mass has to climb from a stop at 1.5 mm", 1e3 * climbed));
     let stopped = least(Onset::Crossing, "paper", &[], 0.5..1.0);
     text.says(&format!("where it takes {stopped:.2} g from that stop"));
     let settled = settled(name, &[]);

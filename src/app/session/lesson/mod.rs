@@ -155,13 +155,21 @@ impl OpenLesson {
         if let Step::Predict { options, .. } = self.step() { options } else { &[] }
     }
 
-    /// The reply to the option that was chosen, once it is known that another one holds.
-    pub fn reply(&self) -> Option<&str> {
+    /// The reply to an option that does not hold, once that is known, with the option: to the one that was
+    /// chosen or, without a choice, to the one of those with most votes.
+    pub fn reply(&self) -> Option<(usize, &str)> {
         let Outcome::Holds(holding) = self.outcome() else { return None };
-        let chosen = self.answer().choice.as_ref().filter(|_| self.answer().shown);
-        let is_chosen = |choice: &&Choice| Some(&choice.text) == chosen;
-        let chosen = self.options().iter().find(is_chosen)?;
-        chosen.reply.as_deref().filter(|_| self.options()[holding].text != chosen.text)
+        let (answer, options) = (self.answer(), self.options());
+        let chosen = match &answer.choice {
+            _ if !answer.shown => None,
+            Some(choice) => options.iter().position(|option| option.text == *choice),
+            None => {
+                let wrong = answer.votes.iter().enumerate().filter(|vote| vote.0 != holding && *vote.1 > 0);
+                wrong.rev().max_by_key(|vote| *vote.1).map(|vote| vote.0)
+            }
+        };
+        let chosen = chosen.filter(|option| *option != holding)?;
+        Some((chosen, options[chosen].reply.as_deref()?))
     }
 
     /// Whether the motion and all results are covered: in a prediction that has not been shown.
@@ -381,6 +389,13 @@ impl OpenLesson {
             (_, None | Some(TaskState::Met)) => TaskState::Judging,
             (_, Some(state)) => state.clone(),
         }
+    }
+
+    /// Whether the scene is no longer the one with which the present task was done.
+    pub fn was_changed_since(&self, session: &Session) -> bool {
+        let begin = &self.document.begin(self.progress.step).scene;
+        let (answer, now) = (self.answer(), arguments(begin, session.scene()).join(", "));
+        answer.met && !answer.with.is_empty() && answer.with != now
     }
 
     pub fn outcome(&self) -> Outcome {

@@ -12,15 +12,13 @@ use super::Room;
 const LEFT_SHARE: f32 = 590.0 / 1030.0;
 /// Share of the height that the displacement has in the right column: 340 of 584 points.
 const DISPLACEMENT_SHARE: f32 = 340.0 / 584.0;
-pub(super) const MAP_SHARE: f32 = 640.0 / 1030.0;
-/// That of a map which is covered.
-pub(super) const COVERED_SHARE: f32 = 0.25;
+const MAP_SHARE: f32 = 640.0 / 1030.0;
 /// Share of the height that the mechanism has above the well.
 const MECHANISM_SHARE: f32 = 0.4;
 /// Share of the width that the first column has in the layout Study.
 const STUDY_COLUMN: f32 = 0.34;
 /// Share of the width that views with legends have in a lesson in a compact window.
-pub(super) const WIDE: f32 = 0.62;
+const WIDE: f32 = 0.62;
 const HALF: f32 = 0.5;
 
 enum Part {

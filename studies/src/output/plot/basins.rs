@@ -140,7 +140,9 @@ fn names(basins: &Basins, answer: &Answer) -> Vec<String> {
     order.sort_by_key(|place| std::cmp::Reverse(answer.attractors[*place].starts));
     let (mut names, kinds) = (vec![String::new(); order.len()], answer.words());
     for place in order.into_iter().take(MAX_NAMED) {
-        let number = if kinds.len() > 1 { format!("{} ", place + 1) } else { String::new() };
+        // a finer level of starts may number them anew
+        let has_number = kinds.len() > 1 && basins.is_whole();
+        let number = if has_number { format!("{} ", place + 1) } else { String::new() };
         names[place] = number + &words(&kinds[place], &answer.attractors[place], basins.starts().is_grid());
     }
     names

@@ -68,7 +68,7 @@ fn basins() {
         assert!((11..=16).contains(&count), "{count} with {tolerance}");
     }
     told.says("Of the 31 flicks some 12 to 15 cross, which of them depends on the last digits");
-    told.says("along the list the answer changes again and again");
+    told.says("from flick to flick the answer changes again and again");
     let stops = flicks(&[&stopped(2.0), "run.duration_s=20", "run.settle_s=10"]);
     let speeds: Vec<f64> = stops.iter().map(rms).collect();
     assert!(stops.iter().all(|summary| crosses(summary) && summary.releases == 2 * summary.periods));
@@ -143,6 +143,8 @@ fn up_and_down() {
     let [up, down] = least_that_cross(&faster);
     assert_eq!((up, down), (1.05, 0.7));
     told.says("in its well up to 1.0 g and crosses from 1.05 g on");
+    assert_eq!(told.run(&[]).total_crossings, 0);
+    told.says("At 0.8 g the mass stays in its well");
     told.says("From above it still crosses at 0.7 g, as here, and no longer at 0.65 g. ");
     // what is shown then
     let start = "start=At(x_mm: 0.164, v_m_per_s: -0.2)";
