@@ -141,11 +141,14 @@ fn basins_that_come_between_two_frames_are_drawn() {
     let mut harness = window("paper", WIDE);
     command(&mut harness, Command::Arrange(Layout::Explore));
     harness.get_by_label("Basins").click();
+    harness.run_steps(3);
+    assert!(harness.state_mut().session.explore.basins.wait(LONG));
+    harness.run_steps(3);
     for (mm, share) in [(4.0, "rest left"), (1.5, "interwell"), (4.0, "rest left")] {
         harness.state_mut().session.set_number("stops.travel_limit_mm", mm).unwrap();
         harness.state_mut().session.end_gesture();
-        harness.run_steps(2);
-        // all levels of the answer come at once
+        harness.run_steps(1);
+        // all levels of the answer come before the next frame
         assert!(harness.state_mut().session.explore.basins.wait(LONG));
         harness.run_steps(3);
         let legend: Vec<String> = painted(&harness).into_iter().map(|text| text.0).collect();

@@ -129,7 +129,10 @@ fn the_force_curve_has_the_force_and_the_push_that_frees_the_mass() {
     for size in [WIDE, PROJECTED] {
         let harness = showing("paper", size, &[View::ForceCurve]);
         let all = painted(&harness);
-        let labels: Vec<_> = all.iter().filter(|label| label.0.contains(" N = ")).collect();
+        let with_force = all.iter().filter(|label| label.0.contains(" N = "));
+        let (legend, labels): (Vec<_>, Vec<_>) =
+            with_force.partition(|label| label.0.starts_with("frees the mass: "));
+        assert_eq!(legend.len(), 1);
         let model = harness.state().session.model();
         let force = model.mechanism().curve.force(1.5e-3).abs();
         let text = format!("{force:.3} N = {:.3} g", force / model.mass() / 9.80665);

@@ -109,8 +109,12 @@ fn still(model: &Model, span: Span, axes: (PlotAxis, PlotAxis), measured: Option
     // the legend names the lines before the marks
     let named = |role, name: &str| Layer::new(role, name, Marks::Path(Vec::new()));
     let push = model.is_shaken().then(|| named(Role::Push, "push"));
-    let has_press = sides(model).any(|(x, side)| is_pressed(model, x, side));
-    let release = has_press.then(|| named(Role::Stop, "frees the mass"));
+    // with the push, if it is the same at both stops
+    let presses: Vec<String> = presses(model).map(|(x, _)| push_that_frees(model, x)).collect();
+    let release = presses.first().map(|first| match presses.iter().all(|press| press == first) {
+        true => named(Role::Stop, &format!("frees the mass: {first}")),
+        false => named(Role::Stop, "frees the mass"),
+    });
     let lines = [named(Role::Curve, "holds the mass there")].into_iter().chain(push).chain(release);
     let first = lines.chain(measured);
     panel.layers.splice(0..0, first);
@@ -152,6 +156,17 @@ fn is_pressed(model: &Model, x: f64, side: f32) -> bool {
     model.mechanism().curve.force(x) * f64::from(side) < 0.0
 }
 
+/// The stops that the mass can rest on, with their sides.
+fn presses(model: &Model) -> impl Iterator<Item = (f64, f32)> {
+    sides(model).filter(|(x, side)| is_pressed(model, *x, *side))
+}
+
+/// The push that frees the mass from a stop at `x`, as a force and as an acceleration.
+fn push_that_frees(model: &Model, x: f64) -> String {
+    let force = model.mechanism().curve.force(x).abs();
+    format!("{} N = {} g", three(force), three(force / (model.mass() * STANDARD_GRAVITY)))
+}
+
 /// Marks the force at each stop that the mass can rest on, and writes it with the push that frees the mass:
 /// beside the stop, clear of the lines of the curve.
 fn releases(painter: &Painter, context: &ViewContext<'_>, pane: &Pane, rect: Rect) {
@@ -161,17 +176,13 @@ fn releases(painter: &Painter, context: &ViewContext<'_>, pane: &Pane, rect: Rec
     let mut taken = Taken { lines: lines(pane), places, plate: Some(style.ground()) };
     let zero = place(0.0, 0.0).y;
     taken.lines.push(vec![pos2(rect.left(), zero), pos2(rect.right(), zero)]);
-    for (x, side) in sides(model) {
-        if !is_pressed(model, x, side) {
-            continue;
-        }
+    for (x, side) in presses(model) {
         let force = model.mechanism().curve.force(x);
         let at = place(x, force);
         let end = at - vec2(LINE * side, 0.0);
         painter.line_segment([at, end], style.stop_stroke());
         taken.lines.push(vec![at, end]);
-        let push = three(force.abs() / (model.mass() * STANDARD_GRAVITY));
-        let short = format!("{} N = {push} g", three(force.abs()));
+        let short = push_that_frees(model, x);
         let long = format!("frees at {short}");
         // outside the wall, away from the mass, or else inside it
         let outwards = if side > 0.0 { Align2::LEFT_BOTTOM } else { Align2::RIGHT_BOTTOM };

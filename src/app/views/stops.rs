@@ -4,7 +4,7 @@ use eframe::egui::{self, Align2, CursorIcon, Painter, Pos2, Rect, Sense, Shape, 
 
 use crate::app::session::Session;
 use crate::app::session::sliders::reach;
-use crate::app::ui::style::{BALL, GRAB, colour};
+use crate::app::ui::style::{BALL, GRAB, Style, colour};
 use crate::app::ui::widgets::arrows;
 use crate::app::words::fields::info;
 use crate::app::words::numbers::{decimal, decimals, shown, with_minus};
@@ -65,17 +65,30 @@ fn limit_number(session: &Session, mm: f64) -> String {
     with_minus(&shown(mm, decimals(key_step(session))))
 }
 
-/// Writes the travel limits over `rect` beside the stops, clear of `taken`, to which it adds them.
+/// Writes the travel limits over `rect` beside the stops, and beside those that a question asks about, clear of
+/// `taken`, to which it adds them.
 pub(super) fn travel_limits(painter: &Painter, context: &ViewContext<'_>, rect: Rect, taken: &mut Taken) {
-    let look = (context.style.small(), context.style.ink());
-    let (stops, _) = shown_stops(context.session, context.drawn);
     let screen = |mm: f64| context.span.screen_from_world(mm / 1e3, rect);
-    let limit =
-        |(mm, side): (Option<f64>, f32)| Some((screen(mm?), side, limit_number(context.session, mm?)));
-    let limits: Vec<(f32, f32, String)> = stops.into_iter().zip([-1.0, 1.0]).filter_map(limit).collect();
     let best = best_stops(context).into_iter().flat_map(|mm| [(-mm, -1.0), (mm, 1.0)]);
     taken.places.extend(best.map(|(mm, side)| wall(rect, screen(mm), side)));
-    for (x, ..) in &limits {
+    for stops in [shown_stops(context.session, context.drawn).0, context.memory.asked_stops] {
+        let limit =
+            |(mm, side): (Option<f64>, f32)| Some((screen(mm?), side, limit_number(context.session, mm?)));
+        let limits: Vec<(f32, f32, String)> = stops.into_iter().zip([-1.0, 1.0]).filter_map(limit).collect();
+        limits_beside(painter, context.style, rect, taken, &limits);
+    }
+}
+
+/// Writes the numbers of two stops, given their places on the screen and their sides: both or none.
+fn limits_beside(
+    painter: &Painter,
+    style: Style,
+    rect: Rect,
+    taken: &mut Taken,
+    limits: &[(f32, f32, String)],
+) {
+    let look = (style.small(), style.ink());
+    for (x, ..) in limits {
         taken.lines.push(vec![pos2(*x, rect.top()), pos2(*x, rect.bottom())]);
     }
     // outside of a wall it is clear of the mass there
