@@ -19,11 +19,9 @@ use super::controls;
 use super::lesson_options::{option_size, options_text, options_ui};
 use super::status_line::spoken_ui;
 
-/// Width in points of the column with the dots of the steps and the navigation buttons.
+/// Greatest width in points of the dots of the steps.
 const NAVIGATION: f32 = 190.0;
 const SPACE: f32 = 4.0;
-/// Least height in points of the text, beside which the dots and the buttons stand.
-const LEAST: f32 = 20.0 + SPACE + CONTROL;
 const HINT: &str = "Hint: ";
 /// The longest result of a prediction that is judged, in a column and in a strip.
 const LONGEST_RESULT: &str = "Answer: B. You chose C. ";
@@ -114,44 +112,26 @@ fn reveal_ui(ui: &mut Ui, urged: bool) -> Option<LessonAction> {
     reveal.clicked().then_some(LessonAction::Reveal)
 }
 
-/// Draws the strip of a compact window, which has the same height in every step, with the dots of the steps
-/// and the buttons unless `urged` is `None`; if it is true, the button that continues gets the keyboard
-/// focus. Returns the chosen action.
+/// Draws the strip of a compact window, which has the same height in every step: the text, the state of a task,
+/// the options side by side. Returns the chosen action.
 pub fn lesson_strip_ui(
     ui: &mut Ui,
-    lesson: &mut OpenLesson,
+    lesson: &OpenLesson,
     session: &Session,
     style: &Style,
-    urged: Option<bool>,
 ) -> Option<LessonAction> {
-    let mut action = None;
     ui.spacing_mut().item_spacing.y = SPACE;
     speak_ui(ui, lesson, session);
-    let beside = urged.map_or((0.0, 0.0), |_| (NAVIGATION + 16.0, LEAST));
-    let width = (ui.available_width() - beside.0).max(120.0);
     let steps = lesson.lesson().steps.iter();
-    let height = steps.map(|step| height_of(ui, style, step, (width, beside.1))).fold(0.0, f32::max);
-    ui.set_min_height(height);
-    ui.horizontal_top(|ui| {
-        ui.allocate_ui_with_layout(vec2(width, 0.0), Layout::top_down(Align::Min), |ui| {
-            ui.set_width(width);
-            if let Step::Predict { ask, .. } = lesson.step() {
-                let height = height_of_text(ui, style, (SHORT_RESULT, ask), width);
-                ui.set_min_height(height.max(beside.1));
-            }
-            step_ui(ui, lesson, style, false);
-            action = task_ui(ui, lesson, session, style, false);
-        });
-        if let Some(urged) = urged {
-            ui.allocate_ui_with_layout(vec2(NAVIGATION, 0.0), Layout::top_down(Align::Max), |ui| {
-                dots_ui(ui, lesson, style);
-                let buttons = Layout::right_to_left(Align::Center);
-                ui.allocate_ui_with_layout(vec2(NAVIGATION, CONTROL), buttons, |ui| {
-                    action = action.or(buttons_of_strip_ui(ui, lesson, urged));
-                });
-            });
+    ui.set_min_height(steps.map(|step| height_of(ui, style, step)).fold(0.0, f32::max));
+    let width = ui.available_width();
+    ui.scope(|ui| {
+        if let Step::Predict { ask, .. } = lesson.step() {
+            ui.set_min_height(height_of_text(ui, style, (SHORT_RESULT, ask), width));
         }
+        step_ui(ui, lesson, style, false);
     });
+    let action = task_ui(ui, lesson, session, style, false);
     action.or(options_ui(ui, lesson, style, SIDE_BY_SIDE))
 }
 
@@ -196,16 +176,15 @@ fn step_ui(ui: &mut Ui, lesson: &OpenLesson, style: &Style, is_column: bool) {
     text_ui(ui, style, &result.unwrap_or_else(|| heading(step).to_owned()), step.text());
 }
 
-/// Height in points of the strip in a step, with everything that may appear below its text. The text has this
-/// width and, above options, this least height.
-fn height_of(ui: &Ui, style: &Style, step: &Step, (width, least): (f32, f32)) -> f32 {
-    let of = |heading: &str, text: &str| height_of_text(ui, style, (heading, text), width);
+/// Height in points of the strip in a step, with everything that may appear below its text.
+fn height_of(ui: &Ui, style: &Style, step: &Step) -> f32 {
+    let of = |heading: &str, text: &str| height_of_text(ui, style, (heading, text), ui.available_width());
     match step {
         Step::Say(text) | Step::Explain(text) => of(heading(step), text),
         Step::Predict { ask, options, .. } => {
             let rows = options.len().div_ceil(SIDE_BY_SIDE).max(1) as f32;
             let below = option_size(ui, options, SIDE_BY_SIDE).y * rows + SPACE * (rows - 1.0);
-            of(SHORT_RESULT, ask).max(least) + SPACE + below
+            of(SHORT_RESULT, ask) + SPACE + below
         }
         Step::Do { ask, hint, .. } => {
             let hint = hint.as_deref().map_or(0.0, |hint| of(HINT, hint));

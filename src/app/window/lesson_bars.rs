@@ -5,7 +5,7 @@ use eframe::egui::{self, Id, LayerId, Order, Panel, StrokeKind, Ui};
 use crate::app::panels::controls;
 use crate::app::panels::lesson::{lesson_column_ui, lesson_strip_ui, lesson_words_ui, navigation_ui};
 use crate::app::session::lesson::OpenLesson;
-use crate::app::ui::style::Style;
+use crate::app::ui::style::{CONTROL, Style};
 use crate::app::ui::widgets::{bare, panel_frame};
 use crate::app::views::View;
 use crate::app::words::lesson::bold_words;
@@ -40,17 +40,23 @@ impl Window {
         }
     }
 
-    /// The strip of the open lesson in a compact window, with its buttons where there `are_buttons`, and its
+    /// The strip of the open lesson in a compact window, below its buttons where there `are_buttons`, and its
     /// controls; they are disabled while the motion is covered.
     pub(super) fn lesson_strip_ui(&mut self, ui: &mut Ui, style: &Style, are_buttons: bool) {
-        let urged = are_buttons.then(|| std::mem::take(&mut self.lessons.urged));
-        let Some(lesson) = &mut self.lessons.open else { return };
+        if are_buttons {
+            let row = bare(Panel::top("buttons of the lesson"), 12, 0);
+            row.exact_size(CONTROL).show(ui, |ui| {
+                let layout = egui::Layout::right_to_left(egui::Align::Center);
+                ui.with_layout(layout, |ui| self.lesson_navigation_ui(ui, style));
+            });
+        }
+        let Some(lesson) = &self.lessons.open else { return };
         // not a panel, whose height would follow its contents one frame late
         let spacing = std::mem::take(&mut ui.spacing_mut().item_spacing.y);
         let strip = panel_frame(12, 4).show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = spacing;
             ui.set_min_width(ui.available_width());
-            lesson_strip_ui(ui, lesson, &self.session, style, urged)
+            lesson_strip_ui(ui, lesson, &self.session, style)
         });
         ui.spacing_mut().item_spacing.y = spacing;
         if let Some(action) = strip.inner.or(self.lessons.chosen.take()) {
