@@ -99,7 +99,7 @@ pub fn lesson_column_ui(
             .add_enabled_ui(!lesson.is_covering(), |ui| controls::named_column_ui(ui, session, named, asks));
         ui.add_space(COLUMN_SPACE);
         ui.spacing_mut().item_spacing.y = COLUMN_SPACE;
-        (action.or(task_ui(ui, lesson, session, style, true)), enabled.inner)
+        (action.or(task_ui(ui, lesson, session, style, (true, true))), enabled.inner)
     });
     let (action, places) = below.inner;
     (buttons.inner.or(action), places)
@@ -123,15 +123,23 @@ pub fn lesson_strip_ui(
     ui.spacing_mut().item_spacing.y = SPACE;
     speak_ui(ui, lesson, session);
     let steps = lesson.lesson().steps.iter();
-    ui.set_min_height(steps.map(|step| height_of(ui, style, step)).fold(0.0, f32::max));
+    let height = steps.map(|step| height_of(ui, style, step)).fold(0.0, f32::max);
+    ui.set_min_height(height);
     let width = ui.available_width();
+    // else the hint stands in place of the task
+    let has_both = lesson.hint().is_none_or(|hint| {
+        height_of(ui, style, lesson.step()) + SPACE + height_of_text(ui, style, (HINT, hint), width) <= height
+    });
     ui.scope(|ui| {
         if let Step::Predict { ask, .. } = lesson.step() {
             ui.set_min_height(height_of_text(ui, style, (SHORT_RESULT, ask), width));
         }
-        step_ui(ui, lesson, style, false);
+        match lesson.hint().filter(|_| !has_both) {
+            Some(hint) => text_ui(ui, style, HINT, hint),
+            None => step_ui(ui, lesson, style, false),
+        }
     });
-    let action = task_ui(ui, lesson, session, style, false);
+    let action = task_ui(ui, lesson, session, style, (false, has_both));
     action.or(options_ui(ui, lesson, style, SIDE_BY_SIDE))
 }
 
@@ -167,10 +175,6 @@ fn speak_ui(ui: &mut Ui, lesson: &OpenLesson, session: &Session) {
 /// Draws the text of the step after its heading, which is the result of a prediction once that is shown.
 fn step_ui(ui: &mut Ui, lesson: &OpenLesson, style: &Style, is_column: bool) {
     let step = lesson.step();
-    // a strip has no room for both
-    if let Some(hint) = lesson.hint().filter(|_| !is_column) {
-        return text_ui(ui, style, HINT, hint);
-    }
     let is_shown = matches!(step, Step::Predict { .. }) && !lesson.is_covering();
     let result = is_shown.then(|| short_verdict(lesson, is_column) + " ");
     text_ui(ui, style, &result.unwrap_or_else(|| heading(step).to_owned()), step.text());
@@ -310,13 +314,13 @@ fn text_ui(ui: &mut Ui, style: &Style, heading: &str, text: &str) {
     }
 }
 
-/// Draws the state of a task, and its hint.
+/// Draws the state of a task, in a column or in a row, and its hint if it has a place of its own.
 fn task_ui(
     ui: &mut Ui,
     lesson: &OpenLesson,
     session: &Session,
     style: &Style,
-    is_column: bool,
+    (is_column, has_hint): (bool, bool),
 ) -> Option<LessonAction> {
     let Step::Do { .. } = lesson.step() else { return None };
     let mut action = None;
@@ -348,7 +352,7 @@ fn task_ui(
             state.on_hover_text(how);
         }
         let is_shown = lesson.hint().is_some();
-        if lesson.offered_hint().is_some() && !(is_shown && is_column) {
+        if lesson.offered_hint().is_some() && !(is_shown && has_hint) {
             let (name, hover) = match is_shown {
                 true => ("Task (H)", "Shows the task again"),
                 false if lesson.offers_hint() => ("Would a hint help? (H)", "Shows the hint"),
@@ -359,7 +363,7 @@ fn task_ui(
             action = ui.add(button).on_hover_text(hover).clicked().then_some(LessonAction::Hint);
         }
     });
-    if let Some(hint) = lesson.hint().filter(|_| is_column) {
+    if let Some(hint) = lesson.hint().filter(|_| has_hint) {
         text_ui(ui, style, HINT, hint);
     }
     action

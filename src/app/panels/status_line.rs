@@ -13,7 +13,7 @@ const SPARE: &str =
     "\n\nTo spare: how much weaker the shaking may become before, from rest, it no longer crosses.";
 
 /// Width in points of the column beside the sentence.
-const BESIDE: f32 = 236.0;
+const BESIDE: f32 = 208.0;
 /// Height in points of a line in that column.
 const LINE: f32 = 17.0;
 /// Width in points of a window below which hover text replaces that column.

@@ -22,17 +22,19 @@ pub fn before_now_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let before = context.session.before.clone();
     let is_first = before.is_none();
     let column = |card| Column { card, ended: None, differs: false };
-    let columns = [before, Some(context.session.now_card())].map(column);
+    let now = usize::from(!is_first);
+    let columns: Vec<Column> =
+        before.into_iter().chain([context.session.now_card()]).map(|card| column(Some(card))).collect();
     page_ui(ui, |ui| {
         let mut pin = false;
-        table_ui(ui, context, (&columns, 1), &mut |ui, column, _| match column {
+        table_ui(ui, context, (&columns, now), &mut |ui, column, _| match column {
             None => {
                 let hover = "This motion continues, dashed, beside the motion that you change (K).";
                 let button = ui.add_enabled(!is_full, Button::new("Pin").small());
                 pin = button.on_hover_text(hover).on_disabled_hover_text(FULL).clicked();
             }
-            Some(0) => _ = ui.label(RichText::new("before").color(style.faint())),
-            Some(_) => _ = ui.label(RichText::new("now").heading()),
+            Some(column) if column == now => _ = ui.label(RichText::new("now").heading()),
+            Some(_) => _ = ui.label(RichText::new("before").color(style.faint())),
         });
         if is_first && ui.available_height() > 28.0 {
             ui.add_space(6.0);

@@ -81,13 +81,16 @@ pub(super) fn dashed(path: &[Pos2], place: usize, stroke: Stroke) -> Vec<Shape> 
     Shape::dashed_line(&kept, stroke, dash * factor, gap * factor)
 }
 
+/// A closed path around `at`.
+pub(super) fn circle(at: Pos2, radius: f32) -> Vec<Pos2> {
+    let turn = std::f32::consts::TAU / CIRCLE_SEGMENTS as f32;
+    (0..=CIRCLE_SEGMENTS).map(|i| at + radius * Vec2::angled(i as f32 * turn)).collect()
+}
+
 impl Ghost {
     /// Draws the mass as a dashed ring with its letter.
     pub fn ball(&self, painter: &Painter, style: &Style, at: Pos2, radius: f32) {
-        let turn = std::f32::consts::TAU / CIRCLE_SEGMENTS as f32;
-        let point = |i: usize| at + radius * Vec2::angled(i as f32 * turn);
-        let ring: Vec<Pos2> = (0..=CIRCLE_SEGMENTS).map(point).collect();
-        self.outline(painter, style, &ring);
+        self.outline(painter, style, &circle(at, radius));
         self.letter(painter, style, (at - vec2(0.0, radius + 2.0), Align2::CENTER_BOTTOM));
     }
 

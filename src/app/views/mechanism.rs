@@ -17,12 +17,12 @@ use crate::dynamics::{EventKind, STANDARD_GRAVITY, Side};
 use crate::mechanics::flexure::State;
 use crate::output::{Area, Assembly, DrawnPart, Frame, PlotAxis, Role, Sketch};
 
-use super::ghosts::ghosts;
+use super::ghosts::{dashed, ghosts};
 use super::labels::ago;
 use super::mass::{OUTLINE, body_ui, was_dragged};
 use super::memory::Ring;
 use super::pane::{GUTTER, LEGEND_LEFT, RIGHT, UNIT, on_screen, paint};
-use super::stops::{BEST_STOPS, best_stops, stops_ui};
+use super::stops::{BEST_STOPS, asked_place, best_stops, stops_ui};
 use super::{Cover, Drawn, LegendRow, Span, ViewContext};
 
 /// Height in points above and below the drawing.
@@ -67,7 +67,13 @@ fn drawing_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect) {
     let x = axis(context.span.low * 1e3, context.span.high * 1e3);
     let is_alone = context.drawn == Drawn::WithGhosts && context.session.pins.all().is_empty();
     let is_new = !was_dragged(ui) && context.cover == Cover::None && is_alone;
-    let name = if is_new { "mass: drag me" } else { "mass" };
+    let asked = asked_place(context, state.x);
+    let name = match (is_new, asked) {
+        (true, _) => "mass: drag me",
+        (false, None) => "mass",
+        // the stop that is asked about may stand there
+        (false, Some(_)) => "",
+    };
     let sketch = assembly.sketch(&Frame { area, x, y: axis(0.0, 1.0) }, &style.theme(), name);
     let body = on_screen(rect.min, sketch.mass);
     let Sketch { behind, before, parts, stop_ends: (top, bottom), .. } = sketch;
@@ -94,6 +100,13 @@ fn drawing_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect) {
     let edge = Stroke::new(1.5, style.mass_edge());
     painter.rect(body, 3.0, style.mass(), edge, egui::StrokeKind::Inside);
     stops_ui(ui, context, rect, heights, 0.5 * body.width());
+    if let Some(x) = asked {
+        let at = pos2(context.span.screen_from_world(x, rect), body.center().y);
+        let place = Rect::from_center_size(at, body.size());
+        let corners = [place.left_top(), place.right_top(), place.right_bottom(), place.left_bottom()];
+        let outline: Vec<_> = corners.into_iter().chain([place.left_top()]).collect();
+        painter.extend(dashed(&outline, 0, style.ghost_mass_stroke()));
+    }
     // dots, by which it can be dragged
     for (i, j) in (-1..=1).flat_map(|i| [(i, -1), (i, 1)]) {
         let at = body.center() + vec2(3.0 * j as f32, 6.0 * i as f32);

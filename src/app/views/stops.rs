@@ -131,6 +131,14 @@ pub(super) fn outlined(context: &ViewContext<'_>) -> impl Iterator<Item = (f64, 
     all.filter_map(|((mm, stroke), side)| Some((mm?, side, stroke)))
 }
 
+/// Where stops that a question asks about would set a mass at `x`, in m; `None` if it stands between them.
+pub(super) fn asked_place(context: &ViewContext<'_>, x: f64) -> Option<f64> {
+    let [left, right] = context.memory.asked_stops.map(|stop| stop.map(|mm| mm / 1e3));
+    let place = left.map_or(x, |left| x.max(left));
+    let place = right.map_or(place, |right| place.min(right));
+    (place != x).then_some(place)
+}
+
 /// Draws the stops over `rect` between the heights `top` and `bottom`, and lets them be dragged. The face of
 /// a stop is drawn `radius` points, the half width of the mass, outside its travel limit.
 pub fn stops_ui(

@@ -19,13 +19,15 @@ use crate::output::{
 };
 use interwell_studies::study::Table;
 
-use super::ghosts::{Ghost, PINNED, ghosts};
+use super::ghosts::{Ghost, PINNED, circle, dashed, ghosts};
 use super::hand::axes_input;
 use super::labels::{Taken, ago, free_place};
 use super::mass::mass_ui;
 use super::pane::{LEGEND, Pane, Place, kept_pane_ui};
 use super::ranges::{bottom, room_for_push};
-use super::stops::{BEST_STOPS, WALL, best_stops, outlined, sides, stops_ui, travel_limits, wall};
+use super::stops::{
+    BEST_STOPS, WALL, asked_place, best_stops, outlined, sides, stops_ui, travel_limits, wall,
+};
 use super::view::Axis;
 use super::{Span, View, ViewContext};
 
@@ -121,6 +123,9 @@ pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let at = on_curve(state.x, &tipped);
     stops_ui(ui, context, frame, (frame.top() + 4.0, frame.bottom()), 0.0);
     mass_ui(ui, context, at, frame);
+    if let Some(x) = asked_place(context, state.x) {
+        painter.extend(dashed(&circle(on_curve(x, &tipped), radius), 0, style.ghost_mass_stroke()));
+    }
     // drawn after the stops, since their letters may overlap one; whole at an end of an axis
     let over = ui.painter().with_clip_rect(frame.expand(BALL + 1.0).intersect(area));
     balls.iter().for_each(|(at, ghost)| ghost.ball(&over, &style, *at, radius));
@@ -233,7 +238,8 @@ fn landmarks(
         }
         Some(_) => {
             let [left, right] = heights.map(|height| level.written(height));
-            (format!("{left} from the left, {right} from the right"), format!("left {left},\nright {right}"))
+            let line = format!("barrier {left} from the left, {right} from the right");
+            (line, format!("barrier\n{left} from left,\n{right} from right"))
         }
     };
     let (x, row) = (foot.x, rect.bottom() - 3.0);
