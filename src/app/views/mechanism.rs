@@ -105,7 +105,7 @@ fn drawing_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect) {
         let place = Rect::from_center_size(at, body.size());
         let corners = [place.left_top(), place.right_top(), place.right_bottom(), place.left_bottom()];
         let outline: Vec<_> = corners.into_iter().chain([place.left_top()]).collect();
-        painter.extend(dashed(&outline, 0, style.ghost_mass_stroke()));
+        painter.extend(dashed(&outline, 0, edge));
     }
     // dots, by which it can be dragged
     for (i, j) in (-1..=1).flat_map(|i| [(i, -1), (i, 1)]) {

@@ -124,7 +124,8 @@ pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     stops_ui(ui, context, frame, (frame.top() + 4.0, frame.bottom()), 0.0);
     mass_ui(ui, context, at, frame);
     if let Some(x) = asked_place(context, state.x) {
-        painter.extend(dashed(&circle(on_curve(x, &tipped), radius), 0, style.ghost_mass_stroke()));
+        let edge = Stroke::new(1.5, style.mass_edge());
+        painter.extend(dashed(&circle(on_curve(x, &tipped), radius), 0, edge));
     }
     // drawn after the stops, since their letters may overlap one; whole at an end of an axis
     let over = ui.painter().with_clip_rect(frame.expand(BALL + 1.0).intersect(area));
