@@ -31,8 +31,8 @@ const DOT_SPACING: f32 = 15.0;
 /// Greatest number of characters of the reason that a student gives.
 const MAX_REASON: usize = 60;
 const MEANING: f32 = 320.0;
-/// Greatest number of options side by side.
-const SIDE_BY_SIDE: usize = 3;
+/// Greatest number of options side by side in a strip that is wider than this, in points.
+const SIDE_BY_SIDE: (usize, f32) = (3, 600.0);
 /// Space in points between the parts of a column.
 const COLUMN_SPACE: f32 = 8.0;
 
@@ -140,7 +140,8 @@ pub fn lesson_strip_ui(
         }
     });
     let action = task_ui(ui, lesson, session, style, (false, has_both));
-    action.or(options_ui(ui, lesson, style, SIDE_BY_SIDE))
+    let most = most_beside(ui);
+    action.or(options_ui(ui, lesson, style, most))
 }
 
 /// Draws the step in words, as high in every step, above a view that has the whole window: its text, and the
@@ -180,14 +181,19 @@ fn step_ui(ui: &mut Ui, lesson: &OpenLesson, style: &Style, is_column: bool) {
     text_ui(ui, style, &result.unwrap_or_else(|| heading(step).to_owned()), step.text());
 }
 
+/// Greatest number of options side by side in a strip.
+fn most_beside(ui: &Ui) -> usize {
+    if ui.available_width() > SIDE_BY_SIDE.1 { SIDE_BY_SIDE.0 } else { 1 }
+}
+
 /// Height in points of the strip in a step, with everything that may appear below its text.
 fn height_of(ui: &Ui, style: &Style, step: &Step) -> f32 {
     let of = |heading: &str, text: &str| height_of_text(ui, style, (heading, text), ui.available_width());
     match step {
         Step::Say(text) | Step::Explain(text) => of(heading(step), text),
         Step::Predict { ask, options, .. } => {
-            let rows = options.len().div_ceil(SIDE_BY_SIDE).max(1) as f32;
-            let below = option_size(ui, options, SIDE_BY_SIDE).y * rows + SPACE * (rows - 1.0);
+            let rows = options.len().div_ceil(most_beside(ui)).max(1) as f32;
+            let below = option_size(ui, options, most_beside(ui)).y * rows + SPACE * (rows - 1.0);
             of(SHORT_RESULT, ask) + SPACE + below
         }
         Step::Do { ask, hint, .. } => {
