@@ -112,8 +112,8 @@ fn reveal_ui(ui: &mut Ui, urged: bool) -> Option<LessonAction> {
     reveal.clicked().then_some(LessonAction::Reveal)
 }
 
-/// Draws the strip of a compact window, which has the same height in every step: the text, the state of a task,
-/// the options side by side. Returns the chosen action.
+/// Draws the strip of a compact window, which has the same height in every step: the text, the state of a
+/// task, the options side by side. Returns the chosen action.
 pub fn lesson_strip_ui(
     ui: &mut Ui,
     lesson: &OpenLesson,

@@ -65,8 +65,8 @@ fn limit_number(session: &Session, mm: f64) -> String {
     with_minus(&shown(mm, decimals(key_step(session))))
 }
 
-/// Writes the travel limits over `rect` beside the stops, and beside those that a question asks about, clear of
-/// `taken`, to which it adds them.
+/// Writes the travel limits over `rect` beside the stops, and beside those that a question asks about, clear
+/// of `taken`, to which it adds them.
 pub(super) fn travel_limits(painter: &Painter, context: &ViewContext<'_>, rect: Rect, taken: &mut Taken) {
     let screen = |mm: f64| context.span.screen_from_world(mm / 1e3, rect);
     let best = best_stops(context).into_iter().flat_map(|mm| [(-mm, -1.0), (mm, 1.0)]);
