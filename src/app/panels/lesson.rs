@@ -1,4 +1,4 @@
-//! Column or strip of the open lesson: its step, the options of a prediction, the state of a task, navigation.
+//! Column or strip of the open lesson: its step, options of a prediction, the state of a task, navigation.
 
 use eframe::egui::text::{LayoutJob, TextFormat};
 use eframe::egui::{
