@@ -242,7 +242,7 @@ impl Window {
         match self.session.pin(kind) {
             Ok(letter) => {
                 let what = match kind {
-                    PinKind::Motion => "this motion",
+                    PinKind::Motion => "this motion. Now change something",
                     PinKind::OtherStops => "this motion from here on with its stops switched",
                     PinKind::Twin => "a twin that begins a micrometre beside the mass",
                 };

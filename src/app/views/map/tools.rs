@@ -42,6 +42,10 @@ pub fn tools_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     ui.spacing_mut().item_spacing.y = if ui.available_height() > LOW { 4.0 } else { 0.0 };
     let narrow = ui.available_width() < NARROW;
     egui::Frame::new().inner_margin(egui::Margin::symmetric(8, 0)).show(ui, |ui| {
+        // what no step explains is in a menu
+        if context.session.is_lesson {
+            return drop(ui.horizontal(|ui| row_ui(ui, context)));
+        }
         ui.horizontal_wrapped(|ui| {
             quantity_ui(ui, &mut context.session.map);
             let start = start_in_words(context);
