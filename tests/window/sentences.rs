@@ -30,8 +30,8 @@ fn shaken() {
     let mut likely = likely.map(|(low, speed)| {
         let between = format!("between {low} and 7.3 mm");
         format!(
-            "Intrawell: will swing in the right-hand well, {between}; RMS velocity about {speed} mm/s. No \
-             rhythm within "
+            "Intrawell: will swing in the right-hand well, {between}; RMS velocity about {speed} mm/s. It \
+             does not repeat within "
         )
     });
     assert!(likely.any(|beginning| text.starts_with(&beginning)), "{text}");

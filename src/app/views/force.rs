@@ -38,8 +38,6 @@ const POINTS: usize = 600;
 
 /// Distance in points of a label from its stop.
 const BESIDE: f32 = 16.0;
-/// Distance in points of a label from the corner in which it stands.
-const CORNER: f32 = 5.0;
 /// Heights in points of a label above the force at its stop, the first that is free.
 const ABOVE: [f32; 9] = [2.0, -14.0, 16.0, -28.0, 30.0, -42.0, 44.0, -56.0, 58.0];
 
@@ -194,16 +192,7 @@ fn releases(painter: &Painter, context: &ViewContext<'_>, pane: &Pane, rect: Rec
             let near = (pos2(at.x - 4.0 * side, y), inwards);
             [(&long, beyond), (&short, beyond), (&long, before), (&short, before), (&short, near)]
         });
-        // where it is crowded around the stop, in a corner on its side
-        let (corners, at_top, at_bottom) = match side > 0.0 {
-            true => ([rect.right_top(), rect.right_bottom()], Align2::RIGHT_TOP, Align2::RIGHT_BOTTOM),
-            false => ([rect.left_top(), rect.left_bottom()], Align2::LEFT_TOP, Align2::LEFT_BOTTOM),
-        };
-        let corners = [
-            (&long, (corners[0] + vec2(-CORNER * side, CORNER), at_top)),
-            (&long, (corners[1] + vec2(-CORNER * side, -CORNER), at_bottom)),
-        ];
-        let places = places.chain(corners).map(|(text, (at, align))| (text.as_str(), at, align));
+        let places = places.map(|(text, (at, align))| (text.as_str(), at, align));
         taken.write(painter, rect, (style.small(), style.faint()), places);
     }
 }

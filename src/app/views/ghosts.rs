@@ -87,6 +87,12 @@ pub(super) fn circle(at: Pos2, radius: f32) -> Vec<Pos2> {
     (0..=CIRCLE_SEGMENTS).map(|i| at + radius * Vec2::angled(i as f32 * turn)).collect()
 }
 
+/// A closed path along the edges of a box.
+pub(super) fn edges(body: Rect) -> [Pos2; 5] {
+    let top_left = body.left_top();
+    [top_left, body.right_top(), body.right_bottom(), body.left_bottom(), top_left]
+}
+
 impl Ghost {
     /// Draws the mass as a dashed ring with its letter.
     pub fn ball(&self, painter: &Painter, style: &Style, at: Pos2, radius: f32) {
@@ -96,9 +102,7 @@ impl Ghost {
 
     /// Draws the mass as a dashed box with its letter.
     pub fn body(&self, painter: &Painter, style: &Style, body: Rect) {
-        let corners = [body.left_top(), body.right_top(), body.right_bottom(), body.left_bottom()];
-        let outline: Vec<Pos2> = corners.into_iter().chain([body.left_top()]).collect();
-        self.outline(painter, style, &outline);
+        self.outline(painter, style, &edges(body));
         // clear of the flexures
         self.letter(painter, style, (body.center(), Align2::CENTER_CENTER));
     }

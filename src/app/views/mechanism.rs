@@ -17,7 +17,7 @@ use crate::dynamics::{EventKind, STANDARD_GRAVITY, Side};
 use crate::mechanics::flexure::State;
 use crate::output::{Area, Assembly, DrawnPart, Frame, PlotAxis, Role, Sketch};
 
-use super::ghosts::{dashed, ghosts};
+use super::ghosts::{dashed, edges, ghosts};
 use super::labels::ago;
 use super::mass::{OUTLINE, body_ui, was_dragged};
 use super::memory::Ring;
@@ -102,10 +102,7 @@ fn drawing_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect) {
     stops_ui(ui, context, rect, heights, 0.5 * body.width());
     if let Some(x) = asked {
         let at = pos2(context.span.screen_from_world(x, rect), body.center().y);
-        let place = Rect::from_center_size(at, body.size());
-        let corners = [place.left_top(), place.right_top(), place.right_bottom(), place.left_bottom()];
-        let outline: Vec<_> = corners.into_iter().chain([place.left_top()]).collect();
-        painter.extend(dashed(&outline, 0, edge));
+        painter.extend(dashed(&edges(Rect::from_center_size(at, body.size())), 0, edge));
     }
     // dots, by which it can be dragged
     for (i, j) in (-1..=1).flat_map(|i| [(i, -1), (i, 1)]) {

@@ -240,7 +240,7 @@ fn landmarks(
         Some(_) => {
             let [left, right] = heights.map(|height| level.written(height));
             let line = format!("barrier {left} from the left, {right} from the right");
-            (line, format!("barrier\n{left} from left,\n{right} from right"))
+            (line, format!("barrier\nleft {left},\nright {right}"))
         }
     };
     let (x, row) = (foot.x, rect.bottom() - 3.0);
@@ -251,12 +251,8 @@ fn landmarks(
         (lines.as_str(), foot + vec2(0.0, 4.0), Align2::CENTER_TOP),
         (line.as_str(), pos2(x, row), Align2::CENTER_BOTTOM),
         (lines.as_str(), pos2(x, row), Align2::CENTER_BOTTOM),
-        // between close stops there is no room: beside the hill, or in a corner
-        (line.as_str(), rect.left_top() + vec2(4.0, 4.0), Align2::LEFT_TOP),
-        (line.as_str(), rect.right_top() + vec2(-4.0, 4.0), Align2::RIGHT_TOP),
-        (lines.as_str(), rect.left_top() + vec2(4.0, 4.0), Align2::LEFT_TOP),
-        (lines.as_str(), rect.right_top() + vec2(-4.0, 4.0), Align2::RIGHT_TOP),
     ];
+    // between close stops there is no room
     let beside = [0.15, 0.25, 0.35, 0.65, 0.75, 0.85].into_iter().flat_map(|share| {
         let at = |up: f32| pos2(egui::lerp(rect.x_range(), share), row - up * NAMES);
         [1.0, 3.0, 5.0].map(|up| (lines.as_str(), at(up), Align2::CENTER_BOTTOM))

@@ -78,7 +78,7 @@ impl DrivenMotion<'_> {
             (Some(false), Regime::Irregular, Some(true)) => " Its averages are steady.".to_owned(),
             (Some(false), Regime::Irregular, Some(false)) => " Its averages drift.".to_owned(),
             // its averages are steady: the numbers say "about"
-            (Some(false), _, Some(true)) => format!(" No rhythm within {after}."),
+            (Some(false), _, Some(true)) => format!(" It does not repeat within {after}."),
             (Some(false), ..) => format!(" Not settled after {after}."),
             _ => String::new(),
         }
