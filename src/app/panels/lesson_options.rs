@@ -5,7 +5,7 @@ use std::sync::Arc;
 use eframe::egui::{self, Align2, Button, Color32, FontId, Galley, Sense, Stroke, Ui, Vec2, pos2, vec2};
 
 use crate::app::session::lesson::{MOST_VOTES, OpenLesson, Outcome};
-use crate::app::ui::style::{BODY, CONTROL, Style};
+use crate::app::ui::style::{BODY, CONTROL, Style, strong_family};
 use crate::app::ui::widgets::{primary, tell};
 use crate::app::words::lesson::{letter, plain};
 use crate::app::words::numbers::unbroken;
@@ -40,7 +40,7 @@ pub(super) fn options_text(options: &[Choice], votes: &[u32]) -> String {
     each.collect::<Vec<_>>().join("     ")
 }
 
-/// The votes for an option, if there are any.
+/// The votes for an option in words, if there are any.
 fn votes_text(votes: u32) -> String {
     match votes {
         0 => String::new(),
@@ -52,7 +52,7 @@ fn votes_text(votes: u32) -> String {
 /// The letter and the text of an option, with room for its votes in a button as wide as this.
 fn parts_of(ui: &Ui, (option, choice): (usize, &Choice), width: f32, ink: Color32) -> [Arc<Galley>; 2] {
     let font = || FontId::proportional(BODY);
-    let votes = ui.painter().layout_no_wrap(votes_text(MOST_VOTES), font(), ink).size().x;
+    let votes = ui.painter().layout_no_wrap(MOST_VOTES.to_string(), font(), ink).size().x;
     let room = width - 2.0 * ui.spacing().button_padding.x - INDENT - votes - ui.spacing().item_spacing.x;
     let letter = ui.painter().layout_no_wrap(letter(option).to_string(), font(), ink);
     [letter, ui.painter().layout(unbroken(&plain(&choice.text)), font(), ink, room)]
@@ -101,7 +101,8 @@ pub(super) fn options_ui(
         ui.horizontal(|ui| {
             for (i, choice) in choices.iter().enumerate() {
                 let option = row * columns + i;
-                let votes = votes_text(*lesson.answer().votes.get(option).unwrap_or(&0));
+                let count = *lesson.answer().votes.get(option).unwrap_or(&0);
+                let votes = votes_text(count);
                 let letter = letter(option);
                 let text = format!("{letter}   {}", plain(&choice.text));
                 let spoken = if votes.is_empty() { text } else { format!("{text}, {votes}") };
@@ -121,8 +122,10 @@ pub(super) fn options_ui(
                 let top = inside.center().y - 0.5 * right.size().y;
                 ui.painter().galley(pos2(inside.left(), top), left, ink);
                 ui.painter().galley(pos2(inside.left() + INDENT, top), right, ink);
-                let at = inside.right_center();
-                ui.painter().text(at, Align2::RIGHT_CENTER, &votes, style.body(), ink);
+                if count > 0 {
+                    let font = FontId::new(BODY, strong_family());
+                    ui.painter().text(inside.right_center(), Align2::RIGHT_CENTER, count, font, ink);
+                }
                 if !lesson.is_covering() {
                     tell(&button, egui::Role::Label, &spoken);
                     continue;

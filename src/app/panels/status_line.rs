@@ -1,6 +1,6 @@
 //! Status line under the menu: what the mass does, with its accuracy beside it; its announcements.
 
-use eframe::egui::{self, FontId, Id, RichText, Role, Sense, Ui, Vec2, accesskit::Live};
+use eframe::egui::{self, FontId, Id, RichText, Role, Sense, Ui, Vec2, accesskit::Live, vec2};
 
 use crate::app::session::{OFFER_TO_STOP, Session};
 use crate::app::ui::style::{BODY, COMPACT_BELOW, SMALL, STATUS, Style, strong_family};
@@ -87,8 +87,14 @@ pub fn status_ui(
                     let (place, _) = ui.allocate_exact_size(galley.size(), Sense::hover());
                     ui.painter().galley(place.min, galley, style.ink());
                 }
-                let parts = [(name, strong_family()), (rest, egui::FontFamily::Proportional)];
-                let (size, _) = fitting(ui, &parts, ui.available_size(), BODY);
+                // what it does in a row, and below it what is known besides, where both fit
+                let rows = rest.replacen(". ", ".\n", 1);
+                let parts_of = |rest| [(name, strong_family()), (rest, egui::FontFamily::Proportional)];
+                let room = ui.available_size();
+                let in_rows = fitting(ui, &parts_of(&rows), vec2(room.x, f32::INFINITY), BODY);
+                let is_in_rows = in_rows.0 == BODY && in_rows.1 <= room.y;
+                let parts = parts_of(if is_in_rows { &rows } else { rest });
+                let (size, _) = fitting(ui, &parts, room, BODY);
                 let label = parts_ui(ui, &parts, size);
                 tell(&label, Role::Label, &text);
                 if label.hovered() {

@@ -10,7 +10,6 @@ use std::time::Duration;
 use serde::{Deserialize, Serialize};
 
 use crate::app::task::{Background, Each, Question, Wake, progress, told};
-use crate::app::words::capital;
 use crate::dynamics::{Model, Summary};
 use crate::questions::{self, Course, Scheme, StepSize, Tolerances, Trust};
 use interwell_studies::study::accuracy::scene::{moment, small_length};
@@ -106,15 +105,12 @@ impl Question for StepQuestion {
 const NANOMETRE: f64 = 1e-9;
 
 /// The error of the path, or the time up to which the path is reliable, in a few words.
-fn short(trust: &Trust, from: f64, is_regular: bool) -> String {
-    let reliable = |until: f64| format!("path reliable up to {}", moment(from + until));
+fn short(trust: &Trust, from: f64) -> String {
     match trust.course {
         Course::Kept if trust.error < NANOMETRE => "Path error below 1 nm".to_owned(),
         Course::Kept => format!("Path error {}", small_length(trust.error, trust.travel)),
-        // a motion that settles to a periodic one was chaotic only for a time
-        Course::Chaotic { until, .. } if !is_regular => format!("Chaotic: {}", reliable(until)),
         Course::Chaotic { until, .. } | Course::Sensitive { until } | Course::Coarse { until } => {
-            capital(&reliable(until))
+            format!("Path reliable up to {}", moment(from + until))
         }
     }
 }
@@ -187,13 +183,13 @@ impl Accuracy {
         Some(run.from + trust.course.until().unwrap_or(trust.span))
     }
 
-    /// The error of the motion in a few words, and in full; `is_regular` if it comes to repeat.
-    pub(super) fn descriptions(&self, is_regular: bool) -> Option<(String, String)> {
+    /// The error of the motion in a few words, and in full.
+    pub(super) fn descriptions(&self) -> Option<(String, String)> {
         let from = self.run.as_ref()?.from;
         let trust = self.trust.newest()?;
         // for a run that ended early its end is reported instead
         trust.short(from)?;
-        Some((short(trust, from, is_regular), long(trust, from)))
+        Some((short(trust, from), long(trust, from)))
     }
 
     /// The cost of each digit, and whether it was computed for `model`.

@@ -181,8 +181,7 @@ impl Session {
     /// of the run, and while the accuracy is unknown.
     pub fn trust(&self) -> Option<(String, String)> {
         let moves = self.fault.is_none() && !self.player.is_held() && self.player.ended().is_none();
-        let is_regular = self.settled.answer().is_some_and(|summary| summary.period.is_some());
-        self.accuracy.descriptions(is_regular).filter(|_| moves)
+        self.accuracy.descriptions().filter(|_| moves)
     }
 
     pub(super) fn can_search(&self) -> bool {

@@ -186,11 +186,17 @@ impl Session {
         self.edit_once(|edited| *edited = scene)
     }
 
-    /// Copies the thresholds of the open scene to the pins whose scenes have the same thresholds.
+    /// Copies the thresholds of the open scene to the state before the last change and to the pins, where
+    /// their scenes have the same thresholds.
     pub(super) fn note_thresholds(&mut self) {
         let (Some(asked), Some(found)) = (self.thresholds.question(), self.thresholds.answer()) else {
             return;
         };
+        if let Some(before) =
+            self.before.as_mut().filter(|card| card.thresholds.is_none() && !self.keeps_remedy)
+        {
+            before.thresholds = (unshaken(&before.scene) == *asked.0.of).then_some(*found);
+        }
         for pin in self.pins.all.iter_mut().filter(|pin| pin.thresholds.is_none()) {
             pin.thresholds = (unshaken(&pin.scene) == *asked.0.of).then_some(*found);
         }

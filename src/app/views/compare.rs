@@ -8,8 +8,11 @@ use crate::app::session::pins::{FULL, Pin, PinKind};
 use crate::app::ui::widgets::tell;
 use crate::scene::Stops;
 
-use super::table::{Column, WIDE_COLUMN, table_ui};
+use super::table::{Column, table_ui};
 use super::{ViewContext, empty_ui, page_ui};
+
+/// Width in points of a column whose heading has room for both buttons with all their words.
+const ROOM_FOR_BUTTONS: f32 = 150.0;
 
 enum PinAction {
     TakeBack(char),
@@ -125,7 +128,7 @@ fn heading_ui(ui: &mut Ui, context: &ViewContext<'_>, pin: &Pin, width: f32) -> 
         let hover = "The scene as it is in this pin: one step that can be undone. The motion goes on from \
                      where it is.";
         let other = pin.scene != *context.session.scene();
-        let text = RichText::new(if width < WIDE_COLUMN { "Back" } else { "Take back" }).small();
+        let text = RichText::new(if width < ROOM_FOR_BUTTONS { "Back" } else { "Take back" }).small();
         let back = ui.add_enabled(other, Button::new(text).small().wrap_mode(Extend));
         let spoken = format!("Take {letter} back");
         back.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, other, &spoken));

@@ -25,6 +25,8 @@ pub struct Memory {
     /// Whether measured data are to be opened.
     pub open_measured: bool,
     pub hovered: Option<View>,
+    /// Whether hover texts are closed, since a key was pressed after the pointer moved last.
+    pub hushed: bool,
     /// A view that a lesson covers until its first prediction has been shown.
     pub covered: Option<View>,
     /// The question over what a lesson covers.
@@ -80,7 +82,7 @@ impl Memory {
 
     /// The state that remains from one step of a lesson to the next: axes that hold while they suit.
     pub fn for_another_step(&self) -> Self {
-        Self { frozen: self.frozen, ..Self::default() }
+        Self { frozen: self.frozen, hushed: self.hushed, ..Self::default() }
     }
 
     /// The state that remains when another scene is opened.

@@ -33,7 +33,7 @@ const SMALL_NAMES: (f32, f32) = (116.0, 78.0);
 /// Smallest width in points of a column of values.
 const MIN_COLUMN: f32 = 44.0;
 /// Width in points from which on a column has text of full size beside the symbols.
-pub(super) const WIDE_COLUMN: f32 = 96.0;
+const WIDE_COLUMN: f32 = 96.0;
 
 const RMS: &str = "RMS velocity";
 const CROSSES: &str = "crosses from";

@@ -163,9 +163,9 @@ impl Window {
             let is_move = |event: &egui::Event| matches!(event, egui::Event::PointerMoved(_));
             (input.events.iter().any(is_key), input.events.iter().any(is_move))
         });
-        self.hushed = (self.hushed || is_pressed) && !is_moved;
+        self.memory.hushed = (self.memory.hushed || is_pressed) && !is_moved;
         let waits = self.waits_for_answer();
-        if waits && !self.waited || self.hushed {
+        if waits && !self.waited || self.memory.hushed {
             let (ctx, id) = (ui.ctx().clone(), egui::Id::unique("no hover text"));
             let mut empty = egui::Tooltip::always_open(ctx, ui.layer_id(), id, egui::Pos2::ZERO);
             empty.popup = empty.popup.frame(egui::Frame::NONE);

@@ -79,8 +79,6 @@ pub struct Window {
     pub(super) glossary: bool,
     /// Whether a dialog was open in the last frame.
     pub(super) waited: bool,
-    /// Whether a key was pressed since the pointer moved last.
-    pub(super) hushed: bool,
     pub(super) wake: Wake,
     /// The settings that were applied last; they are applied again only if they change.
     pub(super) applied: Option<Settings>,
@@ -154,7 +152,6 @@ impl Window {
             lessons: Lessons::default(),
             glossary: false,
             waited: false,
-            hushed: false,
             wake,
             applied: None,
             pace: Pace::default(),

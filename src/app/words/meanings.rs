@@ -92,6 +92,11 @@ const MEANINGS: &[(&str, &str)] = &[
          path is right only up to some time, while averages hold for longer.",
     ),
     (
+        "path reliable",
+        "Small errors of the path grow: after this time the true path may be another one, while averages \
+         hold for longer.",
+    ),
+    (
         "separatrix",
         "The states with just the energy to stand on top of the barrier: inside either loop the mass stays \
          in its well, outside it crosses, as long as nothing shakes it.",
@@ -103,10 +108,7 @@ const MEANINGS: &[(&str, &str)] = &[
     ("at rest on a stop", "The mechanism presses the mass on its stop, harder than the push pulls."),
     ("impacts", "The mass strikes a stop and rebounds; the energy that it loses goes into the stop."),
     ("stops", "Where the stops stand: the travel limit on either side."),
-    (
-        "potential with the push",
-        "The mechanism's potential, tipped by the push: the mass moves as a ball on it.",
-    ),
+    ("with the push", "The mechanism's potential, tipped by the push: the mass moves as a ball on it."),
     (
         "potential",
         "The energy that the mechanism stores with the mass at a place. Its slope is the force on the mass; \
@@ -205,7 +207,7 @@ mod tests {
             "RMS velocity",
             "settling: 0.6 s to go",
             "separatrix",
-            "Chaotic: path reliable up to 4.0 s",
+            "Path reliable up to 4.0 s",
         ];
         for label in all {
             let text = meaning(label).unwrap_or_else(|| panic!("{label}"));

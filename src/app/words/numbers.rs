@@ -55,7 +55,7 @@ const UNITS: [&str; 30] = [
     "N/m", "J", "mJ", "uJ", "W", "mW", "uW", "V", "ohm", "kohm", "%", "min", "points", "N s/m",
 ];
 
-/// A text for the screen: its lines are not broken between a number and its unit.
+/// A text for the screen: its lines are not broken between a number and its unit, nor before three dots.
 pub fn unbroken(text: &str) -> String {
     let mut whole = String::with_capacity(text.len());
     let mut rest = text;
@@ -64,7 +64,7 @@ pub fn unbroken(text: &str) -> String {
         let word = after.split(|c: char| c.is_whitespace() || ".,;:?!)".contains(c)).next().unwrap_or("");
         let is_unit = rest[..at].ends_with(|c: char| c.is_ascii_digit()) && UNITS.contains(&word);
         whole += &rest[..at];
-        whole.push(if is_unit { '\u{a0}' } else { ' ' });
+        whole.push(if is_unit || after.starts_with("...") { '\u{a0}' } else { ' ' });
         rest = after;
     }
     whole + rest

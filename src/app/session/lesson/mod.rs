@@ -172,6 +172,12 @@ impl OpenLesson {
         Some((chosen, options[chosen].reply.as_deref()?))
     }
 
+    /// Whether the answer of a prediction is shown, which the next step explains.
+    pub fn explains_next(&self) -> bool {
+        let next = self.lesson().steps.get(self.number() + 1);
+        !self.options().is_empty() && self.answer().shown && matches!(next, Some(Step::Explain(_)))
+    }
+
     /// Whether the motion and all results are covered: in a prediction that has not been shown.
     pub fn is_covering(&self) -> bool {
         matches!(self.step(), Step::Predict { .. }) && !self.answer().shown
@@ -203,16 +209,21 @@ impl OpenLesson {
     /// Whether a view that would show the answer is covered: until the first prediction has been shown,
     /// unless a step before it has the name of the view, in lower case, as a bold word.
     pub fn keeps_back(&self, view: &str) -> bool {
-        let steps = self.lesson().steps.iter();
-        let mut before = steps.take_while(|step| !matches!(step, Step::Predict { .. }));
-        self.hides_surveys() && !before.any(|step| bold_words(step.text()).any(|word| word == view))
+        let Some(first) = self.first_prediction().filter(|first| !self.is_settled(*first)) else {
+            return false;
+        };
+        let mut before = self.lesson().steps[..first].iter();
+        !before.any(|step| bold_words(step.text()).any(|word| word == view))
     }
 
-    /// Whether results for other settings are covered: until the first prediction has been shown.
+    /// Whether results for other settings are covered: until the step after the first prediction, which
+    /// explains them.
     pub fn hides_surveys(&self) -> bool {
-        let is_prediction = |step: &Step| matches!(step, Step::Predict { .. });
-        let first = self.lesson().steps.iter().position(is_prediction);
-        first.is_some_and(|number| !self.is_settled(number))
+        self.first_prediction().is_some_and(|first| self.number() <= first)
+    }
+
+    fn first_prediction(&self) -> Option<usize> {
+        self.lesson().steps.iter().position(|step| matches!(step, Step::Predict { .. }))
     }
 
     /// Whether a step has been answered or done. A step that only tells or explains something always is.

@@ -127,7 +127,7 @@ pub fn map_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let cell_at = |at: Pos2| cell_at(&pane, map, scene, at);
     let pointed = pane.response.hover_pos().filter(|_| !pane.response.dragged()).and_then(cell_at);
     let is_still = ui.input(|input| input.pointer.time_since_last_movement()) > LINGER;
-    if let Some(cell) = pointed.filter(|_| !is_still) {
+    if let Some(cell) = pointed.filter(|_| !is_still && !context.memory.hushed) {
         point_out(&painter, &style, &pane, map, cell);
         let over = pane.response.clone().on_hover_cursor(egui::CursorIcon::PointingHand);
         over.on_hover_text_at_pointer(reading(map, quantity, cell, style.projector));

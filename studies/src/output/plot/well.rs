@@ -82,7 +82,7 @@ pub fn well_panel(
     let mut panel = Panel::new(across, up);
     let named = |panel: &mut Panel, role, name| panel.layer(role, name, Marks::Path(Vec::new()));
     if is_pushed {
-        named(&mut panel, Role::Curve, "potential with the push");
+        named(&mut panel, Role::Curve, "with the push");
         panel.layer(Role::Reference, "without the push", Marks::Path(level.points(range)));
     } else {
         named(&mut panel, Role::Curve, "potential");
