@@ -9,7 +9,7 @@ use crate::app::ui::style::CONTROL;
 use crate::app::ui::widgets::{hover_beside, primary};
 use crate::app::words::fields::{Reach, info, name_and_unit};
 use crate::app::words::numbers::{below, decimals, round_up, shown};
-use crate::scene::{Damping, Excitation, FieldPath, Mechanism, Scene, Stops, Transducer, numeric_fields};
+use crate::scene::{Damping, Excitation, FieldPath, Mechanism, Stops, Transducer, numeric_fields};
 
 use super::advanced;
 
@@ -138,26 +138,13 @@ pub fn row_ui(ui: &mut Ui, session: &mut Session, more: &mut bool) {
     });
 }
 
-/// Whether a field has another value in the scene about which a lesson `asks`: its control is left out, with
-/// its place.
-fn is_asked(session: &Session, path: &str, asks: Option<&Scene>) -> bool {
-    let present = session.number(path);
-    asks.is_some_and(|scene| FieldPath::new(path).get(scene).is_some_and(|asked| Some(asked) != present))
-}
-
 /// The controls that a lesson names and the scene has.
 fn named<'a>(session: &Session, controls: &'a [String]) -> Vec<&'a String> {
     controls.iter().filter(|path| *path == SWITCH || session.number(path).is_some()).collect()
 }
 
-/// The controls that a lesson names, one below another. A field that has another value in the scene about
-/// which the lesson `asks` is left out, with its place. Returns the rectangle of each control.
-pub fn named_column_ui(
-    ui: &mut Ui,
-    session: &mut Session,
-    controls: &[String],
-    asks: Option<&Scene>,
-) -> Vec<(String, Rect)> {
+/// The controls that a lesson names, one below another. Returns the rectangle of each control.
+pub fn named_column_ui(ui: &mut Ui, session: &mut Session, controls: &[String]) -> Vec<(String, Rect)> {
     let width = (ui.available_width() - 84.0).max(LEAST_SLIDER);
     let has_switch = controls.iter().any(|path| path == SWITCH);
     let mut places = Vec::new();
@@ -168,9 +155,6 @@ pub fn named_column_ui(
             SWITCH => stops_switch_ui(ui, session),
             path => {
                 ui.spacing_mut().item_spacing.y -= COLUMN_SPACE;
-                if is_asked(session, path, asks) {
-                    ui.set_invisible();
-                }
                 if AMPLITUDE.contains(&path) {
                     ui.heading(SHAKING);
                 }
@@ -182,14 +166,8 @@ pub fn named_column_ui(
     places
 }
 
-/// The controls that a lesson names, in rows that fill the width. A field that has another value in the scene
-/// about which the lesson `asks` is left out, with its place. Returns the rectangle of each control.
-pub fn named_ui(
-    ui: &mut Ui,
-    session: &mut Session,
-    controls: &[String],
-    asks: Option<&Scene>,
-) -> Vec<(String, Rect)> {
+/// The controls that a lesson names, in rows that fill the width. Returns the rectangle of each control.
+pub fn named_ui(ui: &mut Ui, session: &mut Session, controls: &[String]) -> Vec<(String, Rect)> {
     let font = egui::TextStyle::Body.resolve(ui.style());
     let name_width = |ui: &Ui, path: &str| {
         let name = name_and_unit(path).0;
@@ -231,9 +209,6 @@ pub fn named_ui(
                 let control = ui.scope(|ui| match path.as_str() {
                     SWITCH => stops_switch_ui(ui, session),
                     path => {
-                        if is_asked(session, path, asks) {
-                            ui.set_invisible();
-                        }
                         if has_heading && is_amplitude(path) {
                             ui.heading(SHAKING);
                         }

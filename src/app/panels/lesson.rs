@@ -89,7 +89,7 @@ pub fn lesson_column_ui(
         match lesson.reply() {
             Some((option, reply)) => text_ui(ui, style, &format!("{}: ", letter(option)), reply),
             None if lesson.explains_next() => {
-                let text = "The next step says why.";
+                let text = "The next step explains it.";
                 ui.label(RichText::new(text).color(style.faint()));
             }
             None => {}
@@ -99,9 +99,13 @@ pub fn lesson_column_ui(
         }
         ui.spacing_mut().item_spacing.y = usual;
         ui.add_space(COLUMN_SPACE);
-        let (named, asks) = (&lesson.lesson().controls, lesson.covered_answer());
-        let enabled = ui
-            .add_enabled_ui(!lesson.is_covering(), |ui| controls::named_column_ui(ui, session, named, asks));
+        let enabled = ui.scope(|ui| {
+            // the question is about what they change
+            if lesson.is_covering() {
+                ui.set_invisible();
+            }
+            controls::named_column_ui(ui, session, &lesson.lesson().controls)
+        });
         ui.add_space(COLUMN_SPACE);
         ui.spacing_mut().item_spacing.y = COLUMN_SPACE;
         (action.or(task_ui(ui, lesson, session, style, (true, true))), enabled.inner)
@@ -168,7 +172,8 @@ pub fn lesson_words_ui(ui: &mut Ui, lesson: &OpenLesson, session: &Session, styl
     ui.set_min_height(lesson.lesson().steps.iter().map(height).fold(0.0, f32::max));
     step_ui(ui, lesson, style, false);
     if !lesson.options().is_empty() {
-        text_ui(ui, style, "", &options_text(lesson.options(), &lesson.answer().votes));
+        let votes: &[u32] = if lesson.is_covering() { &[] } else { &lesson.answer().votes };
+        text_ui(ui, style, "", &options_text(lesson.options(), votes));
     }
 }
 

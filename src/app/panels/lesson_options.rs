@@ -16,6 +16,9 @@ use super::lesson::LessonAction;
 /// Distance in points between the letter of an option and its text, from left to left.
 const INDENT: f32 = 22.0;
 
+/// Height in points of a bar of votes.
+const BAR: f32 = 4.0;
+
 /// A button for each option of a prediction, with the votes for it.
 pub fn votes_ui(ui: &mut Ui, lesson: &OpenLesson) -> Option<LessonAction> {
     let mut action = None;
@@ -122,9 +125,14 @@ pub(super) fn options_ui(
                 let top = inside.center().y - 0.5 * right.size().y;
                 ui.painter().galley(pos2(inside.left(), top), left, ink);
                 ui.painter().galley(pos2(inside.left() + INDENT, top), right, ink);
-                if count > 0 {
+                // counted in secret, so that no vote follows the others
+                if count > 0 && !lesson.is_covering() {
                     let font = FontId::new(BODY, strong_family());
                     ui.painter().text(inside.right_center(), Align2::RIGHT_CENTER, count, font, ink);
+                    let share = count as f32 / lesson.votes() as f32;
+                    let bar = button.rect.with_min_y(button.rect.bottom() - BAR).shrink2(vec2(BAR, 0.0));
+                    let bar = bar.with_max_x(bar.left() + share * bar.width());
+                    ui.painter().rect_filled(bar, 0.5 * BAR, if holds { ink } else { style.accent() });
                 }
                 if !lesson.is_covering() {
                     tell(&button, egui::Role::Label, &spoken);

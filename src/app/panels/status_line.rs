@@ -151,11 +151,14 @@ fn beside_ui(ui: &mut Ui, session: &mut Session, style: &Style) {
     });
 }
 
-/// The text in place of the sentence while the results are covered, by a key or by a prediction.
-pub fn covered_ui(ui: &mut Ui, by_lesson: bool) {
-    let text = match by_lesson {
-        true => "Covered until you choose: what do you expect?",
-        false => "Covered: what do you expect? C shows it again.",
+/// The text in place of the sentence while the results are covered: by a prediction, with its number of votes,
+/// or by a key.
+pub fn covered_ui(ui: &mut Ui, votes: Option<u32>) {
+    let text = match votes {
+        None => "Covered: what do you expect? C shows it again.",
+        Some(0) => "Covered until you choose: what do you expect?",
+        Some(1) => "1 vote is counted. Reveal shows what it does.",
+        Some(votes) => &format!("{votes} votes are counted. Reveal shows what it does."),
     };
     ui.horizontal_centered(|ui| ui.label(RichText::new(text).heading().size(STATUS)));
 }

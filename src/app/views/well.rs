@@ -226,21 +226,23 @@ fn landmarks(
     };
     let count = (rect.width() / STEP) as usize;
     taken.lines.extend((0..=count).map(|i| swept(rect.left() + STEP * i as f32)));
-    let (line, lines) = match feet {
+    let (line, lines, narrow) = match feet {
         None => {
             let line = format!("barrier {}", level.written(joule));
             let lines = line.replacen(' ', "\n", 1);
-            (line, lines)
+            (line, lines.clone(), lines)
         }
         Some(_) if (heights[0] - heights[1]).abs() < 5e-3 * joule => {
             let (climb, whole) = (level.written(heights[0]), level.written(joule));
             let line = format!("barrier {whole}, {climb} from a stop");
-            (line, format!("barrier\n{whole},\n{climb}\nfrom a stop"))
+            let lines = format!("barrier\n{whole},\n{climb}\nfrom a stop");
+            (line, lines.clone(), lines.replace("from ", "from\n"))
         }
         Some(_) => {
             let [left, right] = heights.map(|height| level.written(height));
             let line = format!("barrier {left} from the left, {right} from the right");
-            (line, format!("barrier\nleft {left},\nright {right}"))
+            let lines = format!("barrier\nleft {left},\nright {right}");
+            (line, lines.clone(), lines.replace("left ", "left\n").replace("right ", "right\n"))
         }
     };
     let (x, row) = (foot.x, rect.bottom() - 3.0);
@@ -249,6 +251,7 @@ fn landmarks(
         (lines.as_str(), pos2(x + 5.0, foot.y - 4.0), Align2::LEFT_BOTTOM),
         (lines.as_str(), pos2(x - 5.0, foot.y - 4.0), Align2::RIGHT_BOTTOM),
         (lines.as_str(), foot + vec2(0.0, 4.0), Align2::CENTER_TOP),
+        (narrow.as_str(), foot + vec2(0.0, 4.0), Align2::CENTER_TOP),
         (line.as_str(), pos2(x, row), Align2::CENTER_BOTTOM),
         (lines.as_str(), pos2(x, row), Align2::CENTER_BOTTOM),
     ];

@@ -11,8 +11,9 @@ use crate::app::views::{LegendRow, View, ViewContext, view_ui};
 const ROW: f32 = CONTROL;
 /// Distance in points of the titles from the edge of the card, and half of that between two titles.
 const MARGIN: f32 = 8.0;
-/// Width in points of a tool.
+/// Width in points of a tool, and the greatest number of tools.
 const TOOL: f32 = 24.0;
+const MOST_TOOLS: u8 = 3;
 /// Width in points that the caption of the mechanism needs beside the titles; with less room it is in a row
 /// below.
 const CAPTION_ROOM: f32 = 220.0;
@@ -47,7 +48,8 @@ pub fn card_ui(ui: &mut Ui, titles: &[Title], view: View, context: &mut ViewCont
     let has_axes = context.memory.are_axes_held(view).is_some();
     let count = 1 + u8::from(has_figure(ui, context)) + u8::from(has_axes);
     let tools = f32::from(count) * TOOL + 4.0;
-    let font = title_font(ui, titles, row.width() - tools - MARGIN);
+    // the letters stay whichever of the views is in front
+    let font = title_font(ui, titles, row.width() - f32::from(MOST_TOOLS) * TOOL - 4.0 - MARGIN);
     let width: f32 = titles.iter().map(|title| width_of(ui, title, &font)).sum();
     let free = LegendRow { left: row.left() + MARGIN + width, right: row.right() - tools };
     let is_compact = ui.ctx().content_rect().width() < COMPACT_BELOW;

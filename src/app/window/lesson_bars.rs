@@ -68,11 +68,11 @@ impl Window {
         };
         // so that an outline around a control keeps clear of the views
         bare(Panel::top("controls of the lesson"), 12, 2).show(ui, |ui| {
+            // the question is about what they change
             if lesson.is_covering() {
-                ui.disable();
+                ui.set_invisible();
             }
-            let (named, asks) = (&lesson.lesson().controls, lesson.covered_answer());
-            self.lessons.controls = controls::named_ui(ui, &mut self.session, named, asks);
+            self.lessons.controls = controls::named_ui(ui, &mut self.session, &lesson.lesson().controls);
         });
     }
 

@@ -388,8 +388,8 @@ impl Window {
             self.tiling.cover_surveys(lesson.hides_surveys());
         }
         if !matches!(turn, Turn::Stay) {
-            // what was said of the step before
-            self.messages.notice = None;
+            // what was said of the step before, and its cover
+            (self.messages.notice, self.covered) = (None, false);
             let named = self.show_named_views();
             // it takes the place of a view that has the whole window
             self.filled = self.filled.map(|filled| named.unwrap_or(filled));

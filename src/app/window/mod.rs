@@ -10,6 +10,7 @@ use eframe::egui::{self, CentralPanel, Panel, RichText, Ui};
 use crate::app::panels::hint::guide_ui;
 use crate::app::panels::status_line::{self, Beside, covered_ui, has_column, status_ui};
 use crate::app::panels::{controls, notes, transport};
+use crate::app::session::lesson::OpenLesson;
 use crate::app::session::lesson::Records;
 use crate::app::ui::settings::Settings;
 pub use crate::app::ui::style::install as prepare;
@@ -224,7 +225,10 @@ impl Window {
                     self.lesson_navigation_ui(ui, style);
                 }
                 ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| match covered {
-                    true => covered_ui(ui, !self.covered),
+                    true => {
+                        let lesson = self.lessons.open.as_ref().filter(|_| !self.covered);
+                        covered_ui(ui, lesson.map(OpenLesson::votes));
+                    }
                     false => {
                         let beside = if leads { Beside::Buttons } else { Beside::Accuracy };
                         status_ui(ui, &mut self.session, &mut self.announcer, style, beside);

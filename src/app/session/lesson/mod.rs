@@ -155,6 +155,11 @@ impl OpenLesson {
         if let Step::Predict { options, .. } = self.step() { options } else { &[] }
     }
 
+    /// The number of votes for all options.
+    pub fn votes(&self) -> u32 {
+        self.answer().votes.iter().sum()
+    }
+
     /// The reply to an option that does not hold, once that is known, with the option: to the one that was
     /// chosen or, without a choice, to the one of those with most votes.
     pub fn reply(&self) -> Option<(usize, &str)> {
@@ -209,21 +214,16 @@ impl OpenLesson {
     /// Whether a view that would show the answer is covered: until the first prediction has been shown,
     /// unless a step before it has the name of the view, in lower case, as a bold word.
     pub fn keeps_back(&self, view: &str) -> bool {
-        let Some(first) = self.first_prediction().filter(|first| !self.is_settled(*first)) else {
-            return false;
-        };
-        let mut before = self.lesson().steps[..first].iter();
-        !before.any(|step| bold_words(step.text()).any(|word| word == view))
+        let steps = self.lesson().steps.iter();
+        let mut before = steps.take_while(|step| !matches!(step, Step::Predict { .. }));
+        self.hides_surveys() && !before.any(|step| bold_words(step.text()).any(|word| word == view))
     }
 
-    /// Whether results for other settings are covered: until the step after the first prediction, which
-    /// explains them.
+    /// Whether results for other settings are covered: until the first prediction has been shown.
     pub fn hides_surveys(&self) -> bool {
-        self.first_prediction().is_some_and(|first| self.number() <= first)
-    }
-
-    fn first_prediction(&self) -> Option<usize> {
-        self.lesson().steps.iter().position(|step| matches!(step, Step::Predict { .. }))
+        let is_prediction = |step: &Step| matches!(step, Step::Predict { .. });
+        let first = self.lesson().steps.iter().position(is_prediction);
+        first.is_some_and(|number| !self.is_settled(number))
     }
 
     /// Whether a step has been answered or done. A step that only tells or explains something always is.

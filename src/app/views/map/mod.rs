@@ -13,9 +13,10 @@ use crate::app::ui::widgets::tell;
 use crate::app::words::columns::said;
 use crate::app::words::kind::Kind;
 use crate::app::words::numbers::{UNKNOWN, three};
-use crate::app::words::status::speed;
+use crate::app::words::status::{speed, threshold};
 use crate::dynamics::{Regime, Summary};
 use crate::output::{Cell as DrawnCell, Marks, PlotAxis, RMS, View as MapShape, suited_unit, words_of};
+use crate::scene::Stops;
 use interwell_studies::study::{Read, SummaryField, label_and_unit};
 
 use super::labels::haloed;
@@ -58,6 +59,10 @@ pub fn map_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         return too_small_ui(ui, &style, area);
     }
     let quantity = context.session.map.quantity();
+    // the edge of the map is that of stops far out, and not of none
+    let card = context.session.now_card();
+    let crossing = card.thresholds.filter(|_| card.scene.stops == Stops::None).map(|found| found.crossing);
+    let no_stops = crossing.and_then(|found| threshold(&card.scene, &found));
     let (place, scene) = (map.place(context.session.scene()), map.nearest_cell(context.session.scene()));
     let has_room = area.width() > ROOM_FOR_CUTS.0 && area.height() > ROOM_FOR_CUTS.1;
     let is_surface = look.surface && words_of(quantity.name).is_none();
@@ -113,7 +118,12 @@ pub fn map_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
             trail::draw(&painter, &pane, &style, &trail);
             best_stops(&painter, &style, &pane, map, place, context.session.best.limit_mm());
             cut_marks(&painter, &style, &pane, scene);
-            marker(&painter, &pane, &style, place)
+            let words = match &no_stops {
+                Some((amplitude, unit)) => format!("no stops: crosses from {amplitude} {unit}"),
+                None if place[0].is_none() => "no stops".to_owned(),
+                None => "now: further out".to_owned(),
+            };
+            marker(&painter, &pane, &style, (place, words))
         }
     };
     if !current {
@@ -307,8 +317,9 @@ fn reading(map: &Map, quantity: &SummaryField, (column, row): (usize, usize), is
     lines.join("\n")
 }
 
-/// Marks the scene by a ring, or by an arrow at the edge that it lies beyond. Returns the place.
-fn marker(painter: &Painter, pane: &Pane, style: &Style, place: Place) -> Pos2 {
+/// Marks the scene by a ring, or by an arrow at the edge that it lies beyond, with these words. Returns the
+/// place.
+fn marker(painter: &Painter, pane: &Pane, style: &Style, (place, words): (Place, String)) -> Pos2 {
     let (Some([across, up]), Some(frame)) = (pane.axes(MAP), pane.frame(MAP)) else { return Pos2::ZERO };
     // no stops count as stops far out
     let (x, y) = (place[0].unwrap_or(f64::INFINITY), place[1].unwrap_or(f64::INFINITY));
@@ -331,8 +342,7 @@ fn marker(painter: &Painter, pane: &Pane, style: &Style, place: Place) -> Pos2 {
     let (tip, back, side) = (at - direction * 2.0, at - direction * 16.0, direction.rot90() * 8.0);
     let ([halo, line], points) = (style.marker_strokes(), vec![tip, back + side, back - side]);
     painter.add(Shape::convex_polygon(points, line.color, Stroke::new(1.5, halo.color)));
-    let words = if place[0].is_none() { "no stops" } else { "now: further out" };
-    let galley = painter.layout_no_wrap(words.to_owned(), style.body(), Color32::PLACEHOLDER);
+    let galley = painter.layout_no_wrap(words, style.body(), Color32::PLACEHOLDER);
     let (room, size) = (frame.shrink(4.0), galley.size());
     let wanted = back - direction * (10.0 + 0.5 * size.x) - 0.5 * size;
     let corner = pos2(

@@ -126,9 +126,9 @@ pub struct Room {
     pub between: f64,
 }
 
-/// Largest share of the height of such a pane for its legend. A legend that needs more has its rows closer
-/// together, by the second number, and may take the last share.
-const LEGEND_SHARE: (f64, f64, f64) = (1.0 / 6.0, 0.82, 0.3);
+/// Largest share of the height of such a pane for its legend, and for one of two rows. Entries for which there
+/// is no room are left out, the last ones first.
+const LEGEND_SHARE: (f64, f64) = (1.0 / 6.0, 0.3);
 /// Height below which the horizontal axis of such a pane has no name.
 pub(super) const NAMELESS: f64 = 340.0;
 
@@ -263,8 +263,6 @@ impl Chart {
 /// A legend in rows, with its height.
 struct Legend<'a> {
     entries: Vec<Entry<'a>>,
-    /// From one row to the next after the first one.
-    step: f64,
     height: f64,
 }
 
@@ -284,7 +282,7 @@ impl<'a> Legend<'a> {
             left += width + BETWEEN_ENTRIES;
         }
         let height = if entries.is_empty() { 0.0 } else { ROW * (row as f64 + 1.0) + AFTER_LEGEND };
-        Self { entries, step: ROW, height }
+        Self { entries, height }
     }
 
     /// Whether it is a row of full letters that is no wider than `room`.
@@ -298,22 +296,17 @@ impl<'a> Legend<'a> {
 
     /// The legend within this height; an empty one has the height of a row.
     fn within(mut self, height: f64) -> Self {
-        let (share, closer, most) = LEGEND_SHARE;
-        let bottom =
-            |step: f64, entry: Option<&Entry>| ROW + step * entry.map_or(0, |entry| entry.row) as f64;
-        if bottom(ROW, self.entries.last()) > (share * height).max(ROW) {
-            let step = closer * ROW;
-            self.step = step;
-            self.entries.retain(|entry| entry.row == 0 || bottom(step, Some(entry)) <= most * height);
-        }
-        self.height = bottom(self.step, self.entries.last()) + AFTER_LEGEND;
+        let bottom = |row: usize| ROW * (row as f64 + 1.0);
+        let room = |row: usize| height * if row > 1 { LEGEND_SHARE.0 } else { LEGEND_SHARE.1 };
+        self.entries.retain(|entry| entry.row == 0 || bottom(entry.row) <= room(entry.row));
+        self.height = bottom(self.entries.last().map_or(0, |entry| entry.row)) + AFTER_LEGEND;
         self
     }
 
     /// Draws it with its upper left corner at a place.
     fn draw(&self, figure: &mut Figure, (left, top): (f64, f64), theme: &Theme) {
         for Entry { sample, words, size, left: from, row } in &self.entries {
-            let (x, middle) = (left + from, top + (0.5 * ROW + self.step * *row as f64));
+            let (x, middle) = (left + from, top + ROW * (*row as f64 + 0.5));
             entry(figure, theme, *sample, Area::new(x, middle - 12.0, x + SAMPLE, middle + 12.0));
             let at = (x + SAMPLE + GAP, middle + 0.5 * size * font::CAPITAL);
             figure.text(Text::new(*words, at, *size, theme.ink));
