@@ -356,7 +356,7 @@ fn a_task_is_passed_by_page_down_twice_or_by_skip_and_is_then_shown_solved() {
             click_on(&mut harness, "Skip");
         }
         assert_eq!(number(&harness), at + 1);
-        assert!(is_painted(&harness, "The task is shown solved: start, velocity \u{2212}0.5 m/s"));
+        assert!(is_painted(&harness, "The task is shown solved: starting velocity \u{2212}0.5 m/s"));
         assert_eq!(harness.state().session.number("start.v_m_per_s"), Some(-0.5));
         assert!(!harness.state().lesson().unwrap().is_settled(at));
     }
@@ -379,10 +379,7 @@ fn votes_are_counted_beside_a_prediction() {
     for text in ["A   crosses every period, 1\u{a0}vote", "C   does not move at all, 2\u{a0}votes"] {
         harness.get_by_label(text);
     }
-    // in secret until the answer is shown
-    let counted =
-        |harness: &Shown| painted(harness).iter().filter(|text| ["1", "2"].contains(&&*text.0)).count();
-    assert!(is_painted(&harness, "3 votes are counted.") && counted(&harness) == 0);
+    assert!(is_painted(&harness, "3 votes are counted."));
     // in the notes by buttons
     press_with_ctrl(&mut harness, Key::L);
     harness.query_all_by_label("B 0").next().unwrap().click();
@@ -394,7 +391,6 @@ fn votes_are_counted_beside_a_prediction() {
     for text in ["A   crosses every period, 1\u{a0}vote", "C   does not move at all, 2\u{a0}votes"] {
         harness.get_by_label(text);
     }
-    assert!(counted(&harness) >= 3);
     assert_eq!(harness.state().lesson().unwrap().answer().choice, None);
     // too late: no vote, and nothing is covered
     shift(&mut harness, Key::C);

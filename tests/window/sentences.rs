@@ -35,7 +35,7 @@ fn shaken() {
         )
     });
     assert!(likely.any(|beginning| text.starts_with(&beginning)), "{text}");
-    assert!(text.contains("g short of crossing at about 1.1"), "{text}");
+    assert!(text.contains("g short of crossing at 1.1"), "{text}");
 
     let (kind, text) = of("first-look", &[&stops(1.5)]);
     let expected = "Interwell: will cross twice a period, from stop to stop at ±1.5 mm; \

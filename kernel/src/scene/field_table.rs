@@ -408,10 +408,10 @@ pub const FIELDS: &[FieldInfo] = &[
     field("excitation.lines", (1.0, 4096.0), "256 sines look like noise for some minutes")
         .whole().named("lines of the noise"),
     field("start.x_mm", PLACE, "give a displacement in mm")
-        .control("start, displacement", ((-8.0, 8.0, 0.05), Scale::Value), (-1e6, 1e6),
+        .control("starting displacement", ((-8.0, 8.0, 0.05), Scale::Value), (-1e6, 1e6),
             "Increase: the mass begins further to the right. The motion begins again."),
     field("start.v_m_per_s", (-1e30, 1e30), "give a velocity in m/s")
-        .control("start, velocity", ((-1.0, 1.0, 0.005), Scale::Value), (-1e4, 1e4),
+        .control("starting velocity", ((-1.0, 1.0, 0.005), Scale::Value), (-1e4, 1e4),
             "Increase: the mass begins faster to the right; below 0, to the left. The motion begins again."),
     field("start.electrical", (-1e30, 1e30),
             "give the current of a coil in A, the voltage of a piezoelectric layer in V")

@@ -24,10 +24,11 @@ const NAVIGATION: f32 = 190.0;
 const SPACE: f32 = 4.0;
 const HINT: &str = "Hint: ";
 /// The longest result of a prediction that is judged, in a column and in a strip.
-const LONGEST_RESULT: &str = "Answer: B. You chose C. ";
+const LONGEST_RESULT: &str = "Answer: B. You chose C.\n";
 const SHORT_RESULT: &str = "Answer: B. ";
 const DOT: f32 = 4.5;
 const DOT_SPACING: f32 = 15.0;
+const LEAST_SPACING: f32 = 12.0;
 /// Greatest number of characters of the reason that a student gives.
 const MAX_REASON: usize = 60;
 const MEANING: f32 = 320.0;
@@ -187,7 +188,8 @@ fn speak_ui(ui: &mut Ui, lesson: &OpenLesson, session: &Session) {
 fn step_ui(ui: &mut Ui, lesson: &OpenLesson, style: &Style, is_column: bool) {
     let step = lesson.step();
     let is_shown = matches!(step, Step::Predict { .. }) && !lesson.is_covering();
-    let result = is_shown.then(|| short_verdict(lesson, is_column) + " ");
+    let space = if is_column { "\n" } else { " " };
+    let result = is_shown.then(|| short_verdict(lesson, is_column) + space);
     text_ui(ui, style, &result.unwrap_or_else(|| heading(step).to_owned()), step.text());
 }
 
@@ -402,13 +404,18 @@ fn reason_ui(ui: &mut Ui, lesson: &mut OpenLesson, style: &Style) {
     });
 }
 
-/// The steps as dots: filled once they are settled and passed, with a ring around the present one.
+/// The steps as dots: filled once they are settled and passed, with a ring around the present one. Without
+/// room for them, their numbers.
 fn dots_ui(ui: &mut Ui, lesson: &OpenLesson, style: &Style) {
     let count = lesson.lesson().steps.len();
     let room = ui.available_width().min(NAVIGATION);
-    let spacing = DOT_SPACING.min((room - 2.0 * DOT) / count as f32).max(2.0);
-    let (rect, response) = ui.allocate_exact_size(vec2(spacing * count as f32, 18.0), Sense::hover());
+    let spacing = DOT_SPACING.min((room - 2.0 * DOT) / count as f32);
     let name = format!("step {} of {count}", lesson.number() + 1);
+    if spacing < LEAST_SPACING {
+        let label = ui.label(RichText::new(format!("{} of {count}", lesson.number() + 1)).heading());
+        return tell(&label, egui::Role::Label, &name);
+    }
+    let (rect, response) = ui.allocate_exact_size(vec2(spacing * count as f32, 18.0), Sense::hover());
     tell(&response, egui::Role::Label, &name);
     for number in 0..count {
         let at = egui::pos2(rect.left() + (number as f32 + 0.5) * spacing, rect.center().y);

@@ -151,8 +151,8 @@ fn beside_ui(ui: &mut Ui, session: &mut Session, style: &Style) {
     });
 }
 
-/// The text in place of the sentence while the results are covered: by a prediction, with its number of votes,
-/// or by a key.
+/// The text in place of the sentence while the results are covered: by a prediction, with its number of
+/// votes, or by a key.
 pub fn covered_ui(ui: &mut Ui, votes: Option<u32>) {
     let text = match votes {
         None => "Covered: what do you expect? C shows it again.",

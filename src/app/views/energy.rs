@@ -6,6 +6,7 @@
 use eframe::egui::{self, Align, Align2, Layout, Rect, RichText, Sense, Stroke, Ui, pos2, vec2};
 
 use crate::app::ui::style::Style;
+use crate::app::words::numbers::UNKNOWN;
 use crate::dynamics::LiveLedger;
 use crate::output::{
     LedgerTerm, ledger_bars, ledger_decimals, ledger_number, share_of_work, suited_unit, three_digits,
@@ -117,10 +118,10 @@ pub fn energy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         let place = (heads.len() - 1 - i) as f32;
         let rect = cell(area.left() + NAMES + column * place, y, column, height);
         let Some(ledger) = ledger else {
-            let hover = "Not kept: a whole period has to pass while this view is open.";
-            for (i, text) in ["after one", "more period"].into_iter().enumerate() {
+            let hover = "Not kept yet: a whole period has to pass while this view is open.";
+            for i in 0..terms.len() {
                 let part = cell(rect.left(), y + row * i as f32, column, row);
-                let text = RichText::new(text).font(style.small()).color(style.faint());
+                let text = RichText::new(UNKNOWN).color(style.faint());
                 put_ui(ui, part.with_min_x(part.right() - NUMBERS), text, Align::Max, hover);
             }
             continue;

@@ -25,7 +25,7 @@ use super::{View, ViewContext};
 /// Number of forcing periods shown.
 const PERIODS: f64 = 6.0;
 /// Number of characteristic times of the motion shown, if the shaking has no period.
-const SWINGS: f64 = 8.0;
+const SWINGS: f64 = 24.0;
 /// Largest number of natural times of the mechanism shown; more swings cannot be told apart.
 const MAX_SWINGS: f64 = 200.0;
 

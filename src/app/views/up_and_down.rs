@@ -294,26 +294,16 @@ fn drag(session: &mut Session, response: &egui::Response, value: impl Fn(egui::P
     }
 }
 
-/// Intervals of the axis over which the two directions differ; each value extends halfway to its neighbours.
+/// Intervals of the axis over which the two directions differ: from the first to the last of several values
+/// in a row. At a single value irregular motions may differ by chance.
 fn differing([up, down]: &Branches<'_>, height: f64) -> Vec<(f64, f64)> {
     let compared = |visit: &&Visit| {
         let other = down.iter().find(|other| other.value == visit.value)?;
         Some((visit.value, differ(visit, other, height)))
     };
     let both: Vec<(f64, bool)> = up.iter().filter_map(compared).collect();
-    let mut spans: Vec<(f64, f64)> = Vec::new();
-    for (i, (value, differs)) in both.iter().enumerate() {
-        if !differs {
-            continue;
-        }
-        let edge = |neighbour: Option<&(f64, bool)>| neighbour.map_or(*value, |next| 0.5 * (next.0 + value));
-        let (low, high) = (edge(i.checked_sub(1).and_then(|i| both.get(i))), edge(both.get(i + 1)));
-        match spans.last_mut().filter(|last| last.1 == low) {
-            Some(last) => last.1 = high,
-            None => spans.push((low, high)),
-        }
-    }
-    spans
+    let rows = both.chunk_by(|a, b| a.1 && b.1);
+    rows.filter(|row| row.len() > 1).map(|row| (row[0].0, row[row.len() - 1].0)).collect()
 }
 
 /// Whether two runs at one value are different motions: one is interwell and the other never crosses the

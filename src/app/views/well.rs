@@ -50,6 +50,9 @@ const MIDDLE: f32 = 2.5;
 const GAP_SHARE: f64 = 0.3;
 const LEAST_BALL: f32 = 6.0;
 
+/// Distance in points from the bracket from which on a line joins its label to it.
+const LEADER: f32 = 12.0;
+
 /// Half the width in points of an end of the bracket.
 const BRACKET: f32 = 5.0;
 
@@ -106,6 +109,11 @@ pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let gap = left.zip(right).map_or(f64::INFINITY, |(left, right)| (right - left) * span.scale(frame));
     let radius = BALL.min((GAP_SHARE * gap) as f32).max(LEAST_BALL);
     layers.extend(tipped.line(points));
+    if !model.is_shaken() {
+        let kinetic = model.energies(state.x, state.v).0;
+        let energy = tipped.at(state.x * 1e3) + kinetic * per_joule;
+        layers.push(Layer::new(Role::Separatrix, "", Marks::Horizontals(vec![energy])));
+    }
     let painter = ui.painter().with_clip_rect(frame);
     pane.draw(&painter, &style, 0, &layers);
     let on_curve = |x: f64, curve: &TippedPotential<'_>| {
@@ -157,6 +165,9 @@ fn still(
     other: &[Role],
 ) -> Chart {
     let mut panel = well_panel(level, (span.low, span.high), axes, model.is_shaken());
+    if !model.is_shaken() {
+        panel.layer(Role::Separatrix, "energy of the mass", Marks::Path(Vec::new()));
+    }
     for role in other {
         let name = if let Role::Pin(place) = role { PINNED[place % PINNED.len()] } else { BEST_STOPS };
         panel.layer(*role, name, Marks::Path(Vec::new()));
@@ -239,10 +250,10 @@ fn landmarks(
             (line, lines.clone(), lines.replace("from ", "from\n"))
         }
         Some(_) => {
-            let [left, right] = heights.map(|height| level.written(height));
-            let line = format!("barrier {left} from the left, {right} from the right");
-            let lines = format!("barrier\nleft {left},\nright {right}");
-            (line, lines.clone(), lines.replace("left ", "left\n").replace("right ", "right\n"))
+            let [whole, left, right] = [joule, heights[0], heights[1]].map(|height| level.written(height));
+            let line = format!("barrier {whole}, {left} from the left stop, {right} from the right");
+            let lines = format!("barrier {whole},\n{left} from the left,\n{right} from the right");
+            (line, lines, format!("barrier\n{whole},\nleft\n{left},\nright\n{right}"))
         }
     };
     let (x, row) = (foot.x, rect.bottom() - 3.0);
@@ -262,8 +273,11 @@ fn landmarks(
     });
     let places = places.into_iter().chain(beside);
     // a bracket without its number says nothing
-    if taken.write(painter, rect, look.clone(), places).is_some() {
+    if let Some(place) = taken.write(painter, rect, look.clone(), places) {
         painter.extend(bracket);
+        if place.distance_to_pos(foot) > LEADER {
+            painter.line_segment([place.clamp(foot), foot], Stroke::new(1.0, style.faint()));
+        }
     }
     let wells = model.mechanism().landscape.wells();
     let ranges: Vec<Rangef> = taken.places.iter().map(|place| place.x_range()).collect();

@@ -70,6 +70,7 @@ impl Menus<'_> {
             None => (format!("{}{dirty}", self.window.session.scene().title), "What this scene is about"),
         };
         let title = egui::RichText::new(text).strong();
+        ui.separator();
         let title = ui.add(Button::new(title).frame_when_inactive(false).truncate());
         if title.on_hover_text(hover).clicked() {
             self.chosen.push(Command::Notes);

@@ -129,6 +129,10 @@ const MEANINGS: &[(&str, &str)] = &[
         "The largest distance of the computed path from the exact one, as estimated from its sensitivity \
          to rounding.",
     ),
+    (
+        "energy of the mass",
+        "Its energy of motion on top of the potential where it is: it crosses while this is above the hilltop.",
+    ),
     ("without the push", "The potential of the mechanism without any push."),
     (
         "holds the mass there",

@@ -74,7 +74,11 @@ pub(super) fn remedy(scene: &Scene, summary: &Summary, found: &Thresholds) -> St
         (false, true) => format!("From rest it crosses from {least}{gaps}."),
         (false, false) => match found.frees_at.filter(|frees| *frees > g) {
             Some(g) => format!("Frees at {}, crosses from {least}{gaps}.", in_unit(scene, grams_up, g)),
-            None => format!("{about}{} short of crossing at {least}{gaps}.", apart(from - g)),
+            None => {
+                // said once of both numbers
+                let least = least.strip_prefix(about).unwrap_or(&least);
+                format!("{about}{} short of crossing at {least}{gaps}.", apart(from - g))
+            }
         },
     };
     capital(&text)
@@ -149,7 +153,7 @@ mod tests {
         let short = "0.30 g short of crossing at 1.20 g.";
         let more = "Crosses with 0.30 g more; no stops alone would do it.";
         assert_eq!(said(Some(1.2), false), [short, more]);
-        let short = "About 0.30 g short of crossing at about 1.20 g.";
+        let short = "About 0.30 g short of crossing at 1.20 g.";
         let more = "Crosses with about 0.30 g more; no stops alone would do it.";
         assert_eq!(said(Some(1.2), true), [short, more]);
         let nothing = "From rest no shaking up to 30.0 g crosses.";

@@ -153,7 +153,10 @@ fn up_and_down() {
     told.says("from 0.7 to 1.0 g both motions can last");
     told.says("it begins to cross at 1.05 g, on the way down it ends at 0.65 g");
     told.says("mark 0.7 g");
-    let stops = "--set stops=Rigid(travel_limit_mm:1.5,restitution:0.36)";
+    let stops = "--set stops=Rigid(travel_limit_mm:1.0,restitution:0.36)";
+    let shown = told.run(&["excitation.amplitude_g=0.85", &stopped(1.0)]);
+    assert!(crosses(&shown) && shown.releases == 2 * shown.periods && shown.rested_share > Some(0.3));
+    told.says("On such stops the mass comes to rest twice a period, grey in **Displacement**");
     let rested = walk(&format!("--set excitation.frequency_hz=6 {stops} {settings}"), "0.5:1.2:0.05");
     let half = rested[0].len() / 2;
     for i in 0..half {
