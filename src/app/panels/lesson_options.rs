@@ -17,7 +17,7 @@ use super::lesson::LessonAction;
 const INDENT: f32 = 22.0;
 
 /// Height in points of a bar of votes.
-const BAR: f32 = 4.0;
+const BAR: f32 = 3.0;
 
 /// A button for each option of a prediction, with the votes for it.
 pub fn votes_ui(ui: &mut Ui, lesson: &OpenLesson) -> Option<LessonAction> {
@@ -130,7 +130,8 @@ pub(super) fn options_ui(
                     let font = FontId::new(BODY, strong_family());
                     ui.painter().text(inside.right_center(), Align2::RIGHT_CENTER, count, font, ink);
                     let share = count as f32 / lesson.votes() as f32;
-                    let bar = button.rect.with_min_y(button.rect.bottom() - BAR).shrink2(vec2(BAR, 0.0));
+                    let bottom = button.rect.bottom() - 2.0;
+                    let bar = inside.with_min_y(bottom - BAR).with_max_y(bottom);
                     let bar = bar.with_max_x(bar.left() + share * bar.width());
                     ui.painter().rect_filled(bar, 0.5 * BAR, if holds { ink } else { style.accent() });
                 }

@@ -39,7 +39,7 @@ pub fn before_now_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
             Some(column) if column == now => _ = ui.label(RichText::new("now").heading()),
             Some(_) => _ = ui.label(RichText::new("before").color(style.faint())),
         });
-        if is_first && ui.available_height() > 28.0 {
+        if is_first && ui.available_height() > 23.0 {
             ui.add_space(6.0);
             let text = "Change something: the state before it stays here to compare.";
             ui.label(RichText::new(text).color(style.faint()));

@@ -193,6 +193,7 @@ fn releases(painter: &Painter, context: &ViewContext<'_>, pane: &Pane, rect: Rec
             [(&long, beyond), (&short, beyond), (&long, before), (&short, before), (&short, near)]
         });
         let places = places.map(|(text, (at, align))| (text.as_str(), at, align));
-        taken.write(painter, rect, (style.small(), style.faint()), places);
+        // clear of the frame
+        taken.write(painter, rect.shrink(3.0), (style.small(), style.faint()), places);
     }
 }

@@ -244,7 +244,13 @@ fn picture_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axis: &SweepAxis, area
     };
     let pointed = pane.response.hover_pos().and_then(|at| pane.values_at(0, at));
     let is_same = is_whole && current && !fine[0].is_empty() && differing(&fine, high - low).is_empty();
-    let pointed = pointed.map(|values| values.0.clamp(axis.from, axis.to));
+    // at the run that is read
+    let nearest = |value: f64| {
+        let distance = |visit: &&&Visit| (visit.value - value).abs();
+        let visit = branches[0].iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
+        visit.map_or(value.clamp(axis.from, axis.to), |visit| visit.value)
+    };
+    let pointed = pointed.map(|values| nearest(values.0));
     if let Some(at) = pointed.and_then(|value| pane.place(0, (value, low))) {
         child.painter().vline(at.x, frame.y_range(), egui::Stroke::new(1.0, style.faint()));
     }

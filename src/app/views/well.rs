@@ -43,8 +43,8 @@ const LIFT: f32 = 2.5;
 /// Height in points of what stands below the picture.
 const BELOW: f32 = 43.0;
 
-/// Radius in points of the dot in the middle of the ball.
-const MIDDLE: f32 = 2.5;
+/// Radius in points of the dot on the curve below the ball.
+const PLACE: f32 = 3.5;
 
 /// Greatest radius of the ball as a share of the distance between the stops, and its least in points.
 const GAP_SHARE: f64 = 0.3;
@@ -146,8 +146,9 @@ pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         over.circle_stroke(at, radius + 2.0, Stroke::new(2.5, style.ground()));
     }
     over.circle(at, radius, style.mass(), Stroke::new(1.5, style.mass_edge()));
-    // its displacement is that of its middle
-    over.circle_filled(at, MIDDLE, style.mass_edge());
+    // where it is, and the potential that it has there
+    let place = pane.place(0, (state.x * 1e3, tipped.at(state.x * 1e3))).unwrap_or(at);
+    over.circle(place, PLACE, style.mass(), Stroke::new(1.5, style.mass_edge()));
     // over the mass, which may pass them
     travel_limits(&painter, context, frame, &mut taken);
     if let Some(ago) = ago(context.session) {

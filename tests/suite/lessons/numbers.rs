@@ -9,8 +9,8 @@ use std::ops::Range;
 use std::sync::atomic::AtomicBool;
 
 use interwell::dynamics::{Model, Outcome, Regime, Request, STANDARD_GRAVITY, Summary};
-use interwell::scene::Document;
 use interwell::scene::lesson::{LESSONS, LessonDocument, Step};
+use interwell::scene::{Document, FieldPath};
 use interwell_studies::study::{Onset, Scan, Task, result_fields, threshold};
 
 use super::super::support::*;
@@ -211,6 +211,9 @@ fn release() {
     assert_eq!(told.run(&[]).regime, Regime::Rest);
     told.says("At 0.8 g the shaking cannot lift it off: it rests");
     let hop = told.run(&[&shaken(0.92)]);
+    told.says("We shake at 0.92 g");
+    let shown = LessonDocument::load(told.name, &result_fields()).unwrap();
+    assert_eq!(FieldPath::new("excitation.amplitude_g").get(&shown.end(2).scene), Some(0.92));
     assert!(hops(&hop));
     told.says(&format!("leaves its stop by {:.2} mm and falls back", travel(&hop)));
     let from = |hz: f64| told.least(Onset::Crossing, &[&format!("excitation.frequency_hz={hz}")], 0.8..1.4);

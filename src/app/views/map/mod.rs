@@ -119,8 +119,8 @@ pub fn map_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
             best_stops(&painter, &style, &pane, map, place, context.session.best.limit_mm());
             cut_marks(&painter, &style, &pane, scene);
             let words = match &no_stops {
-                Some((amplitude, unit)) => format!("no stops: crosses from {amplitude} {unit}"),
-                None if place[0].is_none() => "no stops".to_owned(),
+                Some((amplitude, unit)) => format!("now: no stops (crossing from {amplitude} {unit})"),
+                None if place[0].is_none() => "now: no stops".to_owned(),
                 None => "now: further out".to_owned(),
             };
             marker(&painter, &pane, &style, (place, words))
