@@ -41,6 +41,9 @@ const BESIDE: f32 = 16.0;
 /// Heights in points of a label above the force at its stop, the first that is free.
 const ABOVE: [f32; 9] = [2.0, -14.0, 16.0, -28.0, 30.0, -42.0, 44.0, -56.0, 58.0];
 
+/// Number of these that are near the stop.
+const NEAR: usize = 3;
+
 /// Radius in points of the mass on the curve.
 const BALL: f32 = 7.0;
 
@@ -174,18 +177,20 @@ fn releases(painter: &Painter, context: &ViewContext<'_>, pane: &Pane, rect: Rec
     let mut taken = Taken { lines: lines(pane), places, plate: Some(style.ground()) };
     let zero = place(0.0, 0.0).y;
     taken.lines.push(vec![pos2(rect.left(), zero), pos2(rect.right(), zero)]);
-    for (x, side) in presses(model) {
+    let texts: Vec<String> = presses(model).map(|(x, _)| push_that_frees(model, x)).collect();
+    // the legend has the push that is the same at both stops: no label stands far from its stop for it
+    let heights = if texts.windows(2).all(|pair| pair[0] == pair[1]) { &ABOVE[..NEAR] } else { &ABOVE[..] };
+    for ((x, side), short) in presses(model).zip(texts) {
         let force = model.mechanism().curve.force(x);
         let at = place(x, force);
         let end = at - vec2(LINE * side, 0.0);
         painter.line_segment([at, end], style.stop_stroke());
         taken.lines.push(vec![at, end]);
-        let short = push_that_frees(model, x);
         let long = format!("frees at {short}");
         // outside the wall, away from the mass, or else inside it
         let outwards = if side > 0.0 { Align2::LEFT_BOTTOM } else { Align2::RIGHT_BOTTOM };
         let inwards = if side > 0.0 { Align2::RIGHT_BOTTOM } else { Align2::LEFT_BOTTOM };
-        let places = ABOVE.iter().flat_map(|above| {
+        let places = heights.iter().flat_map(|above| {
             let y = at.y - above;
             let beyond = (pos2(at.x + BESIDE * side, y), outwards);
             let before = (pos2(end.x - 4.0 * side, y), inwards);
