@@ -333,7 +333,8 @@ pub fn fresh_pane_ui(ui: &mut Ui, style: &Style, place: impl Into<Place>, chart:
 /// Shows a chart that was painted for this place.
 fn shown(ui: &mut Ui, place: &Place, chart: Arc<Chart>, painting: Arc<Painting>) -> Pane {
     let response = ui.interact(place.area, ui.scope_id().with("chart"), place.sense);
-    painting.paint(&ui.painter().with_clip_rect(place.area));
+    // a frame at its edge is whole
+    painting.paint(&ui.painter().with_clip_rect(place.area.expand(1.0)));
     for (rect, words) in &painting.legend {
         explained(ui.interact(*rect, ui.scope_id().with(("legend", words)), Sense::hover()), words);
     }

@@ -1,7 +1,6 @@
 //! Card of a view: its title in a row with its legend, and tools at the right of that row. The tools are
 //! drawn while the pointer is over the card. The keyboard and screen readers can use them at any time.
 
-use eframe::egui::emath::GuiRounding as _;
 use eframe::egui::{self, Align2, FontId, Rect, Response, Sense, Ui, UiBuilder, pos2, vec2};
 
 use crate::app::ui::style::{BODY, COMPACT_BELOW, CONTROL, CORNER, LEAST, SMALL, strong_family};
@@ -64,8 +63,6 @@ pub fn card_ui(ui: &mut Ui, titles: &[Title], view: View, context: &mut ViewCont
     let shares = free.right - free.left >= needed;
     let top = if shares { rect.top() + 0.5 * (ROW - LegendRow::HEIGHT) } else { row.bottom() };
     let inner = Rect::from_min_max(pos2(rect.left() + INSET, top), rect.max - vec2(INSET, INSET + 2.0));
-    // so that no edge of a frame is pale
-    let inner = inner.round_to_pixels(ui.pixels_per_point());
     let mut info = egui::UiStackInfo::default();
     if shares {
         info = info.with_tag_value(LegendRow::TAG, free);
