@@ -131,7 +131,7 @@ const MEANINGS: &[(&str, &str)] = &[
     ),
     (
         "energy of the mass",
-        "Its energy of motion on top of the potential where it is: it can cross while this is above the hilltop.",
+        "Its kinetic energy above the potential where it is: it can cross while this exceeds the barrier.",
     ),
     ("without the push", "The potential of the mechanism without any push."),
     (

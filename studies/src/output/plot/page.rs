@@ -126,8 +126,8 @@ pub struct Room {
     pub between: f64,
 }
 
-/// Largest share of the height of such a pane for its legend, and for one of two rows. Entries for which there
-/// is no room are left out, the last ones first.
+/// Largest share of the height of such a pane for its legend, and for one of two rows. Entries for which
+/// there is no room are left out, the last ones first.
 const LEGEND_SHARE: (f64, f64) = (1.0 / 6.0, 0.3);
 /// Height below which the horizontal axis of such a pane has no name.
 pub(super) const NAMELESS: f64 = 340.0;
