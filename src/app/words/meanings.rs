@@ -131,7 +131,7 @@ const MEANINGS: &[(&str, &str)] = &[
     ),
     (
         "energy of the mass",
-        "Its kinetic energy above the potential where it is: it can cross while this exceeds the barrier.",
+        "Its potential and kinetic energy: it can cross while their sum is above the barrier.",
     ),
     ("without the push", "The potential of the mechanism without any push."),
     (
