@@ -379,7 +379,13 @@ fn votes_are_counted_beside_a_prediction() {
     for text in ["A   crosses every period, 1\u{a0}vote", "C   does not move at all, 2\u{a0}votes"] {
         harness.get_by_label(text);
     }
-    assert!(is_painted(&harness, "3 votes are counted."));
+    // in secret until the answer is shown
+    let is_beside = |harness: &Shown, words: &str, number: &str| {
+        let option = harness.get_by_label(words).rect();
+        painted(harness).iter().any(|text| text.0 == number && option.contains_rect(text.1))
+    };
+    let two = |harness: &Shown| is_beside(harness, "C   does not move at all, 2\u{a0}votes", "2");
+    assert!(is_painted(&harness, "3 votes are counted.") && !two(&harness));
     // in the notes by buttons
     press_with_ctrl(&mut harness, Key::L);
     harness.query_all_by_label("B 0").next().unwrap().click();
@@ -391,6 +397,7 @@ fn votes_are_counted_beside_a_prediction() {
     for text in ["A   crosses every period, 1\u{a0}vote", "C   does not move at all, 2\u{a0}votes"] {
         harness.get_by_label(text);
     }
+    assert!(two(&harness) && is_beside(&harness, "A   crosses every period, 1\u{a0}vote", "1"));
     assert_eq!(harness.state().lesson().unwrap().answer().choice, None);
     // too late: no vote, and nothing is covered
     shift(&mut harness, Key::C);

@@ -301,6 +301,15 @@ fn a_survey_takes_no_room_until_the_first_prediction_is_shown() {
 }
 
 #[test]
+fn a_cover_by_a_key_ends_with_the_step() {
+    let mut harness = opened("shake-it-over", WIDE);
+    press(&mut harness, Key::C);
+    assert!(is_painted(&harness, "C shows it again"));
+    press(&mut harness, Key::PageDown);
+    assert!(!is_painted(&harness, "C shows it again"));
+}
+
+#[test]
 fn a_task_that_was_done_says_so_when_the_scene_is_changed_after_it() {
     let mut harness = opened("a-stop-that-helps", WIDE);
     assert!(go_to(&mut harness, |step| matches!(step, Step::Do { .. })));

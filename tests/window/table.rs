@@ -122,6 +122,18 @@ fn an_undecided_threshold_is_one_number() {
 }
 
 #[test]
+fn the_state_before_a_change_has_the_threshold_that_is_found_after_it() {
+    let mut harness = window("paper", WIDE);
+    harness.state_mut().session.set_number("excitation.amplitude_g", 1.1).unwrap();
+    harness.state_mut().session.end_gesture();
+    harness.state_mut().session.wait(LONG);
+    harness.run_steps(3);
+    alone(&mut harness, View::BeforeNow);
+    let row = named(&rows(&harness, View::BeforeNow), "crosses from").clone();
+    assert_eq!(row[2..], ["0.718", "0.718"]);
+}
+
+#[test]
 fn a_threshold_is_in_the_unit_of_the_drive() {
     let mut harness = window("paper", WIDE);
     let session = &mut harness.state_mut().session;

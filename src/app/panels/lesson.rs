@@ -87,13 +87,8 @@ pub fn lesson_column_ui(
         if lesson.is_covering() {
             action = action.or(reveal_ui(ui, urged));
         }
-        match lesson.reply() {
-            Some((option, reply)) => text_ui(ui, style, &format!("{}: ", letter(option)), reply),
-            None if lesson.explains_next() => {
-                let text = "The next step explains it.";
-                ui.label(RichText::new(text).color(style.faint()));
-            }
-            None => {}
+        if let Some((option, reply)) = lesson.reply() {
+            text_ui(ui, style, &format!("{}: ", letter(option)), reply);
         }
         if lesson.answer().choice.is_some() && !lesson.is_covering() {
             reason_ui(ui, lesson, style);

@@ -24,8 +24,9 @@ use super::{View, ViewContext};
 
 /// Number of forcing periods shown.
 const PERIODS: f64 = 6.0;
-/// Number of characteristic times of the motion shown, if the shaking has no period.
-const SWINGS: f64 = 24.0;
+/// Number of characteristic times of the motion shown, if the shaking has no period, and if nothing shakes
+/// the mass, which is seen to come to rest.
+const SWINGS: (f64, f64) = (8.0, 24.0);
 /// Largest number of natural times of the mechanism shown; more swings cannot be told apart.
 const MAX_SWINGS: f64 = 200.0;
 
@@ -246,9 +247,10 @@ fn impact_times(watch: &Watch, side: Side, (from, to): Point) -> Vec<f64> {
 /// The time in s that is shown by default of a motion of a model.
 pub(in crate::app) fn stretch(model: &Model) -> f64 {
     let limit = MAX_SWINGS * model.natural_time();
+    let swings = if model.is_shaken() { SWINGS.0 } else { SWINGS.1 };
     model
         .forcing_period()
-        .map_or(SWINGS * model.characteristic_time(), |period| (PERIODS * period).min(limit))
+        .map_or(swings * model.characteristic_time(), |period| (PERIODS * period).min(limit))
 }
 
 /// The positions in mm of the stops in a range of time, NaN without a stop. If a stop moved they are NaN, and

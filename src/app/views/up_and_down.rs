@@ -171,9 +171,9 @@ fn chart(
     here: Option<f64>,
 ) -> Chart {
     let mut panel = Panel::new(axes.0, axes.1);
-    let differing = differing(fine, panel.y.high - panel.y.low);
-    if !differing.is_empty() {
-        panel.layer(Role::Closer, "hysteresis", Marks::Spans(differing));
+    let spans = differing(&compared(fine, panel.y.high - panel.y.low));
+    if !spans.is_empty() {
+        panel.layer(Role::Closer, "hysteresis", Marks::Spans(spans));
     }
     panel.draw(Role::Drive, Marks::Verticals(here.into_iter().collect()));
     // the dots of the way up lie in the rings of the way down
@@ -243,7 +243,8 @@ fn picture_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axis: &SweepAxis, area
         haloed(ui.painter(), &style, (at, align), text, (style.small(), colour));
     };
     let pointed = pane.response.hover_pos().and_then(|at| pane.values_at(0, at));
-    let is_same = is_whole && current && !fine[0].is_empty() && differing(&fine, high - low).is_empty();
+    let differs_nowhere = || compared(&fine, high - low).iter().all(|(_, differs)| !differs);
+    let is_same = is_whole && current && !fine[0].is_empty() && differs_nowhere();
     // at the run that is read
     let nearest = |value: f64| {
         let distance = |visit: &&&Visit| (visit.value - value).abs();
@@ -300,15 +301,19 @@ fn drag(session: &mut Session, response: &egui::Response, value: impl Fn(egui::P
     }
 }
 
-/// Intervals of the axis over which the two directions differ: from the first to the last of several values
-/// in a row. At a single value irregular motions may differ by chance.
-fn differing([up, down]: &Branches<'_>, height: f64) -> Vec<(f64, f64)> {
-    let compared = |visit: &&Visit| {
+/// The values that both directions have, and whether the two motions there differ.
+fn compared([up, down]: &Branches<'_>, height: f64) -> Vec<(f64, bool)> {
+    let of_value = |visit: &&Visit| {
         let other = down.iter().find(|other| other.value == visit.value)?;
         Some((visit.value, differ(visit, other, height)))
     };
-    let both: Vec<(f64, bool)> = up.iter().filter_map(compared).collect();
-    let rows = both.chunk_by(|a, b| a.1 && b.1);
+    up.iter().filter_map(of_value).collect()
+}
+
+/// Intervals of the axis over which the two directions differ: from the first to the last of several values
+/// in a row. At a single value irregular motions may differ by chance.
+fn differing(compared: &[(f64, bool)]) -> Vec<(f64, f64)> {
+    let rows = compared.chunk_by(|a, b| a.1 && b.1);
     rows.filter(|row| row.len() > 1).map(|row| (row[0].0, row[row.len() - 1].0)).collect()
 }
 
@@ -361,6 +366,14 @@ mod tests {
     fn visit(preset: &str) -> Visit {
         let summary = Simulation::preset(preset).unwrap().run(&Request::default()).summary;
         Visit { direction: Direction::Up, value: 1.0, summary, strobes: Vec::new() }
+    }
+
+    #[test]
+    fn ways_that_differ_at_a_single_value_are_not_hysteresis() {
+        let flags = [false, true, false, true, true, true, false, true];
+        let compared: Vec<(f64, bool)> = (0_u8..).map(f64::from).zip(flags).collect();
+        assert_eq!(differing(&compared), [(3.0, 5.0)]);
+        assert_eq!(differing(&compared[..3]), []);
     }
 
     #[test]

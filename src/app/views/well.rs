@@ -238,25 +238,24 @@ fn landmarks(
     };
     let count = (rect.width() / STEP) as usize;
     taken.lines.extend((0..=count).map(|i| swept(rect.left() + STEP * i as f32)));
-    let (line, lines, narrow) = match feet {
+    let (line, lines) = match feet {
         None => {
             let line = format!("barrier {}", level.written(joule));
             let lines = line.replacen(' ', "\n", 1);
-            (line, lines.clone(), lines)
+            (line, lines)
         }
         Some(_) if (heights[0] - heights[1]).abs() < 5e-3 * joule => {
             let (climb, whole) = (level.written(heights[0]), level.written(joule));
             let line = format!("barrier {whole}, {climb} from a stop");
-            let lines = format!("barrier\n{whole},\n{climb}\nfrom a stop");
-            (line, lines.clone(), lines.replace("from ", "from\n"))
+            (line, format!("barrier\n{whole},\n{climb}\nfrom a stop"))
         }
         Some(_) => {
             let [whole, left, right] = [joule, heights[0], heights[1]].map(|height| level.written(height));
             let line = format!("barrier {whole}, {left} from the left stop, {right} from the right");
-            let lines = format!("barrier {whole},\n{left} from the left,\n{right} from the right");
-            (line, lines, format!("barrier\n{whole},\nleft\n{left},\nright\n{right}"))
+            (line, format!("barrier\n{whole},\n{left}\nfrom the left,\n{right}\nfrom the right"))
         }
     };
+    let narrow = lines.replace("from ", "from\n");
     let (x, row) = (foot.x, rect.bottom() - 3.0);
     let places = [
         (line.as_str(), foot + vec2(0.0, 4.0), Align2::CENTER_TOP),

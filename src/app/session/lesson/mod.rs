@@ -177,12 +177,6 @@ impl OpenLesson {
         Some((chosen, options[chosen].reply.as_deref()?))
     }
 
-    /// Whether the answer of a prediction is shown, which the next step explains.
-    pub fn explains_next(&self) -> bool {
-        let next = self.lesson().steps.get(self.number() + 1);
-        !self.options().is_empty() && self.answer().shown && matches!(next, Some(Step::Explain(_)))
-    }
-
     /// Whether the motion and all results are covered: in a prediction that has not been shown.
     pub fn is_covering(&self) -> bool {
         matches!(self.step(), Step::Predict { .. }) && !self.answer().shown

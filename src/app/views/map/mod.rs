@@ -59,10 +59,6 @@ pub fn map_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         return too_small_ui(ui, &style, area);
     }
     let quantity = context.session.map.quantity();
-    // the edge of the map is that of stops far out, and not of none
-    let card = context.session.now_card();
-    let crossing = card.thresholds.filter(|_| card.scene.stops == Stops::None).map(|found| found.crossing);
-    let no_stops = crossing.and_then(|found| threshold(&card.scene, &found));
     let (place, scene) = (map.place(context.session.scene()), map.nearest_cell(context.session.scene()));
     let has_room = area.width() > ROOM_FOR_CUTS.0 && area.height() > ROOM_FOR_CUTS.1;
     let is_surface = look.surface && words_of(quantity.name).is_none();
@@ -118,12 +114,7 @@ pub fn map_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
             trail::draw(&painter, &pane, &style, &trail);
             best_stops(&painter, &style, &pane, map, place, context.session.best.limit_mm());
             cut_marks(&painter, &style, &pane, scene);
-            let words = match &no_stops {
-                Some((amplitude, unit)) => format!("now: no stops (crossing from {amplitude} {unit})"),
-                None if place[0].is_none() => "now: no stops".to_owned(),
-                None => "now: further out".to_owned(),
-            };
-            marker(&painter, &pane, &style, (place, words))
+            marker(&painter, &pane, &style, (place, place_in_words(context, place)))
         }
     };
     if !current {
@@ -315,6 +306,18 @@ fn reading(map: &Map, quantity: &SummaryField, (column, row): (usize, usize), is
     }
     lines.push("click: take the scene there; drag: enlarge".to_owned());
     lines.join("\n")
+}
+
+/// Where a scene beyond the map stands. A scene without stops has the threshold beside it, since the edge of
+/// the map is that of stops far out.
+fn place_in_words(context: &ViewContext<'_>, place: Place) -> String {
+    let card = context.session.now_card();
+    if card.scene.stops != Stops::None || !place.contains(&None) {
+        return "now: further out".to_owned();
+    }
+    let crossing = card.thresholds.and_then(|found| threshold(&card.scene, &found.crossing));
+    let crossing = crossing.map(|(amplitude, unit)| format!(" (crossing from {amplitude} {unit})"));
+    format!("now: no stops{}", crossing.unwrap_or_default())
 }
 
 /// Marks the scene by a ring, or by an arrow at the edge that it lies beyond, with these words. Returns the

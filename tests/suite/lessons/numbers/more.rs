@@ -68,6 +68,7 @@ fn basins() {
         assert!((11..=15).contains(&count), "{count} with {tolerance}");
     }
     told.says("Of the 31 flicks some 12 to 15 cross, which of them depends on the last digits");
+    told.says("Fewer than half do");
     told.says("from flick to flick the answer changes again and again");
     let stops = flicks(&[&stopped(2.0), "run.duration_s=20", "run.settle_s=10"]);
     let speeds: Vec<f64> = stops.iter().map(rms).collect();
