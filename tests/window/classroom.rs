@@ -261,23 +261,23 @@ fn a_projector_leaves_the_height_to_the_views() {
 #[test]
 fn the_starts_of_a_question_are_seen_in_the_phase_portrait() {
     let mut harness = opened("07-a-coin-toss", WIDE);
-    // a dash at both sides of each
+    // a line, or rings
     let marks = |harness: &Shown| {
         let place = harness.state().tiling.place_of(View::PhasePortrait).unwrap();
-        let is_dash = |clipped: &&eframe::egui::epaint::ClippedShape| match &clipped.shape {
+        let is_mark = |clipped: &&eframe::egui::epaint::ClippedShape| match &clipped.shape {
             Shape::LineSegment { points, stroke } => {
-                stroke.color == Color32::BLACK && place.contains(points[0])
+                stroke.color == Color32::BLACK && stroke.width == 2.0 && place.contains(points[0])
             }
             Shape::Circle(circle) => circle.fill == Color32::WHITE && place.contains(circle.center),
             _ => false,
         };
-        harness.output().shapes.iter().filter(is_dash).count()
+        harness.output().shapes.iter().filter(is_mark).count()
     };
     assert_eq!(marks(&harness), 0);
     assert!(go_to(&mut harness, |step| matches!(step, Step::Predict { .. })));
     press(&mut harness, Key::A);
     harness.run_steps(2);
-    assert_eq!(marks(&harness), 2 * 31);
+    assert_eq!(marks(&harness), 1);
     assert!(harness.state().lesson().unwrap().starts().contains(&(0.0, -0.3)));
     // those of a task take their place
     assert!(go_to(&mut harness, |step| matches!(step, Step::Do { .. })));

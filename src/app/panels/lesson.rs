@@ -425,9 +425,23 @@ fn dots_ui(ui: &mut Ui, lesson: &OpenLesson, style: &Style) {
     response.on_hover_text(name);
 }
 
-/// The buttons and, left of them, the dots of the steps; in a layout from right to left.
+/// The buttons and, left of them, the dots of the steps, at one place in all steps; in a layout from right to
+/// left.
 pub fn navigation_ui(ui: &mut Ui, lesson: &OpenLesson, style: &Style, urged: bool) -> Option<LessonAction> {
-    let action = buttons_of_strip_ui(ui, lesson, urged);
+    let room = ui.available_width();
+    let mut action = buttons_ui(ui, lesson, urged);
+    if lesson.is_covering() {
+        action = action.or(reveal_ui(ui, urged));
+    }
+    let taken = room - ui.available_width();
+    let button = |name: &str| {
+        let font = egui::TextStyle::Button.resolve(ui.style());
+        let text = ui.painter().layout_no_wrap(name.to_owned(), font, Color32::PLACEHOLDER);
+        text.size().x + 2.0 * ui.spacing().button_padding.x + ui.spacing().item_spacing.x
+    };
+    let last = lesson.following().map_or(0.0, |next| button(numbered(next).as_str()) + button("Finish"));
+    let others = button("Next") + button("Reveal");
+    ui.add_space((last.max(others) + button("Back") - taken).max(0.0));
     dots_ui(ui, lesson, style);
     action
 }
@@ -465,22 +479,6 @@ fn buttons_ui(ui: &mut Ui, lesson: &OpenLesson, urged: bool) -> Option<LessonAct
         action = Some(LessonAction::Back);
     }
     action
-}
-
-/// The buttons of a strip, the last one first.
-fn buttons_of_strip_ui(ui: &mut Ui, lesson: &OpenLesson, urged: bool) -> Option<LessonAction> {
-    let action = buttons_ui(ui, lesson, urged);
-    if !lesson.lesson().steps.iter().any(|step| matches!(step, Step::Predict { .. })) {
-        return action;
-    }
-    // its place stays free, so that a second click meets no other button
-    let reveal = ui.scope(|ui| {
-        if !lesson.is_covering() {
-            ui.set_invisible();
-        }
-        reveal_ui(ui, urged && lesson.is_covering())
-    });
-    action.or(reveal.inner)
 }
 
 /// Gives a button the keyboard focus if `urged`, so that Enter presses it. A pressed button loses the focus,

@@ -170,6 +170,10 @@ impl Session {
         self.note_thresholds();
         self.measured.poll();
         self.apply();
+        let is_refuted = self.sentence_facts().is_some_and(|facts| facts.is_refuted());
+        if is_refuted && !self.player.is_held() && self.player.watch().from_here().is_some() {
+            self.ask_settled();
+        }
         self.follow_accuracy();
     }
 
@@ -380,6 +384,8 @@ impl Session {
             thresholds: self.thresholds.answer(),
             origin: run.from,
             now: self.player.watch().time(),
+            x: self.player.watch().now().x,
+            events: self.player.watch().events(),
             trusted_to: self.accuracy.trusted_to(),
         })
     }

@@ -226,6 +226,9 @@ fn slider_ui(ui: &mut Ui, slider: Slider<'_>) -> Response {
     ui.visuals_mut().selection.bg_fill = style.accent();
     ui.visuals_mut().widgets.inactive.bg_fill = style.track();
     let response = ui.add(slider);
+    if response.drag_started() {
+        response.request_focus(); // the arrow keys go on from there
+    }
     let handle = ui.painter().add(Shape::Noop).0.checked_sub(1);
     ui.ctx().graphics_mut(|graphics| {
         let list = graphics.get_mut(ui.layer_id()).zip(handle);

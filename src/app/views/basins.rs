@@ -3,6 +3,7 @@
 use eframe::egui::{self, Align2, Ui, UiBuilder, vec2};
 
 use crate::app::session::explore::Level;
+use crate::app::session::measured::sentence;
 use crate::app::ui::widgets::tell;
 use crate::app::words::numbers::{three, with_minus};
 use crate::output::{Cell, Chart, Layer, Marks, Panel, PlotAxis, Role};
@@ -52,7 +53,7 @@ fn plane_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     axes_input(ui, context.memory, View::Basins, &pane.response, (area, frame));
     match &level {
         Some(Ok(_)) => {}
-        Some(Err(problem)) => empty_ui(ui, &style, frame, problem),
+        Some(Err(problem)) => empty_ui(ui, &style, frame, &sentence(problem)),
         None => empty_ui(ui, &style, frame, "The basins are being computed, first a coarse picture."),
     }
     stops_ui(ui, context, frame, (frame.top(), frame.bottom()), 0.0);

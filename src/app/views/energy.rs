@@ -133,7 +133,7 @@ pub fn energy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     if let Some((upto, whole)) = watch.ledger_at(now) {
         let residual = whole.energy_residual();
         let hover = format!(
-            "Up to {upto:.3} s: work + by hand - damping - impacts - stored = {:.1e} J, which is \
+            "Up to {upto:.3} s: work + by changes - damping - impacts - stored = {:.1e} J, which is \
              {residual:.0e} of the energy moved. Every term is integrated separately, so that this is a \
              check of the run, though not its error.",
             whole.residual_j()

@@ -37,6 +37,9 @@ pub const LEGEND: f32 = LegendRow::HEIGHT;
 /// Width in points to the left of a legend below the titles of its card.
 pub const LEGEND_LEFT: f32 = 6.0;
 
+/// Time in s after which what is written at a resting pointer goes.
+const LINGER: f32 = 8.0;
+
 /// Least radius in points of a dot that can be seen.
 const LEAST_DOT: f32 = 1.5;
 
@@ -121,10 +124,21 @@ impl Pane {
         Some((value(&frame.x, across), value(&frame.y, (rect.bottom() - at.y) / rect.height())))
     }
 
+    /// The place of the pointer over the view. `None` after it has rested for long: what is written at it
+    /// would cover the picture.
+    pub fn hovered(&self) -> Option<Pos2> {
+        let rests = self.response.ctx.input(|input| {
+            let pointer = &input.pointer;
+            let is_pressed = pointer.any_down() || pointer.any_released();
+            pointer.time_since_last_movement() > LINGER && !is_pressed
+        });
+        self.response.hover_pos().filter(|_| !rests)
+    }
+
     /// The values of the first panel's axes under the pointer, if that is in its frame.
     pub fn pointed(&self) -> Option<(f64, f64)> {
         let frame = self.frame(0)?;
-        self.values_at(0, self.response.hover_pos().filter(|at| frame.contains(*at))?)
+        self.values_at(0, self.hovered().filter(|at| frame.contains(*at))?)
     }
 
     pub fn place(&self, panel: usize, point: (f64, f64)) -> Option<Pos2> {

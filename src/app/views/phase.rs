@@ -138,7 +138,7 @@ fn still(model: &Model, axes: (PlotAxis, PlotAxis), points_only: bool) -> Chart 
 }
 
 /// Marks of the starts of which a lesson speaks; the axis upward has a velocity in m/s times `per_speed`:
-/// dots or, where these would touch or hide what is below, dashes at both sides of each place.
+/// rings or, where these would touch, a line from the first to the last.
 pub(super) fn starts(painter: &egui::Painter, context: &ViewContext<'_>, pane: &Pane, per_speed: f64) {
     let starts = context.memory.starts.iter();
     let places: Vec<Pos2> = starts.filter_map(|(x, v)| pane.place(0, (x * 1e3, v * per_speed))).collect();
@@ -150,12 +150,9 @@ pub(super) fn starts(painter: &egui::Painter, context: &ViewContext<'_>, pane: &
         }
         return;
     }
-    let width = (0.5 * apart).clamp(0.5, 1.0);
-    for at in places {
-        for side in [-1.0, 1.0] {
-            let dash = [START, 3.0 * START].map(|far| at + vec2(side * far, 0.0));
-            painter.line_segment(dash, Stroke::new(width + 1.0, Color32::WHITE));
-            painter.line_segment(dash, Stroke::new(width, Color32::BLACK));
+    if let [first, .., last] = places[..] {
+        for (width, colour) in [(4.0, Color32::WHITE), (2.0, Color32::BLACK)] {
+            painter.line_segment([first, last], Stroke::new(width, colour));
         }
     }
 }

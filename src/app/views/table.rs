@@ -25,8 +25,10 @@ const ROW: f32 = 18.0;
 const ROW_GAP: (f32, f32) = (6.0, 1.0);
 /// Gap in points between columns.
 const COLUMN_GAP: f32 = 8.0;
-/// Share of the width that the column of names has, and its limits in points.
+/// Share of the width that the column of names has at least, and its limits in points.
 const NAMES: (f32, f32, f32) = (0.36, 92.0, 150.0);
+/// Width in points of a column of values beyond which the names have the room.
+const ROOMY_COLUMN: f32 = 144.0;
 /// Width in points of the column of names in small letters, if the others are at least as wide as the second
 /// number, so that the name of a motion stands beside its symbol.
 const SMALL_NAMES: (f32, f32) = (116.0, 78.0);
@@ -89,7 +91,8 @@ pub(super) fn table_ui(
     let style = context.style;
     let ((share, least, most), room) = (NAMES, ui.available_width());
     let width_beside = |names: f32| (room - names) / columns.len() as f32 - COLUMN_GAP;
-    let names = (share * room).clamp(least, most);
+    let names = room - columns.len() as f32 * (ROOMY_COLUMN + COLUMN_GAP);
+    let names = names.max(share * room).clamp(least, most);
     let names = match width_beside(names) {
         width if width >= WIDE_COLUMN => names,
         _ if width_beside(SMALL_NAMES.0) >= SMALL_NAMES.1 => SMALL_NAMES.0,

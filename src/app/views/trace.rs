@@ -166,7 +166,7 @@ pub fn trace_ui(ui: &mut Ui, quantity: TraceQuantity, context: &mut ViewContext<
         painter.with_clip_rect(frame).extend(Shape::dashed_line(&line, style.ghost_stroke(), 4.0, 3.0));
     }
     cursors_ui(ui, context, &pane.response, (frame, (from, to)), name);
-    let pointer = pane.response.hover_pos().and_then(|at| pane.values_at(0, at));
+    let pointer = pane.hovered().and_then(|at| pane.values_at(0, at));
     if let Some((t, _)) = pointer {
         let watch = context.session.player.watch();
         let t = t.clamp(watch.begin().min(now), now);

@@ -242,7 +242,7 @@ fn picture_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axis: &SweepAxis, area
     let write = |at: egui::Pos2, align: Align2, text: &str, colour: egui::Color32| {
         haloed(ui.painter(), &style, (at, align), text, (style.small(), colour));
     };
-    let pointed = pane.response.hover_pos().and_then(|at| pane.values_at(0, at));
+    let pointed = pane.hovered().and_then(|at| pane.values_at(0, at));
     let differs_nowhere = || compared(&fine, high - low).iter().all(|(_, differs)| !differs);
     let is_same = is_whole && current && !fine[0].is_empty() && differs_nowhere();
     // at the run that is read

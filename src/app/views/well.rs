@@ -51,7 +51,7 @@ const GAP_SHARE: f64 = 0.3;
 const LEAST_BALL: f32 = 6.0;
 
 /// Distance in points from the bracket from which on a line joins its label to it.
-const LEADER: f32 = 12.0;
+const LEADER: f32 = 80.0;
 
 /// Half the width in points of an end of the bracket.
 const BRACKET: f32 = 5.0;
@@ -149,7 +149,17 @@ pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     // where it is, and the potential that it has there
     let place = pane.place(0, (state.x * 1e3, tipped.at(state.x * 1e3))).unwrap_or(at);
     over.circle(place, PLACE, style.mass(), Stroke::new(1.5, style.mass_edge()));
-    // over the mass, which may pass them
+    if let (Some(left), Some(right)) = (left, right) {
+        // where the ball comes between the stops
+        let largest = model.largest_base_acceleration();
+        let highest = [left, right].into_iter().flat_map(|x| {
+            [-largest, largest].map(|accel| level.potential.at_acceleration(accel).at(x * 1e3))
+        });
+        let highest = pane.place(0, (0.0, highest.fold(f64::NEG_INFINITY, f64::max))).unwrap_or(at);
+        let across = [left, right].map(|x| context.span.screen_from_world(x, frame));
+        let up = highest.y - 2.0 * radius..=frame.bottom();
+        taken.places.push(Rect::from_x_y_ranges(across[0]..=across[1], up));
+    }
     travel_limits(&painter, context, frame, &mut taken);
     if let Some(ago) = ago(context.session) {
         pane.reading(ui, &style, 0.0, &ago);
@@ -267,11 +277,18 @@ fn landmarks(
         (lines.as_str(), pos2(x, row), Align2::CENTER_BOTTOM),
     ];
     // between close stops there is no room
+    let stops: Vec<f32> = sides(model).map(|(stop, _)| screen(stop)).collect();
+    let (low, high) = stops.iter().fold((x, x), |(low, high), stop| (low.min(*stop), high.max(*stop)));
+    let behind = (5..=20).step_by(3).flat_map(|tenths| {
+        let y = egui::lerp(top.y..=foot.y, 0.1 * tenths as f32);
+        let right = (lines.as_str(), pos2(high + WALL + 6.0, y), Align2::LEFT_CENTER);
+        [right, (lines.as_str(), pos2(low - WALL - 6.0, y), Align2::RIGHT_CENTER)]
+    });
     let beside = [0.15, 0.25, 0.35, 0.65, 0.75, 0.85].into_iter().flat_map(|share| {
         let at = |up: f32| pos2(egui::lerp(rect.x_range(), share), row - up * NAMES);
         [1.0, 3.0, 5.0].map(|up| (lines.as_str(), at(up), Align2::CENTER_BOTTOM))
     });
-    let places = places.into_iter().chain(beside);
+    let places = places.into_iter().chain(behind).chain(beside);
     // a bracket without its number says nothing
     if let Some(place) = taken.write(painter, rect, look.clone(), places) {
         painter.extend(bracket);

@@ -50,6 +50,8 @@ pub struct Figures {
     job: Background<FigureOrder, WriteResult>,
 }
 
+/// Sizes to choose: width in mm and text in points.
+const SIZES: [(&str, [&str; 2]); 2] = [("for a column", ["85", "8"]), ("for a slide", ["240", "18"])];
 /// Panels of a run that are chosen side by side.
 const PANELS_IN_ROW: usize = 4;
 
@@ -268,13 +270,16 @@ impl Figures {
     fn view_choice_ui(&mut self, ui: &mut Ui, view: View, session: &Session, memory: &Memory) {
         let name = ui.label("Of");
         let mut chosen = view;
-        let combo = ComboBox::from_id_salt("figure of").width(180.0).selected_text(view.name());
-        let combo = combo.show_ui(ui, |ui| {
-            for choice in View::ALL {
-                ui.selectable_value(&mut chosen, choice, choice.name());
-            }
+        ui.horizontal(|ui| {
+            let combo = ComboBox::from_id_salt("figure of").width(180.0).selected_text(view.name());
+            let combo = combo.show_ui(ui, |ui| {
+                for choice in View::ALL {
+                    ui.selectable_value(&mut chosen, choice, choice.name());
+                }
+            });
+            combo.response.labelled_by(name.id);
+            ui.weak("as PDF, SVG or PNG, by the end of the name");
         });
-        combo.response.labelled_by(name.id);
         if chosen != view {
             self.open(chosen, session, memory);
         }
@@ -304,7 +309,13 @@ impl Figures {
         let (width, font) = ui
             .horizontal(|ui| {
                 let width = field(ui, "width", &mut self.width, 44.0, "mm,");
-                (width, field(ui, "text", &mut self.font, 36.0, "points"))
+                let font = field(ui, "text", &mut self.font, 36.0, "points");
+                for (name, size) in SIZES {
+                    if ui.link(name).clicked() {
+                        [self.width, self.font] = size.map(str::to_owned);
+                    }
+                }
+                (width, font)
             })
             .inner;
         ui.end_row();

@@ -14,8 +14,9 @@ use super::command::{Command, Listed, Part, parts};
 pub(super) const SPEED_KEYS: [Key; SPEEDS.len()] =
     [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7];
 
-/// Headings of the list of keys, in two columns.
+/// Headings of the list of keys, in two columns; in a lesson its keys are the first.
 const GROUPS: [&[&str]; 2] = [&["Time", "Hands", "Lesson"], &["Views", "Scene"]];
+const IN_LESSON: [&[&str]; 2] = [&["Lesson", "Time", "Hands"], &["Views", "Scene"]];
 /// Width in points from which the two columns are side by side.
 const SIDE_BY_SIDE: f32 = 880.0;
 /// Width in points of the list, of its column of keys, and between two columns of commands.
@@ -108,7 +109,8 @@ fn group_ui(ui: &mut Ui, group: &str, projector: bool, width: f32) {
 }
 
 /// Shows the list of keys, opened at time `opened` in s. Returns `false` once it is to be closed.
-pub fn list_ui(ui: &Ui, opened: f64, projector: bool) -> bool {
+pub fn list_ui(ui: &Ui, opened: f64, projector: bool, in_lesson: bool) -> bool {
+    let columns = if in_lesson { IN_LESSON } else { GROUPS };
     let (is_read, is_closed) = dialog_ui(ui, ("shortcuts", LIST), ("Keys", 4.0), |ui| {
         let room = (ui.ctx().content_rect().height() - 130.0).max(120.0);
         // the list is scrolled to its top whenever it is opened
@@ -116,12 +118,12 @@ pub fn list_ui(ui: &Ui, opened: f64, projector: bool) -> bool {
         list.max_height(room).min_scrolled_height(room).show(ui, |ui| {
             let width = ui.available_width();
             if width < SIDE_BY_SIDE {
-                return GROUPS.concat().iter().for_each(|group| group_ui(ui, group, projector, width));
+                return columns.concat().iter().for_each(|group| group_ui(ui, group, projector, width));
             }
             let width = 0.5 * (width - BETWEEN);
             ui.horizontal_top(|ui| {
                 ui.spacing_mut().item_spacing.x = BETWEEN;
-                for groups in GROUPS {
+                for groups in columns {
                     ui.vertical(|ui| {
                         ui.set_width(width);
                         ui.spacing_mut().item_spacing.x = 8.0;

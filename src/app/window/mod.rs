@@ -296,9 +296,8 @@ impl Window {
         }
         let Some(next) = next_lesson(&self.lessons.records).filter(|_| hinted && !self.covered) else {
             let has_barrier = self.session.model().mechanism().landscape.barrier.is_some();
-            let ways = if has_barrier && !self.covered { "H says what it would take to cross, " } else { "" };
-            let keys = Guide { is_faint: true, ..Guide::new("", format!("{ways}F1 lists all keys.")) };
-            guide_ui(ui, style, &keys, |_| ());
+            let stays = has_barrier && !self.covered && self.session.crosses() == Some(false);
+            guide_ui(ui, style, &Guide::keys(stays), |_| ());
             return None;
         };
         guide_ui(ui, style, &self.hint.guide(&self.session), |ui| {
@@ -319,8 +318,8 @@ impl Window {
         self.take_figure();
         self.figure_ui(ui);
         self.glossary = self.glossary && notes::glossary_ui(ui);
-        let projector = self.settings.projector;
-        self.shortcuts = self.shortcuts.filter(|opened| keys::list_ui(ui, *opened, projector));
+        let (projector, in_lesson) = (self.settings.projector, self.lessons.open.is_some());
+        self.shortcuts = self.shortcuts.filter(|opened| keys::list_ui(ui, *opened, projector, in_lesson));
         self.messages.alert_ui(ui);
         self.messages.notice_ui(ui);
     }

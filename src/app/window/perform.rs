@@ -27,7 +27,9 @@ const ABOUT: &str = concat!(
     "Version ",
     env!("CARGO_PKG_VERSION"),
     ". Bistable mechanisms with travel limits: what they do when they are shaken.\n\n\
-     Every number comes from a run of the integrator; the motion on the screen is such a run, continued."
+     Every number comes from a run of the integrator; the motion on the screen is such a run, continued.\n\n\
+     By the interwell developers, under the licence MIT or Apache-2.0. To cite it: CITATION.cff of its \
+     source."
 );
 
 impl Window {

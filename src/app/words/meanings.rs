@@ -75,6 +75,17 @@ const MEANINGS: &[(&str, &str)] = &[
         "It crosses, and its crossings did not repeat while it was watched: chaos, or a motion that had \
          not settled yet.",
     ),
+    (
+        "attractor",
+        "A motion that others settle on: at rest, repeating, or irregular for good. All starts that lead to \
+         it are its basin.",
+    ),
+    (
+        "flexure",
+        "A thin strip of metal or plastic that guides the mass by bending, without a joint. Pushed together \
+         end to end it buckles, and the mass has two places to rest.",
+    ),
+    ("travel limit", "How far the mass can move from the middle before it strikes a stop."),
     ("hopping", "It leaves its stop and falls back on the same one, without crossing."),
     (
         "rms velocity",
@@ -152,10 +163,11 @@ pub fn meaning(label: &str) -> Option<&'static str> {
 
 /// The terms of the glossary in alphabetical order; each has a meaning.
 #[rustfmt::skip]
-pub const GLOSSARY: [&str; 22] = [
-    "barrier", "basin", "bulge", "chaotic", "hopping", "impact", "interwell", "intrawell", "irregular",
-    "once a period", "path error", "period", "phase portrait", "potential", "preload", "push", "reach",
-    "release", "restitution", "RMS velocity", "separatrix", "settling",
+pub const GLOSSARY: [&str; 26] = [
+    "attractor", "barrier", "basin", "bulge", "chaotic", "flexure", "hopping", "hysteresis", "impact",
+    "interwell", "intrawell", "irregular", "once a period", "path error", "period", "phase portrait",
+    "potential", "preload", "push", "reach", "release", "restitution", "RMS velocity", "separatrix",
+    "settling", "travel limit",
 ];
 
 /// The terms that are underlined in a text; those with a second meaning are left out.

@@ -28,6 +28,12 @@ pub struct Guide {
 }
 
 impl Guide {
+    /// Names keys that help; `stays` if the mass does not cross a barrier that there is.
+    pub fn keys(stays: bool) -> Self {
+        let ways = if stays { "H says what it would take to cross, " } else { "" };
+        Self { is_faint: true, ..Self::new("", format!("{ways}F1 lists all keys.")) }
+    }
+
     pub fn new(heading: impl Into<String>, text: impl Into<String>) -> Self {
         Self { heading: heading.into(), text: text.into(), ..Self::default() }
     }

@@ -259,5 +259,5 @@ fn price() {
         assert!(crosses(&free) && rms(&free) > 250.0, "{}", rms(&free));
     }
     let stops = told.run(&[&stopped(2.0), &shaken(1.2)]);
-    told.says(&format!("at more than 250 mm/s, with stops at 2 mm at {:.0} mm/s", rms(&stops)));
+    told.says(&format!("at more than 250 mm/s without stops, at {:.0} mm/s with stops at 2 mm", rms(&stops)));
 }

@@ -4,7 +4,7 @@ mod pointer;
 mod tools;
 mod trail;
 
-use eframe::egui::{self, Align2, Color32, Painter, Pos2, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
+use eframe::egui::{self, Align2, Color32, Painter, Pos2, Rect, Sense, Shape, Stroke, Ui, vec2};
 
 use crate::app::session::best::LIMIT;
 use crate::app::session::map::{Map, short};
@@ -19,7 +19,7 @@ use crate::output::{Cell as DrawnCell, Marks, PlotAxis, RMS, View as MapShape, s
 use crate::scene::Stops;
 use interwell_studies::study::{Read, SummaryField, label_and_unit};
 
-use super::labels::haloed;
+use super::labels::{Taken, haloed};
 use super::pane::{Pane, kept_pane_ui};
 use super::{LegendRow, ViewContext, too_small_ui};
 
@@ -36,8 +36,8 @@ const UPWARD: usize = 2;
 /// Half the diagonal in points of the mark of the best stops.
 const BEST: f32 = 7.0;
 
-/// Time in s after which the text on a cell under a resting pointer goes: it would cover the views beside it.
-const LINGER: f32 = 12.0;
+/// Length in points of the arrow to a scene beyond the map.
+const ARROW: f32 = 7.0;
 
 /// The values of a scene on both axes of a map; `None` for a field that it lacks.
 type Place = [Option<f64>; 2];
@@ -114,7 +114,7 @@ pub fn map_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
             trail::draw(&painter, &pane, &style, &trail);
             best_stops(&painter, &style, &pane, map, place, context.session.best.limit_mm());
             cut_marks(&painter, &style, &pane, scene);
-            marker(&painter, &pane, &style, (place, place_in_words(context, place)))
+            marker(&painter, &pane, &style, (place, &place_in_words(context, place, quantity)))
         }
     };
     if !current {
@@ -126,9 +126,8 @@ pub fn map_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         painter.text(at, Align2::CENTER_TOP, words, style.body(), style.ink());
     }
     let cell_at = |at: Pos2| cell_at(&pane, map, scene, at);
-    let pointed = pane.response.hover_pos().filter(|_| !pane.response.dragged()).and_then(cell_at);
-    let is_still = ui.input(|input| input.pointer.time_since_last_movement()) > LINGER;
-    if let Some(cell) = pointed.filter(|_| !is_still && !context.memory.hushed) {
+    let pointed = pane.hovered().filter(|_| !pane.response.dragged()).and_then(cell_at);
+    if let Some(cell) = pointed.filter(|_| !context.memory.hushed) {
         point_out(&painter, &style, &pane, map, cell);
         let over = pane.response.clone().on_hover_cursor(egui::CursorIcon::PointingHand);
         over.on_hover_text_at_pointer(reading(map, quantity, cell, style.projector));
@@ -308,22 +307,27 @@ fn reading(map: &Map, quantity: &SummaryField, (column, row): (usize, usize), is
     lines.join("\n")
 }
 
-/// Where a scene beyond the map stands. A scene without stops has the threshold beside it, since the edge of
-/// the map is that of stops far out.
-fn place_in_words(context: &ViewContext<'_>, place: Place) -> String {
+/// Where a scene beyond the map stands. A scene without stops has its value of the quantity and its threshold
+/// beside it: the edge of the map is that of stops far out.
+fn place_in_words(context: &ViewContext<'_>, place: Place, quantity: &SummaryField) -> String {
     let card = context.session.now_card();
     if card.scene.stops != Stops::None || !place.contains(&None) {
         return "now: further out".to_owned();
     }
     let crossing = card.thresholds.and_then(|found| threshold(&card.scene, &found.crossing));
-    let crossing = crossing.map(|(amplitude, unit)| format!(" (crossing from {amplitude} {unit})"));
-    format!("now: no stops{}", crossing.unwrap_or_default())
+    let crossing = crossing.map(|(amplitude, unit)| format!("\nit crosses from {amplitude} {unit}"));
+    let value = card.settled.as_ref().and_then(|settled| match settled.rms_velocity {
+        Some(rms) if quantity.name == RMS => Some(format!("RMS velocity {} mm/s", speed(rms))),
+        _ => value_text(quantity, settled),
+    });
+    let value = value.map(|value| format!(", {value}"));
+    format!("now: no stops{}{}", value.unwrap_or_default(), crossing.unwrap_or_default())
 }
 
-/// Marks the scene by a ring, or by an arrow at the edge that it lies beyond, with these words. Returns the
-/// place.
-fn marker(painter: &Painter, pane: &Pane, style: &Style, (place, words): (Place, String)) -> Pos2 {
-    let (Some([across, up]), Some(frame)) = (pane.axes(MAP), pane.frame(MAP)) else { return Pos2::ZERO };
+/// Marks the scene by a ring, or by an arrow outside the edge that it lies beyond, with these words where
+/// they hide no line. Returns the place.
+fn marker(painter: &Painter, pane: &Pane, style: &Style, (place, words): (Place, &str)) -> Pos2 {
+    let Some(([across, up], frame)) = pane.axes(MAP).zip(pane.frame(MAP)) else { return Pos2::ZERO };
     // no stops count as stops far out
     let (x, y) = (place[0].unwrap_or(f64::INFINITY), place[1].unwrap_or(f64::INFINITY));
     let nearest = |axis: &PlotAxis, value: f64| value.clamp(axis.low, axis.high);
@@ -342,17 +346,28 @@ fn marker(painter: &Painter, pane: &Pane, style: &Style, (place, words): (Place,
         false => (value - axis.low).signum() as f32,
     };
     let direction = vec2(beyond(across, x), -beyond(up, y)).normalized();
-    let (tip, back, side) = (at - direction * 2.0, at - direction * 16.0, direction.rot90() * 8.0);
+    let (tip, back, side) = (at + direction * ARROW, at + direction, direction.rot90() * ARROW);
     let ([halo, line], points) = (style.marker_strokes(), vec![tip, back + side, back - side]);
     painter.add(Shape::convex_polygon(points, line.color, Stroke::new(1.5, halo.color)));
-    let galley = painter.layout_no_wrap(words, style.body(), Color32::PLACEHOLDER);
-    let (room, size) = (frame.shrink(4.0), galley.size());
-    let wanted = back - direction * (10.0 + 0.5 * size.x) - 0.5 * size;
-    let corner = pos2(
-        wanted.x.clamp(room.left(), (room.right() - size.x).max(room.left())),
-        wanted.y.clamp(room.top(), (room.bottom() - size.y).max(room.top())),
-    );
-    painter.rect_filled(Rect::from_min_size(corner, size).expand(3.0), 3.0, style.ground());
-    painter.galley_with_override_text_color(corner, galley, style.ink());
+    let lines = pane.chart.panels().next().into_iter().flat_map(|panel| &panel.layers);
+    let lines = lines.filter_map(|layer| match &layer.marks {
+        Marks::Path(points) => Some(points.iter().filter_map(|point| pane.place(MAP, *point)).collect()),
+        _ => None,
+    });
+    let mut taken = Taken { lines: lines.collect(), places: Vec::new(), plate: Some(style.ground()) };
+    let room = frame.shrink(4.0);
+    let look = (style.body(), style.ink());
+    let align = match (at.x - room.left()) / room.width() {
+        share if share < 0.35 => Align2::LEFT_CENTER,
+        share if share < 0.65 => Align2::CENTER_CENTER,
+        _ => Align2::RIGHT_CENTER,
+    };
+    // up and down from the arrow
+    let rows = (0..=40).flat_map(|row| [1.0, -1.0].map(|sign| sign * 0.025 * row as f32 * room.height()));
+    let places: Vec<_> = rows.map(|row| (words, room.clamp(at + vec2(0.0, row)), align)).collect();
+    if taken.write(painter, room, look.clone(), places.iter().copied()).is_none() {
+        taken.lines.clear();
+        taken.write(painter, room, look, places);
+    }
     at
 }

@@ -10,8 +10,8 @@ use super::Room;
 
 /// Share of the width that the left column has in the layout Look: 590 of 1030 points.
 const LEFT_SHARE: f32 = 590.0 / 1030.0;
-/// Share of the height that the displacement has in the right column: 340 of 584 points.
-const DISPLACEMENT_SHARE: f32 = 340.0 / 584.0;
+/// Share of the height that the displacement has in the right column: 298 of 584 points.
+const DISPLACEMENT_SHARE: f32 = 298.0 / 584.0;
 const MAP_SHARE: f32 = 640.0 / 1030.0;
 /// Share of the height that the mechanism has above the well.
 const MECHANISM_SHARE: f32 = 0.4;

@@ -1,6 +1,10 @@
 //! Sentence about a driven motion.
 
-use crate::dynamics::{First, Firsts, Model, Outcome, Place, Regime, STANDARD_GRAVITY, Summary};
+use std::collections::VecDeque;
+
+use crate::dynamics::{
+    Event, EventKind, First, Firsts, Model, Outcome, Place, Regime, STANDARD_GRAVITY, Summary,
+};
 use crate::scene::{Excitation, Scene, Stops};
 use interwell_studies::study::Thresholds;
 
@@ -15,6 +19,9 @@ const SEEN_PERIODS: f64 = 3.0;
 /// Forcing periods within which a motion seems to settle at once.
 const AT_ONCE: f64 = 5.0;
 
+/// Forcing periods after which another motion on the screen than the forecast is not taken for its beginning.
+const REFUTED_PERIODS: f64 = 30.0;
+
 /// The facts for the sentence about a driven motion.
 #[derive(Debug, Clone, Copy)]
 pub struct DrivenMotion<'a> {
@@ -26,6 +33,10 @@ pub struct DrivenMotion<'a> {
     /// Live time in s at which the run of the summary began.
     pub origin: f64,
     pub now: f64,
+    /// The present displacement in m.
+    pub x: f64,
+    /// What has been on the screen.
+    pub events: &'a VecDeque<Event>,
     /// Live time in s up to which the path is reliable; `None` while that is not known.
     pub trusted_to: Option<f64>,
 }
@@ -39,16 +50,52 @@ impl DrivenMotion<'_> {
         };
         let periods = match (summary.regime, summary.settles_at) {
             (Regime::Rest, Some(at)) => at / period,
-            (_, settles_at) => {
-                let repeats = f64::from(summary.period.unwrap_or(1));
-                settles_at.unwrap_or(0.0) / period + SEEN_PERIODS.max(repeats)
-            }
+            (_, settles_at) => settles_at.unwrap_or(0.0) / period + self.seen_periods(),
         };
         self.origin + periods * period
     }
 
+    /// Forcing periods that have to be drawn to see the described motion.
+    fn seen_periods(&self) -> f64 {
+        SEEN_PERIODS.max(f64::from(self.summary.period.unwrap_or(1)))
+    }
+
     fn is_seen(&self) -> bool {
-        self.now >= self.seen_from()
+        self.now >= self.seen_from() && self.is_as_drawn()
+    }
+
+    /// Whether the last periods on the screen have crossings as the described motion has, or none on its side
+    /// of the barrier.
+    fn is_as_drawn(&self) -> bool {
+        let Some(period) = self.model.forcing_period().filter(|_| self.model.repeats()) else { return true };
+        let settled = self.origin + self.summary.settles_at.unwrap_or(0.0);
+        let since = settled.max(self.now - self.seen_periods() * period);
+        let mut last = self.events.iter().rev().take_while(|event| event.t > since);
+        let has_crossed = last.any(|event| event.kind == EventKind::Crossing);
+        match self.summary.regime {
+            Regime::Interwell => has_crossed,
+            Regime::Rest | Regime::Intrawell => !has_crossed && self.is_on_its_side(),
+            _ => true,
+        }
+    }
+
+    fn is_on_its_side(&self) -> bool {
+        let Some(barrier) = self.model.mechanism().landscape.barrier else { return true };
+        match self.summary.side {
+            Some(Place::Left) => self.x <= barrier.x,
+            Some(Place::Right) => self.x >= barrier.x,
+            _ => true,
+        }
+    }
+
+    /// Whether the motion on the screen has become another one than the forecast, which no path that loses
+    /// its accuracy on the way can exclude.
+    pub fn is_refuted(&self) -> bool {
+        let Summary { settles_at, window, .. } = self.summary;
+        // a motion that does not settle is judged by its window, before which it may do anything
+        let period = self.model.forcing_period().unwrap_or(0.0);
+        let begin = if settles_at.is_some() { 0.0 } else { window.0.min(REFUTED_PERIODS * period) };
+        self.now >= self.seen_from() + begin && !self.is_as_drawn()
     }
 
     /// The words of the present tense if the motion has been on the screen, otherwise those of the future.
@@ -67,7 +114,11 @@ impl DrivenMotion<'_> {
         let late = |at: &f64| *at > AT_ONCE * period && self.now < self.origin + *at;
         let Some(at) = self.summary.settles_at.filter(late) else { return String::new() };
         let t = self.origin + at;
-        format!(" from {}{} on", self.about(t), seconds(t))
+        match self.about(t) {
+            "" => format!(" from {} on", seconds(t)),
+            // the time differs from try to try
+            _ => " in the end".to_owned(),
+        }
     }
 
     /// What is known of a motion that has not settled; empty if it has.
@@ -146,11 +197,14 @@ pub fn driven(facts: &DrivenMotion) -> Sentence {
                 all if all >= summary.periods => "every period".to_owned(),
                 some => format!("in {some} of {periods:.0} periods"),
             };
+            let in_impacts = match (summary.impacts as f64 / summary.releases as f64).round() {
+                1.0 => "in one impact".to_owned(),
+                count => format!("in {count:.0} impacts"),
+            };
             let (leaves, falls) = (facts.tense("leaves", "will leave"), facts.tense("falls", "fall"));
             format!(
-                "Hopping: {leaves} the {side} stop {every}{from} and {falls} back, {never} crossing; {rms}, \
-                 {:.0} impacts a period.",
-                per_period(summary.impacts)
+                "Hopping: {leaves} the {side} stop {every}{from} and {falls} back {in_impacts}, {never} \
+                 crossing; {rms}."
             )
         }
         Regime::Intrawell if summary.impacts > 0 => {
@@ -216,12 +270,12 @@ fn unrepeated(facts: &DrivenMotion, rms: &str, range: &str, well: &str) -> Sente
         let stays = if seen { "stayed" } else { "will stay" };
         (Kind::Intrawell, format!("Intrawell: {stays} in the {well} {when}, {range}; {rms}."))
     } else {
-        let crosses = if seen { "Crossed" } else { "Will cross" };
+        let crosses = if seen { "did so" } else { "will do so" };
         let count = match summary.crossings {
             1 => "once".to_owned(),
             n => format!("{}{n} times", facts.about(to)),
         };
-        (Kind::Crossing, format!("{crosses} {count} {when}; {rms}."))
+        (Kind::Crossing, format!("Crossing: {crosses} {count} {when}; {rms}."))
     };
     Sentence::new(kind, format!("{text}{}", untouched(facts)))
 }

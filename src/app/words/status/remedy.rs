@@ -52,6 +52,19 @@ fn least(scene: &Scene, value: f64) -> String {
     scene.harmonic().map_or_else(|| grams(value), |drive| grams_beside(value, drive.amplitude().abs()))
 }
 
+/// A distance in g from a threshold, with its unit: two significant digits, but no decimals that an uncertain
+/// threshold lacks.
+fn apart(scene: &Scene, found: &Found, g: f64) -> String {
+    let (per_g, unit) = unit(scene);
+    let decimals = |text: &str| text.split_once('.').map_or(0, |(_, decimals)| decimals.len());
+    let fine = grams_apart(g * per_g);
+    let known = threshold(scene, found).map_or(0, |(least, _)| decimals(&least));
+    let rounded = format!("{:.known$}", g * per_g);
+    let is_zero = rounded.chars().all(|c| "0.".contains(c));
+    let is_enough = !found.undecided || decimals(&fine) <= known || is_zero;
+    format!("{} {unit}", if is_enough { fine } else { rounded })
+}
+
 /// The present amplitude and motion compared with the thresholds, which are from rest at this frequency.
 pub(super) fn remedy(scene: &Scene, summary: &Summary, found: &Thresholds) -> String {
     let Some(g) = amplitude(scene) else { return String::new() };
@@ -67,7 +80,7 @@ pub(super) fn remedy(scene: &Scene, summary: &Summary, found: &Thresholds) -> St
     let about = about(&found.crossing);
     let Some((least, unit)) = threshold(scene, &found.crossing) else { return String::new() };
     let (least, gaps) = (format!("{least} {unit}"), gaps(scene, found, from));
-    let apart = |g: f64| in_unit(scene, grams_apart, g);
+    let apart = |g: f64| apart(scene, &found.crossing, g);
     let text = match (crosses, g >= from) {
         (true, true) => format!("{about}{} to spare: crosses from {least}{gaps}.", apart(g - from)),
         (true, false) => format!("From rest it takes {least} to cross{gaps}."),
@@ -100,7 +113,10 @@ pub fn ways(scene: &Scene, settled: &Summary, thresholds: &Thresholds, stops_mm:
         Regime::Rest | Regime::Intrawell => {
             let more = thresholds.crossing.value.filter(|from| *from > g);
             let about = about(&thresholds.crossing);
-            let more = more.map(|from| format!("with {about}{} more", in_unit(scene, grams_apart, from - g)));
+            let more = more.map(|from| {
+                let apart = apart(scene, &thresholds.crossing, from - g);
+                format!("with {about}{apart} more")
+            });
             let make = if thresholds.crossing.undecided { "were seen to make" } else { "make" };
             match (more, stops) {
                 (Some(more), Some(stops)) => format!("Crosses {more}, or {stops}."),
@@ -156,6 +172,8 @@ mod tests {
         let short = "About 0.30 g short of crossing at 1.20 g.";
         let more = "Crosses with about 0.30 g more; no stops alone would do it.";
         assert_eq!(said(Some(1.2), true), [short, more]);
+        assert_eq!(said(Some(0.941), true)[0], "About 0.041 g short of crossing at 0.941 g.");
+        assert_eq!(said(Some(1.0), true)[0], "About 0.10 g short of crossing at 1.00 g.");
         let nothing = "From rest no shaking up to 30.0 g crosses.";
         let neither = "From rest neither shaking up to 30.0 g nor any stops make it cross.";
         assert_eq!(said(None, false), [nothing, neither]);

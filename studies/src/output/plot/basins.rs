@@ -169,5 +169,6 @@ fn about(basins: &Basins, answer: &Answer) -> String {
     let is_periodic = basins.model().is_shaken() && basins.model().forcing_period().is_some();
     let when = if is_periodic { " at time 0 of the drive" } else { "" };
     let intervals = if basins.starts().is_grid() { "" } else { "; 95 % intervals in brackets" };
-    format!("where motions go from {counted}{when}; markers: the attractors{intervals}")
+    let coarse = if basins.is_whole() { "" } else { "coarse so far: " };
+    format!("{coarse}where motions go from {counted}{when}; markers: the attractors{intervals}")
 }

@@ -27,7 +27,7 @@ impl LedgerTerm {
     /// What is left in the mass and its mechanism.
     pub const STORED: Self = term("stored", Role::Motion, |ledger| ledger.stored_j);
     /// What a person put in.
-    pub const BY_HAND: Self = term("by hand", Role::ByHand, |ledger| ledger.by_hand_j);
+    pub const BY_HAND: Self = term("by changes", Role::ByHand, |ledger| ledger.by_hand_j);
     /// What load and coil of a transducer took.
     pub const TRANSDUCER: Self =
         term("transducer", Role::Motion, |ledger| -(ledger.harvested_j + ledger.coil_j));

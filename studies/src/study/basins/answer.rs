@@ -15,7 +15,8 @@ const NORMAL_95: f64 = 1.959_963_984_540_054;
 /// Number of forcing periods over which an attractor is described: twice the longest recognised period.
 const WINDOW: u32 = 24;
 
-/// Relative difference of RMS velocities above which they distinguish two attractors.
+/// Difference that distinguishes two attractors: of their RMS velocities as a share of these, or of their
+/// mean displacements as a share of the reach.
 const MIN_DIFFERENCE: f64 = 0.02;
 
 /// A share with its 95 % confidence interval (Wilson 1927).
@@ -54,6 +55,10 @@ pub struct Attractor {
     pub side: Option<Place>,
     /// Its RMS velocity in m/s.
     pub rms_velocity: Option<f64>,
+    /// The mean of its displacement in m.
+    pub mean_x: Option<f64>,
+    /// Its largest distance from the middle in m.
+    pub reach: Option<f64>,
     /// Its states in m and m/s at the phase of the drive at which motions start: one per forcing period of
     /// its period, or a single one without a period.
     pub states: Vec<(f64, f64)>,
@@ -64,7 +69,7 @@ pub struct Attractor {
 }
 
 impl Attractor {
-    /// A text with its regime, side and period.
+    /// A text with its regime and side, and with its period unless that is one forcing period.
     fn kind(&self) -> String {
         let mut words = match self.regime.name() {
             "" => "one well",
@@ -74,12 +79,19 @@ impl Attractor {
         if let Some(side) = self.side.map(Place::name).filter(|side| *side != Place::Both.name()) {
             words += &format!(" {side}");
         }
-        if let Some(period) = self.period {
-            words += &format!(", period {period}");
-        } else if self.regime == Regime::Intrawell {
-            words += ", no period";
+        match (self.period, self.regime) {
+            (Some(1), _) => {}
+            (Some(period), _) => words += &format!(", period {period}"),
+            (None, Regime::Intrawell | Regime::Interwell) => words += ", irregular",
+            (None, _) => {}
         }
         words
+    }
+
+    /// Whether the means of the displacement differ by more than a small share of the reach.
+    fn has_other_mean(&self, other: &Self) -> bool {
+        let apart = |a: f64, b: f64| (a - b).abs() > MIN_DIFFERENCE * self.reach.unwrap_or(f64::INFINITY);
+        self.mean_x.zip(other.mean_x).is_some_and(|(a, b)| apart(a, b))
     }
 }
 
@@ -116,7 +128,7 @@ impl Answer {
     }
 
     /// A distinct description of each attractor: regime, side and period and, if another one has the same,
-    /// its RMS velocity or its displacement at the beginning of a period.
+    /// its RMS velocity, its mean displacement, or its displacement at the beginning of a period.
     pub fn words(&self) -> Vec<String> {
         let speed = |attractor: &Attractor| attractor.rms_velocity.unwrap_or(0.0);
         let three = |value: f64| format!("{value:.0$}", decimals(value.abs(), 3));
@@ -126,13 +138,15 @@ impl Answer {
             let others: Vec<&Attractor> = self.attractors.iter().filter(is_other).collect();
             let velocity = speed(attractor);
             let differs = |other: &&Attractor| (speed(other) - velocity).abs() > MIN_DIFFERENCE * velocity;
-            match others.is_empty() {
-                true => kind,
-                false if others.iter().all(differs) => format!("{kind}, {} mm/s", three(1e3 * velocity)),
-                false => {
-                    let mm = three(1e3 * attractor.states[0].0).replace('-', "\u{2212}");
-                    format!("{kind}, at {mm} mm when a period begins")
+            let mm = |x: f64| format!("{} mm", three(1e3 * x).replace('-', "\u{2212}"));
+            let at_begin = || format!("{kind}, at {} when a period begins", mm(attractor.states[0].0));
+            match attractor.mean_x {
+                _ if others.is_empty() => kind,
+                _ if others.iter().all(differs) => format!("{kind}, {} mm/s", three(1e3 * velocity)),
+                Some(mean) if others.iter().all(|other| attractor.has_other_mean(other)) => {
+                    format!("{kind}, on average at {}", mm(mean))
                 }
+                _ => at_begin(),
             }
         };
         self.attractors.iter().map(words).collect()
@@ -213,6 +227,8 @@ impl Basins {
                 period: summary.period,
                 side: summary.side,
                 rms_velocity: summary.rms_velocity,
+                mean_x: summary.mean_x,
+                reach: summary.max_abs_x,
                 states,
                 starts,
                 share: Shares::of(starts, inside),
@@ -275,7 +291,8 @@ impl Basins {
             },
         }
         let window = self.model.with_start(start).with_duration(settle + f64::from(WINDOW) * period, settle);
-        let summary = window.run(&Request { cancel: Some(task.cancel), ..Request::default() }).summary;
+        let summary =
+            window.run(&Request { cancel: Some(task.cancel), ledger: true, ..Request::default() }).summary;
         task.check_cancelled().ok()?;
         let states = states(&self.model, final_state(&summary), summary.period.unwrap_or(1), period);
         (!task.is_cancelled()).then_some((summary, states))
@@ -315,12 +332,14 @@ mod tests {
 
     #[test]
     fn no_two_attractors_have_the_same_words() {
-        let words = |all: &[(f64, f64)]| {
+        let words = |all: &[(f64, f64)], mean_x: Option<f64>| {
             let attractor = |(rms, x): &(f64, f64)| Attractor {
                 regime: Regime::Interwell,
                 period: Some(1),
                 side: None,
                 rms_velocity: Some(*rms),
+                mean_x: mean_x.map(|mean| mean * x.signum()),
+                reach: Some(2e-3),
                 states: vec![(*x, 0.0)],
                 starts: 1,
                 share: Shares::of(1, 2),
@@ -329,11 +348,14 @@ mod tests {
             let (rows, sure) = (Vec::new(), Vec::new());
             Answer { attractors, rows, outside: 0, sure, lost: 0, spent: 0, undecided: 0 }.words()
         };
-        assert_eq!(words(&[(0.05, 0.0)]), ["interwell, period 1"]);
-        let faster = ["interwell, period 1, 50.0 mm/s", "interwell, period 1, 80.0 mm/s"];
-        assert_eq!(words(&[(0.05, 0.0), (0.08, 0.0)]), faster);
-        let ends = words(&[(0.05, -1.5e-3), (0.05, 1.5e-3)]);
+        assert_eq!(words(&[(0.05, 0.0)], None), ["interwell"]);
+        let faster = ["interwell, 50.0 mm/s", "interwell, 80.0 mm/s"];
+        assert_eq!(words(&[(0.05, 0.0), (0.08, 0.0)], None), faster);
+        let mirrored = [(0.05, -1.5e-3), (0.05, 1.5e-3)];
+        let ends = words(&mirrored, Some(1e-5));
         assert!(ends[0].ends_with(", at \u{2212}1.50 mm when a period begins"), "{ends:?}");
         assert!(ends[1].ends_with(", at 1.50 mm when a period begins"), "{ends:?}");
+        let means = ["interwell, on average at \u{2212}1.20 mm", "interwell, on average at 1.20 mm"];
+        assert_eq!(words(&mirrored, Some(1.2e-3)), means);
     }
 }

@@ -56,7 +56,7 @@ fn basins() {
             told.model(&[changes, &[start.as_str()]].concat())
         };
         let models: Vec<Model> = (0..=30).map(model).collect();
-        Model::run_together(&models, &Request::default())
+        Model::run_together(&models, &Request { ledger: true, ..Request::default() })
             .into_iter()
             .map(|run| run.summary)
             .collect::<Vec<_>>()
@@ -70,6 +70,16 @@ fn basins() {
     told.says("Of the 31 flicks some 12 to 15 cross, which of them depends on the last digits");
     told.says("Fewer than half do");
     told.says("from flick to flick the answer changes again and again");
+    let crossing: Vec<Summary> = flicks(&[]).into_iter().filter(crosses).collect();
+    let mean = |summary: &Summary| summary.mean_x.unwrap();
+    let [left, right] =
+        [-1.0, 1.0].map(|side| crossing.iter().find(|summary| side * mean(summary) > 1e-4).unwrap());
+    crossing.iter().for_each(|summary| near_relative(mean(summary).abs(), mean(left).abs(), 1e-4));
+    let ((low, high), mirrored) = (left.range.unwrap(), right.range.unwrap());
+    near_relative(-low, mirrored.1, 1e-4);
+    near_relative(high, -mirrored.0, 1e-4);
+    near_relative(rms(left), rms(right), 1e-4);
+    told.says("Two colours cross, as mirror images");
     let stops = flicks(&[&stopped(2.0), "run.duration_s=20", "run.settle_s=10"]);
     let speeds: Vec<f64> = stops.iter().map(rms).collect();
     assert!(stops.iter().all(|summary| crosses(summary) && summary.releases == 2 * summary.periods));
