@@ -2,7 +2,7 @@
 //! covers a view, what a view without data says.
 
 use eframe::egui::accesskit::Role;
-use eframe::egui::{self, Color32, Key, Rect, Shape, pos2};
+use eframe::egui::{self, Color32, Key, Rect, Shape, pos2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use interwell::app::ui::settings::Settings;
@@ -43,6 +43,27 @@ fn is_drawn(harness: &Harness<'static, Window>, place: Rect) -> bool {
 fn text(harness: &Harness<'static, Window>, words: &str) -> Rect {
     let all = painted(harness);
     all.iter().find(|text| text.0 == words).unwrap_or_else(|| panic!("{words}: {all:?}")).1
+}
+
+#[test]
+fn a_reading_goes_while_the_pointer_rests_and_comes_back_with_it() {
+    let mut harness = window("first-look", WIDE);
+    harness.run_steps(10);
+    let place = harness.state().tiling.place_of(View::Displacement).unwrap();
+    let is_read = |harness: &Harness<'static, Window>| {
+        let texts = painted(harness).into_iter().filter(|text| place.contains(text.1.center()));
+        texts.map(|text| text.0).any(|text| text.contains(" mm at ") && text.ends_with(" s"))
+    };
+    for i in 0..3 {
+        harness.hover_at(place.center() + vec2(i as f32, 0.0));
+        harness.run_steps(2);
+        assert!(is_read(&harness));
+        let until = harness.ctx.input(|input| input.time) + 8.5;
+        while harness.ctx.input(|input| input.time) < until {
+            harness.run_steps(1);
+        }
+        assert!(!is_read(&harness));
+    }
 }
 
 #[test]

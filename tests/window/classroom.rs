@@ -42,6 +42,40 @@ fn the_strip_of_a_lesson_has_one_height_from_its_first_step_to_its_last() {
 }
 
 #[test]
+fn dots_and_the_scale_of_the_well_stay_from_step_to_step() {
+    for entry in LESSONS {
+        let mut harness = opened(entry.name, PROJECTED);
+        let mut seen: Option<(f32, f64)> = None;
+        while let Some(lesson) = harness.state().lesson() {
+            let (number, count) = (lesson.number() + 1, lesson.lesson().steps.len());
+            let dots = harness.get_by_label(&format!("step {number} of {count}")).rect();
+            let now = (dots.left(), harness.state().memory.push_of_lesson);
+            let before = *seen.get_or_insert(now);
+            assert!((now.0 - before.0).abs() < 2.0 && now.1 == before.1, "{} {number}", entry.name);
+            go_on(&mut harness);
+        }
+    }
+}
+
+#[test]
+fn twice_the_push_is_drawn_twice_as_steep() {
+    let mut harness = opened("02-shake-it-over", WIDE);
+    let ticks = |harness: &Shown| {
+        let place = harness.state().tiling.place_of(View::Well).unwrap();
+        let texts = painted(harness).into_iter().filter(|text| place.contains(text.1.center()));
+        let ticks: Vec<String> = texts.map(|text| text.0).filter(|text| text.ends_with(".5")).collect();
+        assert!(!ticks.is_empty());
+        ticks
+    };
+    let before = ticks(&harness);
+    assert!(go_to(&mut harness, |step| matches!(step, Step::Predict { .. })));
+    press(&mut harness, Key::A);
+    harness.run_steps(40);
+    assert!(harness.state().session.amplitude_g().unwrap() >= 1.3);
+    assert_eq!(ticks(&harness), before);
+}
+
+#[test]
 fn the_first_view_that_a_step_names_is_in_front() {
     let named = |harness: &Shown| {
         let lesson = harness.state().lesson().filter(|lesson| !lesson.is_covering())?;

@@ -25,6 +25,26 @@ fn open(harness: &mut Harness<'static, Window>, view: View, path: &Path) {
     harness.run_steps(2);
 }
 
+#[test]
+fn a_figure_has_the_size_of_a_column_or_of_a_slide() {
+    let mut harness = window("first-look", WIDE);
+    let folder = tempfile::tempdir().unwrap();
+    open(&mut harness, View::Well, &folder.path().join("well.png"));
+    for (size, expected) in [("for a slide", ["240", "18"]), ("for a column", ["85", "8"])] {
+        harness.get_by_label(size).click();
+        harness.run_steps(2);
+        let figures = &harness.state().figures;
+        assert_eq!([&figures.width, &figures.font], expected);
+        assert!(
+            copy(&mut harness)
+                .contains(&format!("--plot-width-mm {} --font-pt {}", expected[0], expected[1]))
+        );
+    }
+    harness.get_by_label("for a slide").click();
+    harness.run_steps(2);
+    save(&mut harness);
+}
+
 fn press_button(harness: &mut Harness<'static, Window>, button: &str) {
     harness.get_by_role_and_label(Role::Button, button).click();
     harness.run_steps(2);

@@ -185,3 +185,16 @@ fn the_projector_can_be_left_again() {
     press(&mut harness, Key::P);
     assert!(!harness.state().settings.projector);
 }
+
+#[test]
+fn what_it_would_take_is_offered_where_the_mass_does_not_cross() {
+    let mut harness = window("paper", WIDE);
+    for (amplitude, ways) in [(1.0, false), (0.5, true)] {
+        harness.state_mut().session.set_number("excitation.amplitude_g", amplitude).unwrap();
+        harness.state_mut().session.end_gesture();
+        harness.state_mut().session.wait(LONG);
+        harness.run_steps(3);
+        assert!(is_painted(&harness, "F1 lists all keys."));
+        assert_eq!(is_painted(&harness, "H says what it would take to cross, "), ways, "{amplitude}");
+    }
+}

@@ -39,6 +39,34 @@ fn map(window: &Window) -> &Map {
     window.session.map.map().unwrap()
 }
 
+#[test]
+fn a_scene_without_stops_is_marked_outside_the_map_with_what_it_does() {
+    let mut harness = window("first-look", WIDE);
+    harness.state_mut().session.player.set_playing(false);
+    harness.state_mut().session.map.choose(Some(axes((0.1, 0.05))));
+    command(&mut harness, Command::Arrange(Layout::Map));
+    assert!(harness.state_mut().session.wait_for_map(LONG));
+    harness.state_mut().session.wait(LONG);
+    harness.run_steps(3);
+    let (words, place, _) = painted(&harness).into_iter().find(|text| text.0.contains("no stops")).unwrap();
+    let settled = harness.state().session.settled_now().unwrap().rms_velocity.unwrap();
+    let value = format!("now: no stops, RMS velocity {:.0} mm/s", 1e3 * settled);
+    assert!(words.starts_with(&value) && words.contains("it crosses from about 1.1"), "{words}");
+    // it hides no line of the map
+    let frame = harness.get_by_role_and_label(Role::Image, "map").rect();
+    let chart = map(harness.state()).chart(&RMS_VELOCITY, &View::Cuts(Vec::new())).unwrap();
+    let panel = chart.panels().next().unwrap();
+    let share = |axis: &PlotAxis, value: f64| ((value - axis.low) / (axis.high - axis.low)) as f32;
+    let lines = panel.layers.iter().filter_map(|layer| match &layer.marks {
+        Marks::Path(points) => Some(points.iter()),
+        _ => None,
+    });
+    let at = lines.flatten().map(|(x, y)| vec2(share(&panel.x, *x), 1.0 - share(&panel.y, *y)));
+    let at: Vec<Pos2> = at.map(|share| frame.min + share * frame.size()).collect();
+    assert!(at.len() > 20 && frame.contains_rect(place), "{frame:?} {place:?}");
+    assert!(at.iter().all(|at| !place.contains(*at)), "{place:?}");
+}
+
 /// A click, after which some frames pass.
 fn click(harness: &mut Harness<'static, Window>, at: Pos2) {
     harness.drag_at(at);

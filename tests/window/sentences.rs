@@ -55,6 +55,11 @@ fn shaken() {
         "{text}"
     );
     assert!(text.contains("g short of crossing at 0.9"), "{text}");
+    // an impact for every bounce, which a chatter has many of
+    let (_, impacts) = text.split_once(" and fall back in ").unwrap();
+    let impacts: f64 = impacts.split_once(" impacts, never crossing;").unwrap().0.parse().unwrap();
+    let hop = session("first-look", &[&stops(1.95)]).settled_now().copied().unwrap();
+    assert_eq!(impacts, (hop.impacts as f64 / hop.releases as f64).round());
 
     let (kind, text) = of("duffing", &[]);
     assert!(

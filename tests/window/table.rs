@@ -90,7 +90,7 @@ fn one_threshold_on_all_surfaces() {
     session.wait(LONG);
     harness.run_steps(3);
     alone(&mut harness, View::Compare);
-    assert_eq!(named(&rows(&harness, View::Compare), "crosses from")[2..], ["0.718", "0.718"]);
+    assert_eq!(named(&rows(&harness, View::Compare), "crosses from")[2..], ["0.718", "0.718", "(same)"]);
     let session = &mut harness.state_mut().session;
     session.set_number("stops.travel_limit_mm", 1.0).unwrap();
     session.end_gesture();

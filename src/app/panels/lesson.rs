@@ -28,7 +28,7 @@ const LONGEST_RESULT: &str = "Answer: B. You chose C.\n";
 const SHORT_RESULT: &str = "Answer: B. ";
 const DOT: f32 = 4.5;
 const DOT_SPACING: f32 = 15.0;
-const LEAST_SPACING: f32 = 12.0;
+const LEAST_SPACING: f32 = 9.0;
 /// Greatest number of characters of the reason that a student gives.
 const MAX_REASON: usize = 60;
 const MEANING: f32 = 320.0;

@@ -219,6 +219,16 @@ fn icon_place(button: Rect) -> Rect {
     Rect::from_center_size(button.center(), Vec2::splat(0.48 * button.height()))
 }
 
+/// One of several choices side by side, with an outline whether or not it is chosen.
+pub fn segment_ui<T: PartialEq>(ui: &mut Ui, value: &mut T, choice: T, name: &str) -> Response {
+    let is_chosen = *value == choice;
+    let button = ui.add(egui::Button::selectable(is_chosen, name).frame_when_inactive(true));
+    if button.clicked() {
+        *value = choice;
+    }
+    button
+}
+
 /// The button of the primary action, which is filled.
 pub fn primary(ui: &Ui, text: &str) -> egui::Button<'static> {
     let style = Style::of(ui.ctx(), false);

@@ -11,9 +11,6 @@ use crate::scene::Stops;
 use super::table::{Column, table_ui};
 use super::{ViewContext, empty_ui, page_ui};
 
-/// Width in points of a column whose heading has room for both buttons with all their words.
-const ROOM_FOR_BUTTONS: f32 = 150.0;
-
 enum PinAction {
     TakeBack(char),
     Unpin(char),
@@ -103,16 +100,16 @@ fn pinned_ui(ui: &mut Ui, context: &ViewContext<'_>) -> Option<PinAction> {
     let now = Column { card: Some(context.session.now_card()), ended: None, differs: false };
     let columns: Vec<Column> = std::iter::once(now).chain(pins.iter().map(pinned)).collect();
     let mut action = None;
-    table_ui(ui, context, (&columns, 0), &mut |ui, column, width| match column {
+    table_ui(ui, context, (&columns, 0), &mut |ui, column, _| match column {
         None => {}
         Some(0) => _ = ui.label(RichText::new("now").heading()),
-        Some(i) => action = action.take().or(heading_ui(ui, context, &pins[i - 1], width)),
+        Some(i) => action = action.take().or(heading_ui(ui, context, &pins[i - 1])),
     });
     action
 }
 
 /// Name of a pin and the buttons that act on it. Returns the action clicked.
-fn heading_ui(ui: &mut Ui, context: &ViewContext<'_>, pin: &Pin, width: f32) -> Option<PinAction> {
+fn heading_ui(ui: &mut Ui, context: &ViewContext<'_>, pin: &Pin) -> Option<PinAction> {
     let (letter, mut action) = (pin.letter, None);
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
@@ -128,7 +125,7 @@ fn heading_ui(ui: &mut Ui, context: &ViewContext<'_>, pin: &Pin, width: f32) -> 
         let hover = "The scene as it is in this pin: one step that can be undone. The motion goes on from \
                      where it is.";
         let other = pin.scene != *context.session.scene();
-        let text = RichText::new(if width < ROOM_FOR_BUTTONS { "Back" } else { "Take back" }).small();
+        let text = RichText::new("Back").small();
         let back = ui.add_enabled(other, Button::new(text).small().wrap_mode(Extend));
         let spoken = format!("Take {letter} back");
         back.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, other, &spoken));

@@ -2,7 +2,7 @@
 
 use eframe::egui::{self, Rect, Ui, UiBuilder, vec2};
 
-use crate::app::ui::widgets::tell;
+use crate::app::ui::widgets::{segment_ui, tell};
 use crate::output::{Ranges, SpectrumQuantity, spectrum_chart};
 use interwell_studies::study::Signal;
 
@@ -26,7 +26,7 @@ pub fn spectrum_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         ui.horizontal_centered(|ui| {
             ui.add_space(8.0);
             for (signal, name) in SIGNALS {
-                ui.selectable_value(&mut context.session.explore.spectra.signal, signal, name);
+                segment_ui(ui, &mut context.session.explore.spectra.signal, signal, name);
             }
         });
     });

@@ -332,7 +332,17 @@ fn number_rows(columns: &[Column], now: usize, with_threshold: bool) -> Vec<Row>
         };
         let texts = columns.iter().zip(&all);
         let texts = texts.map(|(column, found)| found.as_ref().map_or_else(|| unknown(column), text));
-        rows.push(Row::new(CROSSES, unit, texts.collect()));
+        let mut row = Row::new(CROSSES, unit, texts.collect());
+        // where both are known in this unit, with the digits of the one that has fewer
+        let numbers: Vec<&str> = row.texts.iter().map(|text| text.trim_start_matches("about ")).collect();
+        let decimals = |text: &str| text.split_once('.').map_or(0, |(_, decimals)| decimals.len());
+        let apart = |i: usize| {
+            let (there, here) = (numbers[i].parse().ok()?, numbers[now].parse().ok()?);
+            let decimals = decimals(numbers[i]).min(decimals(numbers[now]));
+            columns[i].differs.then(|| difference(there, here, &|_| decimals))
+        };
+        row.apart = (0..columns.len()).map(apart).collect();
+        rows.push(row);
     }
     rows
 }

@@ -5,7 +5,7 @@ use eframe::egui::{self, Align2, Rect, RichText, Ui, UiBuilder, vec2};
 use crate::app::session::Session;
 use crate::app::session::explore::WalkQuantity;
 use crate::app::session::map::label;
-use crate::app::ui::widgets::{choices_ui, tell};
+use crate::app::ui::widgets::{choices_ui, segment_ui, tell};
 use crate::app::words::fields::name_and_unit;
 use crate::app::words::numbers::{power, three};
 use crate::dynamics::Regime;
@@ -71,17 +71,18 @@ fn tools_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axis: &SweepAxis) {
             (WalkQuantity::LoadPower, "Power", of_load),
         ];
         let choices = &choices[..if has_load { 3 } else { 2 }];
-        let list_ui = |ui: &mut Ui, quantity: &mut WalkQuantity| {
-            for (value, name, hover) in choices {
-                ui.selectable_value(quantity, *value, *name).on_hover_text(*hover);
-            }
-        };
         if ui.available_width() < CHOICE * choices.len() as f32 + BESIDE_CHOICES {
             let chosen = choices.iter().find(|choice| choice.0 == *quantity).map_or("", |choice| choice.1);
             let list = egui::ComboBox::from_id_salt("quantity of the walk").selected_text(chosen);
-            list.show_ui(ui, |ui| list_ui(ui, quantity));
+            list.show_ui(ui, |ui| {
+                for (value, name, hover) in choices {
+                    ui.selectable_value(quantity, *value, *name).on_hover_text(*hover);
+                }
+            });
         } else {
-            list_ui(ui, quantity);
+            for (value, name, hover) in choices {
+                segment_ui(ui, quantity, *value, name).on_hover_text(*hover);
+            }
         }
         ui.label("over");
         if let Some(path) = field_ui(ui, axis, "over", &known) {

@@ -313,7 +313,7 @@ fn landmarks(
 /// that the mass reaches, with a margin, and with room for names at the bottom.
 fn energy_ends(ui: &Ui, context: &mut ViewContext<'_>, height: f32) -> (f64, f64) {
     let model = context.drawn.model(context.session);
-    let room = room_for_push(model.largest_base_acceleration());
+    let room = room_for_push(model.largest_base_acceleration().max(context.memory.push_of_lesson));
     let curve = &model.mechanism().curve;
     let landscape = &model.mechanism().landscape;
     let tilt = if model.is_shaken() { model.mass() * room } else { 0.0 };

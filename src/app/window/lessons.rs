@@ -234,6 +234,7 @@ impl Window {
         let answer = lesson.and_then(OpenLesson::covered_answer).map(|scene| scene.stops.positions_mm());
         self.memory.asked_stops = answer.filter(|answer| *answer != present).unwrap_or_default();
         self.memory.starts = lesson.map(OpenLesson::starts).unwrap_or_default();
+        self.memory.push_of_lesson = lesson.map_or(0.0, OpenLesson::largest_push);
     }
 
     pub(super) fn act_in_lesson(&mut self, act: LessonAction) {

@@ -14,6 +14,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::app::task::{Background, Uncompared, Wake};
 use crate::app::words::lesson::bold_words;
+use crate::dynamics::STANDARD_GRAVITY;
 use crate::scene::lesson::{Choice, Condition, LESSONS, Lesson, LessonDocument, Step};
 use crate::scene::{Document, Scene, Source, Start, arguments};
 use interwell_studies::study::Lack;
@@ -438,6 +439,15 @@ impl OpenLesson {
             votes.resize(count, 0);
             votes[option] = votes[option].saturating_add_signed(more).min(MOST_VOTES);
         }
+    }
+
+    /// The largest acceleration of the base in m/s^2 in the scenes of all steps under a harmonic drive.
+    pub fn largest_push(&self) -> f64 {
+        let scenes = (0..self.lesson().steps.len()).flat_map(|step| {
+            let document = &self.document;
+            [document.begin(step), document.end(step)].map(|document| document.scene.harmonic())
+        });
+        scenes.flatten().map(|drive| drive.amplitude_g().abs() * STANDARD_GRAVITY).fold(0.0, f64::max)
     }
 
     /// The solution of a task, as pairs of field and value.

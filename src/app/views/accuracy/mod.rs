@@ -7,6 +7,8 @@ mod steps;
 
 use eframe::egui::{Rect, RichText, Ui, UiBuilder, vec2};
 
+use crate::app::ui::widgets::segment_ui;
+
 use super::{ViewContext, empty_ui};
 
 /// Width and height in points from which on both parts are shown.
@@ -38,7 +40,7 @@ pub fn accuracy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     ui.scope_builder(UiBuilder::new().max_rect(area), |ui| {
         ui.horizontal(|ui| {
             for digits in [false, true] {
-                ui.selectable_value(&mut context.memory.shows_digits, digits, name(digits));
+                segment_ui(ui, &mut context.memory.shows_digits, digits, name(digits));
             }
         });
     });

@@ -5,7 +5,7 @@ use eframe::egui::{self, ComboBox, Rect, RichText, Ui, UiBuilder};
 use crate::app::panels::controls;
 use crate::app::session::map::{Mapping, start};
 use crate::app::ui::knob::refuse;
-use crate::app::ui::widgets::{choices_ui, tell};
+use crate::app::ui::widgets::{choices_ui, segment_ui, tell};
 use crate::app::words::columns::{COLUMNS, title};
 use crate::output::words_of;
 use crate::scene::{Start, SweepAxis};
@@ -129,14 +129,14 @@ fn quantity_ui(ui: &mut Ui, mapping: &mut Mapping) {
 
 /// Choice between the map from above and the surface, and of cuts.
 fn look_ui(ui: &mut Ui, look: &mut MapLook, quantity: &SummaryField) {
-    ui.selectable_value(&mut look.surface, false, "Flat")
+    segment_ui(ui, &mut look.surface, false, "Flat")
         .on_hover_text("Each run is a cell, and its colour the quantity.");
     let surface = if words_of(quantity.name).is_some() {
         "Words have no height: they are seen from above."
     } else {
         "The same as a surface: height and colour are the quantity."
     };
-    ui.selectable_value(&mut look.surface, true, "Surface").on_hover_text(surface);
+    segment_ui(ui, &mut look.surface, true, "Surface").on_hover_text(surface);
     ui.checkbox(&mut look.cuts, "Cuts").on_hover_text(
         "Lines through the map where the scene is, beside it: the quantity over one axis at this value of \
          the other, with regimes, release and first crossing.",
