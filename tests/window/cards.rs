@@ -46,6 +46,22 @@ fn text(harness: &Harness<'static, Window>, words: &str) -> Rect {
 }
 
 #[test]
+fn nothing_beside_the_mechanism_comes_and_goes_with_a_number() {
+    for preset in ["first-look", "paper", "harvester", "uneven-stops"] {
+        for size in [WIDE, PROJECTED, [1024.0, 700.0]] {
+            let mut harness = window(preset, size);
+            let mut seen = Vec::new();
+            for _ in 0..40 {
+                harness.run_steps(1);
+                seen.push(is_painted(&harness, "base: ±"));
+            }
+            seen.dedup();
+            assert_eq!(seen.len(), 1, "{preset} {size:?}");
+        }
+    }
+}
+
+#[test]
 fn a_reading_goes_while_the_pointer_rests_and_comes_back_with_it() {
     let mut harness = window("first-look", WIDE);
     harness.run_steps(10);
@@ -58,7 +74,7 @@ fn a_reading_goes_while_the_pointer_rests_and_comes_back_with_it() {
         harness.hover_at(place.center() + vec2(i as f32, 0.0));
         harness.run_steps(2);
         assert!(is_read(&harness));
-        let until = harness.ctx.input(|input| input.time) + 8.5;
+        let until = harness.ctx.input(|input| input.time) + 5.5;
         while harness.ctx.input(|input| input.time) < until {
             harness.run_steps(1);
         }

@@ -58,6 +58,23 @@ fn dots_and_the_scale_of_the_well_stay_from_step_to_step() {
 }
 
 #[test]
+fn the_energy_of_a_flick_is_seen_but_not_that_of_the_flick_before_a_question() {
+    let mut harness = opened("01-two-wells-and-a-hill", WIDE);
+    assert!(is_painted(&harness, "energy of the mass"));
+    assert!(go_to(&mut harness, |step| matches!(step, Step::Predict { .. })));
+    assert!(!is_painted(&harness, "energy of the mass"));
+    press(&mut harness, Key::B);
+    harness.state_mut().session.player.set_playing(false);
+    harness.run_steps(40);
+    // at the start it has the most, 1.47 mJ, within the axis
+    assert!(harness.state().session.player.watch().time() < 0.05);
+    let place = harness.state().tiling.place_of(View::Well).unwrap();
+    let texts = painted(&harness).into_iter().filter(|text| place.contains(text.1.center()));
+    let highest = texts.filter_map(|text| text.0.parse::<f64>().ok()).fold(0.0, f64::max);
+    assert!(is_painted(&harness, "energy of the mass") && highest >= 1.47, "{highest}");
+}
+
+#[test]
 fn twice_the_push_is_drawn_twice_as_steep() {
     let mut harness = opened("02-shake-it-over", WIDE);
     let ticks = |harness: &Shown| {

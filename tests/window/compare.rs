@@ -361,3 +361,26 @@ fn a_pin_has_its_letter_at_its_end_and_lies_under_the_motion() {
     let mass = shapes.iter().rposition(|clipped| is_box(&clipped.shape)).unwrap();
     assert!(letter < mass, "{letter} {mass}");
 }
+
+#[test]
+fn the_well_has_room_for_a_pinned_motion_that_is_pushed_harder() {
+    let mut harness = window("paper", WIDE);
+    let ticks = |harness: &Harness<'static, Window>| {
+        let place = harness.state().tiling.place_of(View::Well).unwrap();
+        let texts = painted(harness).into_iter().filter(|text| place.contains(text.1.center()));
+        let mut ticks: Vec<String> = texts
+            .map(|text| text.0.replace('\u{2212}', "-"))
+            .filter(|text| text.parse::<f64>().is_ok())
+            .collect();
+        ticks.sort();
+        ticks
+    };
+    press(&mut harness, Key::K);
+    harness.run_steps(20);
+    let before = ticks(&harness);
+    let session = &mut harness.state_mut().session;
+    session.set_number("excitation.amplitude_g", 0.3).unwrap();
+    session.end_gesture();
+    harness.run_steps(40);
+    assert_eq!(ticks(&harness), before);
+}

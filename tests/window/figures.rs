@@ -26,6 +26,19 @@ fn open(harness: &mut Harness<'static, Window>, view: View, path: &Path) {
 }
 
 #[test]
+fn a_figure_is_of_a_view_that_is_seen() {
+    let mut harness = window("paper", WIDE);
+    let place = harness.state().tiling.place_of(View::Displacement).unwrap();
+    harness.hover_at(place.center());
+    harness.run_steps(2);
+    command(&mut harness, Command::Arrange(Layout::Map));
+    harness.run_steps(2);
+    command(&mut harness, Command::Figure(None));
+    let path = &harness.state().figures.path;
+    assert!(path.ends_with("paper-map.pdf") || path.ends_with("paper-well.pdf"), "{path}");
+}
+
+#[test]
 fn a_figure_has_the_size_of_a_column_or_of_a_slide() {
     let mut harness = window("first-look", WIDE);
     let folder = tempfile::tempdir().unwrap();

@@ -77,7 +77,8 @@ fn shaken() {
     // nobody has seen it yet
     let (kind, text) = of("random-shaking", &[]);
     assert!(
-        kind == Kind::Crossing && text.starts_with("Crossing: will do so 85 times from 0 s to 60 s; RMS"),
+        kind == Kind::Crossing
+            && text.starts_with("Crossing: will pass the barrier 85 times from 0 s to 60 s; RMS"),
         "{text}"
     );
 

@@ -122,8 +122,11 @@ fn clock_ui(ui: &mut Ui, session: &Session) {
 
 fn speed_ui(ui: &mut Ui, session: &mut Session) {
     let speed = session.player.speed;
-    let name =
-        SPEEDS.iter().find(|row| row.0 == speed).map_or_else(|| format!("{speed}"), |row| row.1.to_owned());
+    let other = || match 1.0 / speed {
+        parts if parts > 1.0 && (parts - parts.round()).abs() < 1e-9 * parts => format!("1/{parts:.0}"),
+        _ => format!("{speed}"),
+    };
+    let name = SPEEDS.iter().find(|row| row.0 == speed).map_or_else(other, |row| row.1.to_owned());
     let combo = ComboBox::from_id_salt("speed").width(96.0).selected_text(name).show_ui(ui, |ui| {
         for (key, (value, name)) in (1..).zip(SPEEDS) {
             ui.selectable_value(&mut session.player.speed, value, format!("{name}  ({key})"));

@@ -140,7 +140,8 @@ impl Knob<'_> {
         let present = *value;
         let editing = ui.memory(|memory| memory.has_focus(ui.next_auto_id()));
         let write = |number: f64| match editing {
-            true => exact(number, decimals),
+            // no wider than before
+            true => shown(number, decimals),
             false => with_minus(&shown(number, decimals)),
         };
         let entered = RefCell::new(None);

@@ -56,7 +56,7 @@ fn plane_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         Some(Err(problem)) => empty_ui(ui, &style, frame, &sentence(problem)),
         None => empty_ui(ui, &style, frame, "The basins are being computed, first a coarse picture."),
     }
-    stops_ui(ui, context, frame, (frame.top(), frame.bottom()), 0.0);
+    stops_ui(ui, context, frame, (frame.top(), frame.bottom()), (0.0, false));
     if let Some(Ok(level)) = &level {
         // over the stops, at which a mass may rest
         let states = level.chart.panels().flat_map(|panel| &panel.layers);

@@ -62,7 +62,7 @@ pub fn force_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     });
     let Some(frame) = pane.frame(0) else { return };
     axes_input(ui, context.memory, View::ForceCurve, &pane.response, (area, frame));
-    stops_ui(ui, context, frame, (frame.top(), frame.bottom()), 0.0);
+    stops_ui(ui, context, frame, (frame.top(), frame.bottom()), (0.0, false));
     let painter = ui.painter().with_clip_rect(frame);
     let curve = &model.mechanism().curve;
     let state = context.session.player.state();

@@ -99,7 +99,7 @@ fn drawing_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect) {
     // over the pinned ones
     let edge = Stroke::new(1.5, style.mass_edge());
     painter.rect(body, 3.0, style.mass(), edge, egui::StrokeKind::Inside);
-    stops_ui(ui, context, rect, heights, 0.5 * body.width());
+    stops_ui(ui, context, rect, heights, (0.5 * body.width(), false));
     if let Some(x) = asked {
         let at = pos2(context.span.screen_from_world(x, rect), body.center().y);
         painter.extend(dashed(&edges(Rect::from_center_size(at, body.size())), 0, edge));
@@ -187,7 +187,11 @@ impl Caption {
             all.push((BEST_STOPS.to_owned(), style.faint(), 4));
         }
         let sample = |text: &str| if text == BEST_STOPS { SAMPLE + 5.0 } else { 0.0 };
-        let width = |text: &str| painter.layout_no_wrap(text.to_owned(), style.small(), style.ink()).size().x;
+        // as wide with any digits, so that nothing comes and goes with a number
+        let width = |text: &str| {
+            let text = text.replace(|c: char| c.is_ascii_digit(), "0");
+            painter.layout_no_wrap(text, style.small(), style.ink()).size().x
+        };
         let needed =
             |all: &[Entry]| all.iter().map(|text| width(&text.0) + sample(&text.0) + 14.0).sum::<f32>();
         let row = LegendRow::of(ui, *rect);
@@ -212,7 +216,7 @@ impl Caption {
             at.x += sample(&text);
             let place = painter.text(at, Align2::LEFT_CENTER, &text, style.small(), color);
             explain(ui, place, &text);
-            at.x = place.right() + 14.0;
+            at.x += width(&text) + 14.0;
         }
         if has_inset {
             self.inset(ui, context, rect.with_min_x(at.x).with_max_x(row.right), base_accel);

@@ -90,7 +90,7 @@ pub fn states_ui(ui: &mut Ui, context: &mut ViewContext<'_>, is_section: bool) {
     });
     tell(&pane.response, egui::Role::Canvas, "states of the mass");
     let Some(frame) = pane.frame(0) else { return };
-    stops_ui(ui, context, frame, (frame.top(), frame.bottom()), 0.0);
+    stops_ui(ui, context, frame, (frame.top(), frame.bottom()), (0.0, false));
     let mut layers = Vec::new();
     if !points_only {
         ghost_trails(&mut layers, context, &pane);

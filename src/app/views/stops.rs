@@ -140,15 +140,16 @@ pub(super) fn asked_place(context: &ViewContext<'_>, x: f64) -> Option<f64> {
 }
 
 /// Draws the stops over `rect` between the heights `top` and `bottom`, and lets them be dragged. The face of
-/// a stop is drawn `radius` points, the half width of the mass, outside its travel limit.
+/// a stop is drawn `radius` points, the half width of the mass, outside its travel limit. A stop that is
+/// dragged has its number, unless the view writes travel limits itself.
 pub fn stops_ui(
     ui: &mut Ui,
     context: &mut ViewContext<'_>,
     rect: Rect,
     (top, bottom): (f32, f32),
-    radius: f32,
+    (radius, has_limits): (f32, bool),
 ) {
-    walls_ui(ui, context, rect, (top, bottom), radius);
+    walls_ui(ui, context, rect, (top, bottom), (radius, has_limits));
     // over the walls, so that an edge behind a wall is seen
     for (mm, side, stroke) in outlined(context) {
         let x = context.span.screen_from_world(mm / 1e3, rect) + side * radius;
@@ -158,7 +159,13 @@ pub fn stops_ui(
     }
 }
 
-fn walls_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect, (top, bottom): (f32, f32), radius: f32) {
+fn walls_ui(
+    ui: &mut Ui,
+    context: &mut ViewContext<'_>,
+    rect: Rect,
+    (top, bottom): (f32, f32),
+    (radius, has_limits): (f32, bool),
+) {
     let (stops, movable) = shown_stops(context.session, context.drawn);
     let step = key_step(context.session);
     let fine = FINE * step;
@@ -216,10 +223,12 @@ fn walls_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect, (top, bottom
             // 0.01 mm for the prototype, which is finer than a hand
             let distance = decimal((f64::from(side) * place / fine).round() * fine).max(nearest) + 0.0;
             context.session.edit(|scene| scene.stops.set_limit(side > 0.0, distance));
-            let text = format!("{} mm", limit_number(context.session, distance));
-            let align = if side > 0.0 { Align2::LEFT_TOP } else { Align2::RIGHT_TOP };
-            let at = pos2(x + side * (WALL + 5.0), top);
-            painter.text(at, align, text, style.body(), style.ink());
+            if !has_limits {
+                let text = format!("{} mm", limit_number(context.session, distance));
+                let align = if side > 0.0 { Align2::LEFT_TOP } else { Align2::RIGHT_TOP };
+                let at = pos2(x + side * (WALL + 5.0), top);
+                painter.text(at, align, text, style.body(), style.ink());
+            }
         }
         if response.has_focus() && !response.dragged() {
             let stroke = context.style.focus_stroke();

@@ -26,7 +26,7 @@ use super::{View, ViewContext};
 const PERIODS: f64 = 6.0;
 /// Number of characteristic times of the motion shown, if the shaking has no period, and if nothing shakes
 /// the mass, which is seen to come to rest.
-const SWINGS: (f64, f64) = (8.0, 24.0);
+const SWINGS: (f64, f64) = (8.0, 12.0);
 /// Largest number of natural times of the mechanism shown; more swings cannot be told apart.
 const MAX_SWINGS: f64 = 200.0;
 
@@ -160,12 +160,6 @@ pub fn trace_ui(ui: &mut Ui, quantity: TraceQuantity, context: &mut ViewContext<
         }
     }
     let pass = ui.ctx().cumulative_pass_nr();
-    let cursor = context.memory.timeline.cursor.filter(|cursor| cursor.1 + 1 >= pass);
-    if let Some(at) = cursor.and_then(|cursor| pane.place(0, (cursor.0, low))) {
-        let line = [pos2(at.x, frame.top()), pos2(at.x, frame.bottom())];
-        painter.with_clip_rect(frame).extend(Shape::dashed_line(&line, style.ghost_stroke(), 4.0, 3.0));
-    }
-    cursors_ui(ui, context, &pane.response, (frame, (from, to)), name);
     let pointer = pane.hovered().and_then(|at| pane.values_at(0, at));
     if let Some((t, _)) = pointer {
         let watch = context.session.player.watch();
@@ -174,6 +168,12 @@ pub fn trace_ui(ui: &mut Ui, quantity: TraceQuantity, context: &mut ViewContext<
         pane.reading(ui, &style, 0.0, &format!("{value:.digits$} {unit} at {t:.3} s"));
         context.memory.timeline.cursor = Some((t, pass));
     }
+    let cursor = context.memory.timeline.cursor.filter(|cursor| cursor.1 + 1 >= pass);
+    if let Some(at) = cursor.and_then(|cursor| pane.place(0, (cursor.0, low))) {
+        let line = [pos2(at.x, frame.top()), pos2(at.x, frame.bottom())];
+        painter.with_clip_rect(frame).extend(Shape::dashed_line(&line, style.ghost_stroke(), 4.0, 3.0));
+    }
+    cursors_ui(ui, context, &pane.response, (frame, (from, to)), name);
 }
 
 /// The picture from `from` to `to` in s over this vertical axis.

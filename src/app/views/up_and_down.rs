@@ -187,10 +187,15 @@ fn chart(
         };
         let marks = match shown.0 {
             WalkQuantity::Strobes => Marks::Cloud(branch.iter().flat_map(strobed).collect()),
-            _ => Marks::Path(fine[i].iter().map(of_visit).collect()),
+            // a jump to another kind of motion is a gap
+            _ => {
+                let runs = fine[i].chunk_by(|a, b| (a.summary.crossings > 0) == (b.summary.crossings > 0));
+                let lines = runs.map(|run| run.iter().map(of_visit).chain([(f64::NAN, f64::NAN)]));
+                Marks::Path(lines.flatten().collect())
+            }
         };
         panel.layer(role, name, marks);
-        if shown.0 != WalkQuantity::Strobes && fine[i].len() < branch.len() {
+        if shown.0 != WalkQuantity::Strobes {
             panel.draw(role, Marks::Cloud(branch.iter().map(of_visit).collect()));
         }
     }
@@ -375,6 +380,29 @@ mod tests {
         let compared: Vec<(f64, bool)> = (0_u8..).map(f64::from).zip(flags).collect();
         assert_eq!(differing(&compared), [(3.0, 5.0)]);
         assert_eq!(differing(&compared[..3]), []);
+    }
+
+    #[test]
+    fn a_jump_is_a_gap_in_the_line() {
+        let simulation = |amplitude: f64| {
+            let mut document = crate::scene::Document::load("paper").unwrap();
+            document.set(&format!("excitation.amplitude_g={amplitude}")).unwrap();
+            let summary = Simulation::new(&document).unwrap().run(&Request::default()).summary;
+            Visit { direction: Direction::Up, value: amplitude, summary, strobes: Vec::new() }
+        };
+        let visits = [0.5, 0.6, 0.9, 1.0].map(simulation);
+        let branches: Branches<'_> = [visits.iter().collect(), Vec::new()];
+        let axis = || PlotAxis::between(0.0, 1.0, "");
+        let shown = (WalkQuantity::RmsVelocity, 1.0);
+        let chart = chart((&branches, &branches), shown, (axis(), axis()), None);
+        let layers = chart.panels().flat_map(|panel| &panel.layers);
+        let paths = layers.filter_map(|layer| match &layer.marks {
+            Marks::Path(points) if !points.is_empty() => Some(points.iter().map(|at| at.0).collect()),
+            _ => None,
+        });
+        let [line]: [Vec<f64>; 1] = paths.collect::<Vec<_>>().try_into().unwrap();
+        assert_eq!([&line[..2], &line[3..5]], [&[0.5, 0.6], &[0.9, 1.0]]);
+        assert!(line[2].is_nan() && line[5].is_nan() && line.len() == 6);
     }
 
     #[test]

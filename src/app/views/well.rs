@@ -17,6 +17,7 @@ use crate::mechanics::Barrier;
 use crate::output::{
     Chart, DISPLACEMENT, Layer, Marks, PlotAxis, Role, TippedPotential, axis_name, suited_unit, well_panel,
 };
+use crate::scene::Start;
 use interwell_studies::study::Table;
 
 use super::ghosts::{Ghost, PINNED, circle, dashed, ghosts};
@@ -29,7 +30,7 @@ use super::stops::{
     BEST_STOPS, WALL, asked_place, best_stops, outlined, sides, stops_ui, travel_limits, wall,
 };
 use super::view::Axis;
-use super::{Span, View, ViewContext};
+use super::{Cover, Span, View, ViewContext};
 
 /// Distance in points between two samples of what the curve sweeps over.
 const STEP: f32 = 2.0;
@@ -96,11 +97,14 @@ pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     }
     let mut other: Vec<Role> = all.iter().map(|ghost| Role::Pin(ghost.place)).collect();
     other.extend(best_stops(context).map(|_| Role::BestStop));
-    let key = (Identity(Arc::clone(&model)), [span.low, span.high, low, high], other.clone(), style);
+    // while a question is asked it would be that of the motion before
+    let has_energy = !model.is_shaken() && context.cover != Cover::Future;
+    let key =
+        (Identity(Arc::clone(&model)), [span.low, span.high, low, high], other.clone(), style, has_energy);
     let pane = kept_pane_ui(ui, &style, Place::in_line(ui, area, Sense::DRAG, (0.0, 0.0)), key, || {
         let across = PlotAxis::between(span.low * 1e3, span.high * 1e3, DISPLACEMENT);
         let up = PlotAxis::between(low * per_joule, high * per_joule, &axis_name("energy", unit));
-        still(&level.potential, &model, span, (across, up), &other)
+        still(&level.potential, (&model, has_energy), span, (across, up), &other)
     });
     let Some(frame) = pane.frame(0) else { return };
     axes_input(ui, context.memory, View::Well, &pane.response, (area, frame));
@@ -109,7 +113,7 @@ pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let gap = left.zip(right).map_or(f64::INFINITY, |(left, right)| (right - left) * span.scale(frame));
     let radius = BALL.min((GAP_SHARE * gap) as f32).max(LEAST_BALL);
     layers.extend(tipped.line(points));
-    if !model.is_shaken() {
+    if has_energy {
         let kinetic = model.energies(state.x, state.v).0;
         let energy = tipped.at(state.x * 1e3) + kinetic * per_joule;
         layers.push(Layer::new(Role::Separatrix, "", Marks::Horizontals(vec![energy])));
@@ -129,7 +133,7 @@ pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let mut taken = Taken::default();
     landmarks(&painter, context, (&pane, frame), &level, &mut taken);
     let at = on_curve(state.x, &tipped);
-    stops_ui(ui, context, frame, (frame.top() + 4.0, frame.bottom()), 0.0);
+    stops_ui(ui, context, frame, (frame.top() + 4.0, frame.bottom()), (0.0, true));
     mass_ui(ui, context, at, frame);
     if let Some(x) = asked_place(context, state.x) {
         let edge = Stroke::new(1.5, style.mass_edge());
@@ -170,13 +174,13 @@ pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
 /// also for the `other` motions and stops.
 fn still(
     level: &TippedPotential<'_>,
-    model: &Model,
+    (model, has_energy): (&Model, bool),
     span: Span,
     axes: (PlotAxis, PlotAxis),
     other: &[Role],
 ) -> Chart {
     let mut panel = well_panel(level, (span.low, span.high), axes, model.is_shaken());
-    if !model.is_shaken() {
+    if has_energy {
         panel.layer(Role::Separatrix, "energy of the mass", Marks::Path(Vec::new()));
     }
     for role in other {
@@ -272,7 +276,6 @@ fn landmarks(
         (lines.as_str(), pos2(x + 5.0, foot.y - 4.0), Align2::LEFT_BOTTOM),
         (lines.as_str(), pos2(x - 5.0, foot.y - 4.0), Align2::RIGHT_BOTTOM),
         (lines.as_str(), foot + vec2(0.0, 4.0), Align2::CENTER_TOP),
-        (narrow.as_str(), foot + vec2(0.0, 4.0), Align2::CENTER_TOP),
         (line.as_str(), pos2(x, row), Align2::CENTER_BOTTOM),
         (lines.as_str(), pos2(x, row), Align2::CENTER_BOTTOM),
     ];
@@ -288,7 +291,8 @@ fn landmarks(
         let at = |up: f32| pos2(egui::lerp(rect.x_range(), share), row - up * NAMES);
         [1.0, 3.0, 5.0].map(|up| (lines.as_str(), at(up), Align2::CENTER_BOTTOM))
     });
-    let places = places.into_iter().chain(behind).chain(beside);
+    let narrow = (narrow.as_str(), foot + vec2(0.0, 4.0), Align2::CENTER_TOP);
+    let places = places.into_iter().chain(behind).chain([narrow]).chain(beside);
     // a bracket without its number says nothing
     if let Some(place) = taken.write(painter, rect, look.clone(), places) {
         painter.extend(bracket);
@@ -313,7 +317,10 @@ fn landmarks(
 /// that the mass reaches, with a margin, and with room for names at the bottom.
 fn energy_ends(ui: &Ui, context: &mut ViewContext<'_>, height: f32) -> (f64, f64) {
     let model = context.drawn.model(context.session);
-    let room = room_for_push(model.largest_base_acceleration().max(context.memory.push_of_lesson));
+    let pinned =
+        ghosts(context).iter().map(|ghost| ghost.model.largest_base_acceleration()).fold(0.0, f64::max);
+    let largest = model.largest_base_acceleration().max(pinned).max(context.memory.push_of_lesson);
+    let room = room_for_push(largest);
     let curve = &model.mechanism().curve;
     let landscape = &model.mechanism().landscape;
     let tilt = if model.is_shaken() { model.mass() * room } else { 0.0 };
@@ -337,6 +344,11 @@ fn energy_ends(ui: &Ui, context: &mut ViewContext<'_>, height: f32) -> (f64, f64
             }
             show(0.0, false);
         }
+    }
+    // the energy with which an unshaken mass begins, unless the wells would be too small beside it
+    if let (false, Start::At { x_mm, v_m_per_s, .. }) = (model.is_shaken(), context.session.scene().start) {
+        let (kinetic, potential) = model.energies(x_mm * 1e-3, v_m_per_s);
+        high = high.max((kinetic + potential - zero).min(high + 2.0 * (high - low)));
     }
     if !(high - low > 0.0) {
         (low, high) = (low - 1e-3, low + 1e-3);

@@ -63,8 +63,7 @@ impl Window {
             Command::Save => self.save(ctx),
             Command::Choose(wanted) => self.choose(wanted),
             Command::Figure(view) => {
-                let pointed = self.filled.or(self.memory.hovered);
-                let view = view.or(pointed).unwrap_or_else(|| self.tiling.largest());
+                let view = view.or(self.filled).unwrap_or_else(|| self.pointed_view());
                 self.figures.open(view, &self.session, &self.memory);
             }
             Command::CopyScene => self.copy_scene(ctx),
@@ -119,9 +118,7 @@ impl Window {
             Command::FreeAxes => self.memory.free_axes(self.active_view()),
             Command::Zoom { upwards, closer } => self.memory.zoom_by_key(self.active_view(), upwards, closer),
             Command::Fill => {
-                let shown = |view: &View| self.tiling.place_of(*view).is_some();
-                let wanted = self.memory.hovered.filter(shown).unwrap_or_else(|| self.tiling.largest());
-                self.filled = self.filled.is_none().then_some(wanted);
+                self.filled = self.filled.is_none().then_some(self.pointed_view());
             }
             Command::Cover => self.covered = !self.covered,
             Command::Magnify(1) => gui_zoom::zoom_in(ctx),
@@ -225,6 +222,12 @@ impl Window {
         let is_held = self.memory.hold_axes(view);
         let what = if is_held { "held: L again lets go of them" } else { "by themselves again" };
         self.messages.notify(format!("{}: its axes are {what}", view.name()));
+    }
+
+    /// The view under the pointer, or else the largest one.
+    fn pointed_view(&self) -> View {
+        let shown = |view: &View| self.tiling.place_of(*view).is_some();
+        self.memory.hovered.filter(shown).unwrap_or_else(|| self.tiling.largest())
     }
 
     /// The view that keys act on: it fills the window, is under the pointer or has the focus.

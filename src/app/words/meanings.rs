@@ -172,9 +172,9 @@ pub const GLOSSARY: [&str; 26] = [
 
 /// The terms that are underlined in a text; those with a second meaning are left out.
 #[rustfmt::skip]
-pub const UNDERLINED: [&str; 13] = [
-    "barrier", "basin", "chaotic", "interwell", "intrawell", "period", "phase portrait", "potential",
-    "preload", "release", "restitution", "RMS velocity", "separatrix",
+pub const UNDERLINED: [&str; 14] = [
+    "barrier", "basin", "chaotic", "hysteresis", "interwell", "intrawell", "period", "phase portrait",
+    "potential", "preload", "release", "restitution", "RMS velocity", "separatrix",
 ];
 
 /// The byte ranges of glossary terms in a text, each with its term.

@@ -36,6 +36,9 @@ const UPWARD: usize = 2;
 /// Half the diagonal in points of the mark of the best stops.
 const BEST: f32 = 7.0;
 
+/// Number of places along a side of the map at which the words of that arrow may stand, less one.
+const PLACES: usize = 12;
+
 /// Length in points of the arrow to a scene beyond the map.
 const ARROW: f32 = 7.0;
 
@@ -355,16 +358,29 @@ fn marker(painter: &Painter, pane: &Pane, style: &Style, (place, words): (Place,
         _ => None,
     });
     let mut taken = Taken { lines: lines.collect(), places: Vec::new(), plate: Some(style.ground()) };
-    let room = frame.shrink(4.0);
-    let look = (style.body(), style.ink());
-    let align = match (at.x - room.left()) / room.width() {
-        share if share < 0.35 => Align2::LEFT_CENTER,
-        share if share < 0.65 => Align2::CENTER_CENTER,
-        _ => Align2::RIGHT_CENTER,
+    let (room, look) = (frame.shrink(4.0), (style.body(), style.ink()));
+    let size = painter.layout_no_wrap(words.to_owned(), look.0.clone(), look.1).size();
+    let cells = pane.chart.panels().next().and_then(|panel| panel.cells());
+    let is_at_rest = |at: Pos2| {
+        let cell = pane
+            .values_at(MAP, at)
+            .zip(cells)
+            .and_then(|((x, y), cells)| Some(cells.at(cells.across.cell(x)?, cells.up.cell(y)?)));
+        cell.is_some_and(|cell| matches!(cell, DrawnCell::Rest))
     };
-    // up and down from the arrow
-    let rows = (0..=40).flat_map(|row| [1.0, -1.0].map(|sign| sign * 0.025 * row as f32 * room.height()));
-    let places: Vec<_> = rows.map(|row| (words, room.clamp(at + vec2(0.0, row)), align)).collect();
+    let steps = || (0..=PLACES).map(|step| step as f32 / PLACES as f32);
+    let mut places: Vec<Rect> = steps()
+        .flat_map(|across| steps().map(move |up| vec2(across, up)))
+        .map(|share| Rect::from_min_size(room.min + share * (room.size() - size), size))
+        .collect();
+    // near the arrow, and best where the cells say no more than that the mass rests
+    let hides = |place: &Rect| {
+        let points = steps().map(|share| place.lerp_inside(vec2(share, 0.0)));
+        let points = points.chain(steps().map(|share| place.lerp_inside(vec2(share, 1.0))));
+        points.into_iter().any(|at| !is_at_rest(at))
+    };
+    places.sort_by_cached_key(|place| (hides(place), place.distance_to_pos(at) as u32));
+    let places: Vec<_> = places.iter().map(|place| (words, place.min, Align2::LEFT_TOP)).collect();
     if taken.write(painter, room, look.clone(), places.iter().copied()).is_none() {
         taken.lines.clear();
         taken.write(painter, room, look, places);

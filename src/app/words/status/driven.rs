@@ -270,7 +270,7 @@ fn unrepeated(facts: &DrivenMotion, rms: &str, range: &str, well: &str) -> Sente
         let stays = if seen { "stayed" } else { "will stay" };
         (Kind::Intrawell, format!("Intrawell: {stays} in the {well} {when}, {range}; {rms}."))
     } else {
-        let crosses = if seen { "did so" } else { "will do so" };
+        let crosses = if seen { "passed the barrier" } else { "will pass the barrier" };
         let count = match summary.crossings {
             1 => "once".to_owned(),
             n => format!("{}{n} times", facts.about(to)),
