@@ -140,7 +140,7 @@ impl Knob<'_> {
         let present = *value;
         let editing = ui.memory(|memory| memory.has_focus(ui.next_auto_id()));
         let write = |number: f64| match editing {
-            // no wider than before
+            // as it was shown, so that the field keeps its width
             true => shown(number, decimals),
             false => with_minus(&shown(number, decimals)),
         };

@@ -35,7 +35,7 @@ pub struct Memory {
     pub asked_stops: [Option<f64>; 2],
     /// Starts of which a lesson speaks: displacement in m and velocity in m/s.
     pub starts: Vec<(f64, f64)>,
-    /// The largest acceleration of the base in m/s^2 in all steps of a lesson, in which axes hold.
+    /// The largest acceleration of the base in m/s^2 in the open lesson, for which the Well has room.
     pub push_of_lesson: f64,
     pub timeline: Timeline,
     pub cursors: Cursors,

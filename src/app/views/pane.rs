@@ -38,7 +38,7 @@ pub const LEGEND: f32 = LegendRow::HEIGHT;
 pub const LEGEND_LEFT: f32 = 6.0;
 
 /// Time in s after which what is written at a resting pointer goes.
-pub const LINGER: f32 = 5.0;
+const LINGER: f32 = 5.0;
 
 /// Least radius in points of a dot that can be seen.
 const LEAST_DOT: f32 = 1.5;

@@ -139,14 +139,13 @@ impl Answer {
             let velocity = speed(attractor);
             let differs = |other: &&Attractor| (speed(other) - velocity).abs() > MIN_DIFFERENCE * velocity;
             let mm = |x: f64| format!("{} mm", three(1e3 * x).replace('-', "\u{2212}"));
-            let at_begin = || format!("{kind}, at {} when a period begins", mm(attractor.states[0].0));
             match attractor.mean_x {
                 _ if others.is_empty() => kind,
                 _ if others.iter().all(differs) => format!("{kind}, {} mm/s", three(1e3 * velocity)),
                 Some(mean) if others.iter().all(|other| attractor.has_other_mean(other)) => {
                     format!("{kind}, on average at {}", mm(mean))
                 }
-                _ => at_begin(),
+                _ => format!("{kind}, at {} when a period begins", mm(attractor.states[0].0)),
             }
         };
         self.attractors.iter().map(words).collect()
