@@ -299,7 +299,7 @@ fn fields_below_ui(ui: &mut Ui, session: &mut Session, width: f32) {
 fn restitution_ui(ui: &mut Ui, session: &mut Session, width: f32) {
     let why = match session.scene().stops {
         Stops::Rigid { .. } => return field_ui(ui, session, "stops.restitution", width),
-        Stops::None => "There are no stops to rebound from: switch them on first.",
+        Stops::None => return,
         Stops::Hertz { .. } => {
             "These stops are compliant: a faster impact keeps a smaller share of its speed."
         }

@@ -39,7 +39,7 @@ const BEST: f32 = 7.0;
 /// Number of places along a side of the map at which the words of that arrow may stand, less one.
 const PLACES: usize = 12;
 
-/// Length in points of the arrow to a scene beyond the map.
+/// Half the length in points of the arrow to a scene beyond the map.
 const ARROW: f32 = 7.0;
 
 /// The values of a scene on both axes of a map; `None` for a field that it lacks.
@@ -327,8 +327,8 @@ fn place_in_words(context: &ViewContext<'_>, place: Place, quantity: &SummaryFie
     format!("now: no stops{}{}", value.unwrap_or_default(), crossing.unwrap_or_default())
 }
 
-/// Marks the scene by a ring, or by an arrow outside the edge that it lies beyond, with these words where
-/// they hide no line. Returns the place.
+/// Marks the scene by a ring, or by an arrow across the edge that it lies beyond, with these words where they
+/// hide no line. Returns the place.
 fn marker(painter: &Painter, pane: &Pane, style: &Style, (place, words): (Place, &str)) -> Pos2 {
     let Some(([across, up], frame)) = pane.axes(MAP).zip(pane.frame(MAP)) else { return Pos2::ZERO };
     // no stops count as stops far out
@@ -349,7 +349,7 @@ fn marker(painter: &Painter, pane: &Pane, style: &Style, (place, words): (Place,
         false => (value - axis.low).signum() as f32,
     };
     let direction = vec2(beyond(across, x), -beyond(up, y)).normalized();
-    let (tip, back, side) = (at + direction * ARROW, at + direction, direction.rot90() * ARROW);
+    let (tip, back, side) = (at + direction * ARROW, at - direction * ARROW, direction.rot90() * ARROW);
     let ([halo, line], points) = (style.marker_strokes(), vec![tip, back + side, back - side]);
     painter.add(Shape::convex_polygon(points, line.color, Stroke::new(1.5, halo.color)));
     let lines = pane.chart.panels().next().into_iter().flat_map(|panel| &panel.layers);
