@@ -10,7 +10,6 @@ use std::time::Duration;
 
 use eframe::egui::epaint::Primitive;
 use eframe::egui::{Context, Pos2, RawInput, Rect, vec2};
-use interwell::app::session::pins::PinKind;
 use interwell::app::ui::settings::Settings;
 use interwell::app::views::View;
 use interwell::app::window::Command;
@@ -21,8 +20,8 @@ use interwell::scene::{Excitation, Layout, Mechanism, SweepAxis};
 const FRAMES: usize = 400;
 const SETTLING: usize = 30;
 
-/// Frames that are played after motions are pinned: until their trails are as long as they get.
-const PINNED: usize = 200;
+/// Frames that are played beside the reference: until its trail is as long as it gets.
+const COMPARED: usize = 200;
 
 /// What a frame may take in ms: in the layout that the program opens with, and with every view open.
 const LOOK_MS: f64 = 8.0;
@@ -109,30 +108,22 @@ impl Screen {
         }
     }
 
-    /// Pins three motions that differ, and has them go on for a while; the views that come with them go.
-    fn pin(&mut self, open: Open) {
-        for (kind, amplitude) in [(PinKind::Twin, 1.1), (PinKind::Motion, 1.3), (PinKind::OtherStops, 0.9)] {
-            self.ask(Command::Pin(kind));
-            shake(&mut self.window, amplitude);
-            (0..PINNED / 4).for_each(|_| self.step());
-        }
+    /// Changes the scene, and has the motion go on for a while beside the reference.
+    fn compare(&mut self) {
+        shake(&mut self.window, 1.1);
         self.window.session.end_gesture();
-        self.open(open);
-        (0..PINNED).for_each(|_| self.step());
+        (0..COMPARED).for_each(|_| self.step());
         self.window.session.wait(LONG);
         self.fill_explored();
-        assert_eq!(self.window.session.pins.all().len(), 3);
+        assert!(self.window.session.reference.apart().is_some());
     }
 
     fn open(&mut self, open: Open) {
         match open {
             Open::Layout(layout) => self.ask(Command::Arrange(layout)),
             Open::All => {
-                // beside others, the view Side by side would be given the whole window
                 self.open(Open::Only(None));
-                let others = View::ALL.into_iter().filter(|view| *view != View::SideBySide);
-                let all = [View::SideBySide].into_iter().chain(others);
-                all.for_each(|view| self.ask(Command::Show(view, true)));
+                View::ALL.into_iter().for_each(|view| self.ask(Command::Show(view, true)));
             }
             Open::Only(only) => {
                 View::ALL.into_iter().for_each(|view| self.ask(Command::Show(view, only == Some(view))));
@@ -212,16 +203,15 @@ fn main() {
         row((SCENES[1].0, &format!("only {}", view.name()), None), &mut screen, |_, _| ());
     }
     for (what, open, allowed) in [
-        ("Study, three pins", Open::Layout(Layout::Study), Some(LOOK_MS)),
-        ("Explore, three pins", Open::Layout(Layout::Explore), Some(LOOK_MS)),
-        ("all views, three pins", Open::All, Some(ALL_MS)),
-        ("only Compare, three pins", Open::Only(Some(View::Compare)), None),
-        ("only Distance, three pins", Open::Only(Some(View::Distance)), None),
-        ("only Displacement, three pins", Open::Only(Some(View::Displacement)), None),
-        ("only Phase portrait, three pins", Open::Only(Some(View::PhasePortrait)), None),
+        ("Study, reference", Open::Layout(Layout::Study), Some(LOOK_MS)),
+        ("Explore, reference", Open::Layout(Layout::Explore), Some(LOOK_MS)),
+        ("all views, reference", Open::All, Some(ALL_MS)),
+        ("only Compare, reference", Open::Only(Some(View::Compare)), None),
+        ("only Displacement, reference", Open::Only(Some(View::Displacement)), None),
+        ("only Phase portrait, reference", Open::Only(Some(View::PhasePortrait)), None),
     ] {
         let mut screen = Screen::new(preset, stops_on, open);
-        screen.pin(open);
+        screen.compare();
         row((SCENES[1].0, what, allowed), &mut screen, |_, _| ());
     }
     let shaken = |window: &mut Window, frame: usize| shake(window, 0.6 + 1e-3 * (frame % 500) as f64);

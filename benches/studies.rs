@@ -12,8 +12,8 @@ use interwell::dynamics::STANDARD_GRAVITY;
 use interwell::system::threads::Pool;
 use interwell_studies::study::{
     Answer, Basins, Branch, BranchEvent, BranchOptions, Carry, Cells, EvenRange, ExponentOptions, Family,
-    Grid, Onset, Orbit, Scan, SectionAt, SectionOptions, Sections, Signal, SpectrumOptions, Starts, Sweep,
-    SweepOptions, Table, Task, branch, check_lesson, exponents, result_fields, spectrum, threshold,
+    Grid, Onset, Orbit, Scan, Searched, SectionAt, SectionOptions, Sections, Signal, SpectrumOptions, Starts,
+    Sweep, SweepOptions, Table, Task, branch, check_lesson, exponents, result_fields, spectrum, threshold,
     threshold_table,
 };
 
@@ -247,7 +247,7 @@ fn threshold_of(pool: &Pool) {
     let never = AtomicBool::new(false);
     let task = Task { tick: &|| (), cancel: &never };
     let cells = Cells::new(&document.scene, &document.files, Grid::of_one());
-    threshold_table(&cells, &scan, Onset::Interwell, pool, &task).unwrap();
+    threshold_table(&cells, &Searched::Scan(scan), Onset::Interwell, pool, &task).unwrap();
 }
 
 fn lessons(pool: &Pool) {

@@ -132,7 +132,7 @@ def escape(
 def threshold(
     scene: Simulation,
     over: _Over,
-    field: str,
+    field: str | None,
     of: str,
     resolution: float | None = None,
     until_settled: float | None = None,
@@ -143,7 +143,7 @@ def threshold(
 def probable_threshold(
     scene: Simulation,
     over: _Over,
-    field: str,
+    field: str | None,
     probability: float,
     runs: int | None = None,
     within: float | None = None,
@@ -151,7 +151,12 @@ def probable_threshold(
     threads: int | None = None,
     progress: _Told = None,
 ) -> Answer: ...
-def orbit(scene: Simulation, period: int | None = None, phase_deg: float = 0.0) -> Answer: ...
+def orbit(
+    scene: Simulation,
+    period: int | None = None,
+    phase_deg: float = 0.0,
+    begin: tuple[float, float, float] | int | None = None,
+) -> Answer: ...
 def branch(
     scene: Simulation,
     field: str,
@@ -162,6 +167,7 @@ def branch(
     period: int | None = None,
     phase_deg: float = 0.0,
     progress: _Told = None,
+    begin: tuple[float, float, float] | int | None = None,
 ) -> Answer: ...
 def locus(
     scene: Simulation,
@@ -175,6 +181,7 @@ def locus(
     period: int | None = None,
     phase_deg: float = 0.0,
     progress: _Told = None,
+    begin: tuple[float, float, float] | int | None = None,
 ) -> Answer: ...
 def spectrum(
     scene: Simulation,
@@ -190,7 +197,6 @@ def basins(
     random: tuple[int, int] | None = None,
     threads: int | None = None,
     progress: _Told = None,
-    checking: _Told = None,
 ) -> tuple[Answer, Answer]: ...
 def compare(
     scene: Simulation,
@@ -209,6 +215,7 @@ def best(
     vary: Sequence[str],
     seed: int,
     until_settled: float | None = None,
+    runs_to: str | None = None,
     threads: int | None = None,
     progress: _Told = None,
 ) -> Answer: ...
@@ -221,7 +228,6 @@ def identify(
     base: Sequence[str | None],
     between: Sequence[float | None],
     impact_times: bool,
-    stops_mm: Sequence[float | None],
     points: int | None = None,
 ) -> tuple[Answer, str, float | None]: ...
 def presets() -> list[tuple[str, str]]: ...

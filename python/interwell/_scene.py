@@ -23,6 +23,18 @@ Progress = Union[bool, Callable[[int, Union[int, None]], None]]
 _TEXTS = ("title", "notes", "path", "field")
 
 
+def _begin(begin: Any) -> Any:
+    """Return the motion that is meant: nothing, the number of its impacts, or its state in three numbers."""
+    if begin is None:
+        return None
+    if np.ndim(begin) == 0:
+        return _whole("begin", begin, 2**63)
+    state = _numbers("begin", begin)
+    if len(state) not in (2, 3):
+        raise _wrong("begin", begin, "give (x_mm, v_m_per_s), with A or V of a circuit as a third number")
+    return (state[0], state[1], state[2] if len(state) == 3 else 0.0)
+
+
 def _value(value: Any) -> str:
     """Return a value as a scene file has it."""
     if hasattr(value, "__array__"):
@@ -702,7 +714,7 @@ class Scene(Mapping[str, Any]):
         seed : int, optional
             Seed of the draws, by default 1.
         threads : int, optional
-            Threads; by default all processors. The answer has the same bits for any number.
+            Threads, at most 1024; by default all processors. The answer has the same bits for any number.
         progress : bool or callable
             Whether to show a bar (by tqdm, where it is installed), or a function that is called some 20 times
             a second with the cells that are done and all cells (None while that is not known).
@@ -719,8 +731,7 @@ class Scene(Mapping[str, Any]):
         ------
         SceneError
             If a field, a column or another argument is wrong, or a cell is no valid scene (the first such
-            cell is named). With ``carry`` also if the drive does not repeat or a transducer has a state of
-            its own.
+            cell is named). With ``carry`` also if the drive does not repeat.
 
         Notes
         -----
@@ -828,8 +839,8 @@ class Scene(Mapping[str, Any]):
 
     def threshold(
         self,
-        field: str = "excitation.amplitude_g",
-        range: tuple[float, float] = (0.0, 2.0),
+        field: str | None = None,
+        range: tuple[float, float] | None = None,
         *,
         of: str = "crossing",
         step: float | None = None,
@@ -847,10 +858,12 @@ class Scene(Mapping[str, Any]):
 
         Parameters
         ----------
-        field : str
-            The field that is searched, by dotted path.
-        range : (float, float)
-            Its first and last value, in the unit of the field that stands in its name.
+        field : str, optional
+            The field that is searched, by dotted path; by default the amplitude of the drive, with
+            ``probability`` the RMS of the noise.
+        range : (float, float), optional
+            Its first and last value, in the unit of the field that stands in its name. An amplitude of the
+            drive needs none: it is searched upward, as by :meth:`compare`; the RMS from 0 to 2 g.
         of : str
             ``"release"`` (the mass leaves the stop it rests on), ``"crossing"`` (the settled motion crosses)
             or ``"interwell"`` (its crossings repeat).
@@ -884,9 +897,10 @@ class Scene(Mapping[str, Any]):
         Table
             The fields of ``over``, ``of``, ``value`` (NaN where none of the range does it), ``low`` and
             ``high`` (the nearest values tried that are known not to do it, and to do it), all three in the
-            unit of the field, ``undecided`` (bool), ``windows`` (how often the answer changes above).
+            unit of the field, ``undecided`` (bool), ``windows`` (how often the answer changes above),
+            ``step`` and ``resolution`` (distance of the steps beside ``value``, and that of the bisection).
             With ``probability``, ``low`` and ``high`` are a 95 % interval, and ``probability``, ``runs`` and
-            ``crossed`` (runs that cross at the end of the range) stand in place of the last two columns.
+            ``crossed`` (runs that cross at the end of the range) stand in place of the last four columns.
 
         Raises
         ------
@@ -912,14 +926,18 @@ class Scene(Mapping[str, Any]):
         True
         """
         axes, _ = _over(over)
-        low, high = _entries("range", range, "(first, last)", 2)
-        if not low < high:
-            raise _wrong("range", _shown(range), "give the lower end first, and a higher one")
-        searched = f"{field}={_value(low)}:{_value(high)}"
+        searched = field
+        if range is not None:
+            low, high = _entries("range", range, "(first, last)", 2)
+            if not low < high:
+                raise _wrong("range", _shown(range), "give the lower end first, and a higher one")
+            searched = f"{field or ''}={_value(low)}:{_value(high)}"
         finest, longest = _real("resolution", resolution), _real("until_settled", until_settled)
         if step is not None:
             if not _number("step", step) > 0:
                 raise _wrong("step", _shown(step), "give a number above 0, in the unit of the field")
+            if searched is None or range is None:
+                raise _wrong("step", _shown(step), "give a `range` too")
             searched += f":{_value(step)}"
         if probability is None:
             _without("leave it out, or give `probability` too", runs=(runs, None), within=(within, None))
@@ -982,8 +1000,8 @@ class Scene(Mapping[str, Any]):
         -----
         Starts that share a release share what follows; others are followed until they enter an ellipse around
         a stable orbit (motions told by their return: Datseris and Wagemakers 2022). Shares of random starts
-        are the basin stability of Menck et al. (2013), with the interval of Wilson (1927). ``sure`` compares
-        with ten times the tolerance.
+        are the basin stability of Menck et al. (2013), with the interval of Wilson (1927). ``sure`` says
+        that a second run at a thousandth of the tolerance stays beside the first one up to the attractor.
 
         Examples
         --------
@@ -997,14 +1015,19 @@ class Scene(Mapping[str, Any]):
             _starts(name, given, random is not None)
             for name, given in [("x_mm", x_mm), ("v_m_per_s", v_m_per_s)]
         )
-        followed, checked = _Told(progress, "starts followed"), _Told(progress, "starts checked")
-        with followed as told, checked as told_again:
+        with _Told(progress, "starts followed") as told:
             starts, attractors = _interwell.basins(
-                self._simulation, starts_x, starts_v, drawn, _count("threads", threads), told, told_again
+                self._simulation, starts_x, starts_v, drawn, _count("threads", threads), told
             )
         return Basins(starts, attractors)
 
-    def orbit(self, period: int | None = None, *, phase_deg: float = 0.0) -> Table:
+    def orbit(
+        self,
+        period: int | None = None,
+        *,
+        phase_deg: float = 0.0,
+        begin: Sequence[float] | int | None = None,
+    ) -> Table:
         """Return the periodic motion near the settled motion of a run, with its multipliers: one row.
 
         Parameters
@@ -1013,6 +1036,10 @@ class Scene(Mapping[str, Any]):
             Forcing periods after which it repeats, 1 to 1000; by default those of the settled motion.
         phase_deg : float
             Phase of the drive in degrees at which the state is taken.
+        begin : sequence of float, or int, optional
+            The motion that is meant in place of that of the run: its displacement in mm and velocity in m/s at
+            the phase, with A or V of a circuit as a third number, or the number of impacts in its period,
+            stable or not.
 
         Returns
         -------
@@ -1040,7 +1067,7 @@ class Scene(Mapping[str, Any]):
         array([1])
         """
         phase = _number("phase_deg", phase_deg)
-        return Table(_interwell.orbit(self._simulation, _count("period", period), phase))
+        return Table(_interwell.orbit(self._simulation, _count("period", period), phase, _begin(begin)))
 
     def branch(
         self,
@@ -1053,6 +1080,7 @@ class Scene(Mapping[str, Any]):
         step: float = 0.01,
         count: int = 5000,
         switch: int = 0,
+        begin: Sequence[float] | int | None = None,
         progress: Progress = False,
     ) -> Table:
         """Follow the periodic motion over a field, through folds; a row for each motion.
@@ -1064,7 +1092,7 @@ class Scene(Mapping[str, Any]):
         start, end : float
             Its value at the first motion, which replaces that of the scene, and that towards which the branch
             goes.
-        period, phase_deg
+        period, phase_deg, begin
             See :meth:`orbit`.
         step : float
             The longest step, as a share of the range and of the scales of the state, 0.0001 to 0.05.
@@ -1107,7 +1135,7 @@ class Scene(Mapping[str, Any]):
         with _Told(progress, "motions") as told:
             answer = _interwell.branch(
                 self._simulation, field, ends, relative, motions, _whole("switch", switch),
-                _count("period", period), _number("phase_deg", phase_deg), told
+                _count("period", period), _number("phase_deg", phase_deg), told, _begin(begin)
             )
         return Table(answer)
 
@@ -1123,6 +1151,7 @@ class Scene(Mapping[str, Any]):
         phase_deg: float = 0.0,
         step: float = 0.01,
         count: int = 5000,
+        begin: Sequence[float] | int | None = None,
         progress: Progress = False,
     ) -> Table:
         """Follow the events of a branch over a second field; a row for each motion.
@@ -1136,7 +1165,7 @@ class Scene(Mapping[str, Any]):
             See :meth:`branch`.
         second, second_range
             The other field, its value on the branch and that towards which the loci go.
-        period, phase_deg, step, count, progress
+        period, phase_deg, step, count, begin, progress
             See :meth:`branch`.
 
         Returns
@@ -1175,7 +1204,7 @@ class Scene(Mapping[str, Any]):
         with _Told(progress, "motions") as told:
             answer = _interwell.locus(
                 self._simulation, event, field, (low, high), second, (left, right), relative, motions,
-                _count("period", period), _number("phase_deg", phase_deg), told
+                _count("period", period), _number("phase_deg", phase_deg), told, _begin(begin)
             )
         return Table(answer)
 
@@ -1379,6 +1408,7 @@ class Scene(Mapping[str, Any]):
         Table
             ``scene`` (its name, with ``(changed)`` where fields were changed), ``release_g``,
             ``crossing_g``, ``crossing_low_g``, ``crossing_high_g``, ``crossing_undecided`` (bool),
+            ``crossing_step_g``, ``crossing_resolution_g`` (all as :meth:`threshold` has them),
             ``rms_velocity_m_per_s``, ``mean_load_power_w``, ``max_abs_x_m``, ``impact_speed_max_m_per_s``,
             ``crosses_from_hz``, ``crosses_to_hz``, ``threshold_sensitivity`` (a share),
             ``most_sensitive_to``. Values are missing where a scene has no such number.
@@ -1391,7 +1421,8 @@ class Scene(Mapping[str, Any]):
 
         Notes
         -----
-        All scenes start at rest, with the excitation and the run of this one. The sensitivity is the largest
+        All scenes start at rest, with the excitation and the run of this one; ``table.words`` names those
+        that have others of their own. The sensitivity is the largest
         change of ``crossing_g`` when one length, thickness or gap of the mechanism changes by 1 %. Each row
         scans frequencies and these sizes; flexures are solved anew for each size, which takes seconds.
 
@@ -1429,9 +1460,10 @@ class Scene(Mapping[str, Any]):
         maximize: None = None,
         subject_to: Sequence[str] | str = (),
         environment: Sequence[str] | str = (),
-        vary: Mapping[str, float | str] | None = None,
+        vary: Mapping[str, tuple[float | str, float | str]] | None = None,
         seed: int = 1,
         until_settled: float | None = None,
+        runs_to: str | os.PathLike[str] | None = None,
         threads: int | None = None,
         progress: Progress = False,
     ) -> Table:
@@ -1452,14 +1484,18 @@ class Scene(Mapping[str, Any]):
         environment : str or sequence of str
             In place of the scene's own excitation: scenes, records (CSV), or values of a field,
             ``"excitation.amplitude_g=0.8,1,1.2"``. An ending ``*WEIGHT`` weighs one.
-        vary : mapping of str to float or str, optional
-            Tolerances of fields to either side: a number is in the unit of the field, ``0.1``, a text may be
-            a share of the value, ``"1%"``: ``{"stops.travel_limit_mm": "1%", "mass_g": 0.1}``.
+        vary : mapping of str to (float, float) or (str, str), optional
+            Tolerances of fields, the least and the largest deviation from the value: numbers are in the unit
+            of the field, texts may be shares of the value:
+            ``{"stops.travel_limit_mm": ("-1%", "1%"), "mass_g": (-0.1, 0.1)}``.
         seed : int
             Seed of the 200 samples within these tolerances.
+        runs_to : str or path, optional
+            File (CSV) to which the results of each run are added as soon as it has ended; those that the same
+            search kept before it was interrupted are taken from there.
         until_settled, threads, progress
             See :meth:`sweep`; by default each run goes on for up to 1000 forcing periods beyond the scene's
-            run.
+            run. Progress counts the runs that are done and, as far as it is known, those that are left.
 
         Returns
         -------
@@ -1495,8 +1531,13 @@ class Scene(Mapping[str, Any]):
             f"{field}=" + ":".join(map(_value, _entries(field, ends, form, 2, 3)))
             for field, ends in design.items()
         ]
-        tolerances = _mapping("vary", vary or {}, '{"stops.travel_limit_mm": "1%"}')
-        varied = [f"{field}=+-{_value(by)}" for field, by in tolerances.items()]
+        form = '{"stops.travel_limit_mm": ("-1%", "1%")}'
+        varied = []
+        for field, ends in _mapping("vary", vary or {}, form).items():
+            if not isinstance(ends, tuple) or len(ends) != 2:
+                problem = f"give its least and largest deviation, {form}"
+                raise _wrong("vary", f"{field}: {_shown(ends)}", problem)
+            varied.append(f"{field}={_value(ends[0])}:{_value(ends[1])}")
         limits, places = _names("subject_to", subject_to), _names("environment", environment)
         with _Told(progress, "runs") as told:
             answer = _interwell.best(
@@ -1508,6 +1549,7 @@ class Scene(Mapping[str, Any]):
                 varied,
                 _count("seed", seed, 2**64) or 0,
                 _real("until_settled", until_settled),
+                None if runs_to is None else os.fspath(runs_to),
                 _count("threads", threads),
                 told,
             )
@@ -1546,8 +1588,6 @@ def identify(
     start: float | None = None,
     end: float | None = None,
     impact_times: bool = False,
-    left_mm: float | None = None,
-    right_mm: float | None = None,
     points: int | None = None,
 ) -> Identified:
     """Identify damping, restitution or force from a measured record.
@@ -1566,8 +1606,6 @@ def identify(
         Leave out what was recorded before and after these times in s. Not of force.
     impact_times : bool
         Of restitution: the rows are impacts, and their times are all that is known.
-    left_mm, right_mm : float, optional
-        Of restitution: about where the stops are.
     points : int, optional
         Of force: points of the curve, 4 to 100000; by default 101, or as many as the samples allow. More
         follow the samples more closely and average fewer of them.
@@ -1606,7 +1644,6 @@ def identify(
         [base, base_unit],
         [_real("start", start), _real("end", end)],
         impact_times,
-        [_real("left_mm", left_mm), _real("right_mm", right_mm)],
         _count("points", points),
     )
     return Identified(answer, summary, known)

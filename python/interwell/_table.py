@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
 Array = npt.NDArray[Any]
 
+# earlier names of columns
+_EARLIER = {"mean_power_w": "mean_load_power_w"}
 # columns of yes or no, and columns of words that may have no rows
 _FLAGS = ("crossing_undecided", "settled", "stable", "steady", "sure", "undecided")
 _WORDS = ("direction", "event", "kind", "phase", "side")
@@ -151,6 +153,8 @@ class Table(Mapping[str, Array]):
         KeyError
             If there is no such column.
         """
+        if name not in self._arrays and name not in self._answer.names:
+            name = _EARLIER.get(name, name)
         if name not in self._arrays:
             if name not in self._answer.names:
                 near = _near(str(name), self.columns)
@@ -213,7 +217,7 @@ class Table(Mapping[str, Array]):
 
     @property
     def words(self) -> list[str]:
-        """Sentences about the answer, a list of str; empty where there is nothing to say.
+        """Sentences about the answer, a list of str; empty where there is nothing to say. The repr has them.
 
         Of a branch: where it ended inside the range and why; of a spectrum: its settings; of basins: each
         attractor; of a best design, a record, escapes and exponents of one scene: the result; of thresholds
@@ -228,7 +232,11 @@ class Table(Mapping[str, Array]):
         return len(self._answer.values(names[0])) if names else 0
 
     def __repr__(self) -> str:
-        return f"<{type(self).__name__} of {self.rows} rows: {self._listed()}>"
+        return f"<{type(self).__name__} of {self.rows} rows: {self._listed()}{self._told()}>"
+
+    def _told(self) -> str:
+        """Return the sentences about the answer, each on a line of its own."""
+        return "".join(f"\n  {line}" for line in self.words)
 
     def csv(self) -> str:
         """Return the table as CSV, byte for byte as the command line writes it.
@@ -417,7 +425,7 @@ class Grid(Table):
         return self._shaped[name]
 
     def __repr__(self) -> str:
-        return f"<Grid {' x '.join(map(str, self.shape))}: {self._listed()}>"
+        return f"<Grid {' x '.join(map(str, self.shape))}: {self._listed()}{self._told()}>"
 
     def to_pandas(self) -> pandas.DataFrame:
         """Return a data frame with a row for each cell, in the order of :meth:`csv`.

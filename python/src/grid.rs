@@ -164,7 +164,7 @@ pub fn threshold(
     scene: &Simulation,
     py: Python<'_>,
     over: Over,
-    field: String,
+    field: Option<String>,
     of: &str,
     resolution: Option<f64>,
     until_settled: Option<f64>,
@@ -175,10 +175,10 @@ pub fn threshold(
     let of = named(py, "of", of, &Onset::ALL, Onset::name)?;
     let question = Threshold { over, field, of, resolution, until_settled, melnikov };
     let table = work(py, &Way { threads, progress }, |progress| question.run(&scene.inner, progress))?;
-    let scan = checked(py, question.scan(scene.inner.document(), &Grid::of_one()))?;
+    let searched = checked(py, question.searched(scene.inner.document(), &Grid::of_one()))?;
     let remarks = question.remarks(&scene.inner, &table);
     let answer = Answer::new(py, table, scene.caption()).told(remarks);
-    with_picture_of_thresholds(answer, scene, py, &question.over, scan.field, of)
+    with_picture_of_thresholds(answer, scene, py, &question.over, searched.field().to_owned(), of)
 }
 
 #[pyfunction]
@@ -190,7 +190,7 @@ pub fn probable_threshold(
     scene: &Simulation,
     py: Python<'_>,
     over: Over,
-    field: String,
+    field: Option<String>,
     probability: f64,
     runs: Option<u64>,
     within: Option<f64>,

@@ -1,11 +1,14 @@
 //! Questions about the motions of one scene, and about its design.
 
+use std::path::PathBuf;
+
+use interwell_kernel::dynamics::MapState;
 use interwell_kernel::numeric::Taper;
 use interwell_studies::output::{
     SpectrumQuantity, basins_chart, branch_chart, comparison_chart, loci_chart, spectrum_chart,
 };
 use interwell_studies::questions::{
-    Basins, Best, Branch, BranchEvent, Compare, Error, FieldRange, Locus, Orbit, Signal, Spectrum,
+    Basins, Begin, Best, Branch, BranchEvent, Compare, Error, FieldRange, Locus, Orbit, Signal, Spectrum,
 };
 use pyo3::prelude::*;
 
@@ -14,16 +17,43 @@ use crate::errors::{named, raised, renamed};
 use crate::scene::Simulation;
 use crate::work::{Way, work};
 
+/// The motion that is meant: displacement in mm, velocity in m/s and A or V of a circuit at the phase, or the
+/// number of its impacts.
+#[derive(FromPyObject)]
+pub enum Begins {
+    State(f64, f64, f64),
+    Impacts(u64),
+}
+
+impl Begins {
+    fn named(begin: Option<Self>) -> Begin {
+        match begin {
+            None => Begin::Run,
+            Some(Self::Impacts(impacts)) => Begin::Impacts(impacts),
+            Some(Self::State(x_mm, v, electrical)) => {
+                Begin::State(MapState { x: x_mm * 1e-3, v, electrical })
+            }
+        }
+    }
+}
+
 #[pyfunction]
-#[pyo3(signature = (scene, period=None, phase_deg=0.0))]
-pub fn orbit(scene: &Simulation, py: Python<'_>, period: Option<u32>, phase_deg: f64) -> PyResult<Answer> {
-    let question = Orbit { period, phase_deg };
+#[pyo3(signature = (scene, period=None, phase_deg=0.0, begin=None))]
+pub fn orbit(
+    scene: &Simulation,
+    py: Python<'_>,
+    period: Option<u32>,
+    phase_deg: f64,
+    begin: Option<Begins>,
+) -> PyResult<Answer> {
+    let question = Orbit { period, phase_deg, begin: Begins::named(begin) };
     let found = work(py, &Way::default(), |progress| question.run(&scene.inner, progress))?;
     Ok(Answer::new(py, found.table(), scene.caption()))
 }
 
 #[pyfunction]
-#[pyo3(signature = (scene, field, range, step, count, switch, period=None, phase_deg=0.0, progress=None))]
+#[pyo3(signature = (scene, field, range, step, count, switch, period=None, phase_deg=0.0, progress=None,
+    begin=None))]
 #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
 pub fn branch(
     scene: &Simulation,
@@ -36,8 +66,10 @@ pub fn branch(
     period: Option<u32>,
     phase_deg: f64,
     progress: Option<Py<PyAny>>,
+    begin: Option<Begins>,
 ) -> PyResult<Answer> {
-    let question = Branch { field, range, period, phase_deg, step, count };
+    let begin = Begins::named(begin);
+    let question = Branch { field, range, period, phase_deg, begin, step, count };
     let way = Way { threads: None, progress };
     let found = work(py, &way, |progress| {
         let found = question.with_switches(switch, &scene.inner, progress);
@@ -50,7 +82,8 @@ pub fn branch(
 
 #[pyfunction]
 #[pyo3(signature = (
-    scene, event, field, range, second, second_range, step, count, period=None, phase_deg=0.0, progress=None
+    scene, event, field, range, second, second_range, step, count, period=None, phase_deg=0.0, progress=None,
+    begin=None
 ))]
 #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
 pub fn locus(
@@ -66,9 +99,11 @@ pub fn locus(
     period: Option<u32>,
     phase_deg: f64,
     progress: Option<Py<PyAny>>,
+    begin: Option<Begins>,
 ) -> PyResult<Answer> {
+    let begin = Begins::named(begin);
     let of = named(py, "event", event, &BranchEvent::ALL, BranchEvent::name)?;
-    let branch = Branch { field, range, period, phase_deg, step, count };
+    let branch = Branch { field, range, period, phase_deg, begin, step, count };
     let question = Locus { branch, of, second: FieldRange { field: second, range: second_range } };
     let way = Way { threads: None, progress };
     let found = work(py, &way, |progress| question.run(&scene.inner, progress))?;
@@ -106,11 +141,9 @@ pub fn spectrum(
     }))
 }
 
-/// A row a start, and a row an attractor. `progress` is told of the starts that are followed, `checking` of
-/// those that are checked afterwards.
+/// A row a start, and a row an attractor.
 #[pyfunction]
-#[pyo3(signature = (scene, x_mm, v, random=None, threads=None, progress=None, checking=None))]
-#[expect(clippy::too_many_arguments, reason = "keywords of Python")]
+#[pyo3(signature = (scene, x_mm, v, random=None, threads=None, progress=None))]
 pub fn basins(
     scene: &Simulation,
     py: Python<'_>,
@@ -119,14 +152,11 @@ pub fn basins(
     random: Option<(u64, u64)>,
     threads: Option<usize>,
     progress: Option<Py<PyAny>>,
-    checking: Option<Py<PyAny>>,
 ) -> PyResult<(Answer, Answer)> {
     let question = Basins { random, ..Basins::of(x_mm, v) };
-    let followed = work(py, &Way { threads, progress }, |progress| {
-        question.follow(&scene.inner, progress).map_err(|error| renamed(error, [["v", "v_m_per_s"]]))
+    let found = work(py, &Way { threads, progress }, |progress| {
+        question.run(&scene.inner, progress).map_err(|error| renamed(error, [["v", "v_m_per_s"]]))
     })?;
-    let checked = Way { threads, progress: checking };
-    let found = work(py, &checked, |progress| followed.checked(progress))?;
     let attractors = Answer::new(py, found.attractors(), scene.caption());
     let starts = Answer::new(py, found.table(), scene.caption()).told(found.answer.words());
     let starts = starts.drawn(move |_, _| Ok(basins_chart(&found.basins, &found.answer)));
@@ -155,7 +185,7 @@ pub fn compare(
 
 #[pyfunction]
 #[pyo3(signature = (
-    scene, over, maximise, subject_to, environment, vary, seed, until_settled=None, threads=None,
+    scene, over, maximise, subject_to, environment, vary, seed, until_settled=None, runs_to=None, threads=None,
     progress=None
 ))]
 #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
@@ -169,10 +199,11 @@ pub fn best(
     vary: Vec<String>,
     seed: u64,
     until_settled: Option<f64>,
+    runs_to: Option<PathBuf>,
     threads: Option<usize>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Answer> {
-    let question = Best { over, maximise, subject_to, environment, vary, seed, until_settled };
+    let question = Best { over, maximise, subject_to, environment, vary, seed, until_settled, runs_to };
     let way = Way { threads, progress };
     let found = work(py, &way, |progress| question.run(&scene.inner, progress))?;
     Ok(Answer::new(py, found.table(), scene.caption()).told(found.words()))

@@ -13,7 +13,7 @@ use crate::work::{Way, work};
 
 /// Identifies a quantity from a record; the summary is JSON as the command line writes it.
 #[pyfunction]
-#[pyo3(signature = (path, of, time, column, position, base, between, impact_times, stops_mm, points=None))]
+#[pyo3(signature = (path, of, time, column, position, base, between, impact_times, points=None))]
 #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
 pub fn identify(
     py: Python<'_>,
@@ -25,11 +25,10 @@ pub fn identify(
     base: [Option<String>; 2],
     between: [Option<f64>; 2],
     impact_times: bool,
-    stops_mm: [Option<f64>; 2],
     points: Option<u32>,
 ) -> PyResult<(Answer, String, Option<f64>)> {
     let of = named(py, "of", of, &WhatToIdentify::ALL, WhatToIdentify::name)?;
-    let question = Identify { of, time, column, position, base, between, impact_times, stops_mm, points };
+    let question = Identify { of, time, column, position, base, between, impact_times, points };
     let answer = work(py, &Way::default(), |progress| {
         question.run(&path, progress).map_err(|error| renamed(error, [["from", "start"], ["to", "end"]]))
     })?;

@@ -9,14 +9,14 @@ use interwell::scene::Document;
 use interwell::system::files::is_file;
 
 use super::support::{inputs, load, settle_limit, warn};
-use super::{ChartOptions, Common, Failure, Output, Outputs, Picture, ask, say};
+use super::{ChartOptions, Common, Failure, Output, Outputs, Picture, ask, interrupt, say};
 
 const EXAMPLES: &str = "\
 Examples:
   interwell --headless best paper --over stops.travel_limit_mm=0.5:7
   interwell --headless best paper --over stops.travel_limit_mm=0.5:7 --subject-to 'max_abs_x_m<=0.001'
   interwell --headless best paper --over stops.travel_limit_mm=0.5:7 \\
-      --environment excitation.amplitude_g=0.8,1,1.2 --vary excitation.amplitude_g=+-2%
+      --environment excitation.amplitude_g=0.8,1,1.2 --vary excitation.amplitude_g=-2%:2%
   interwell --headless best paper --over stops.travel_limit_mm=0.2:2 --environment walking
   interwell --headless best random-shaking --over stops.travel_limit_mm=0.2:3 \\
       --environment excitation.seed=1,2,3,4,5
@@ -34,8 +34,8 @@ pub struct Arguments {
     #[arg(long, value_name = "FIELD=A:B[:STEP]", allow_hyphen_values = true)]
     pub over: Vec<String>,
 
-    /// Column to maximise: a number of the summary, whose name may lack its unit. mean_power_w, the power
-    /// into the load, needs a scene with a transducer
+    /// Column to maximise: a number of the summary, whose name may lack its unit.
+    /// mean_load_power_w needs a scene with a transducer
     #[arg(long, value_name = "COLUMN", default_value = "rms_velocity_m_per_s", visible_alias = "maximize")]
     pub maximise: String,
 
@@ -49,9 +49,10 @@ pub struct Arguments {
     #[arg(long, value_name = "SCENE|FILE|FIELD=a,b,c", allow_hyphen_values = true)]
     pub environment: Vec<String>,
 
-    /// A tolerance of a field: writes the worst of 200 samples and the value that 95 % of them reach
+    /// A tolerance of a field, the least and the largest deviation from its value: writes the worst of 200
+    /// samples, every deviation between these bounds being as likely, and the value that 95 % of them reach
     /// (repeatable)
-    #[arg(long, value_name = "FIELD=+-1%|+-0.05", allow_hyphen_values = true)]
+    #[arg(long, value_name = "FIELD=-1%:1%|-0.05:0.05", allow_hyphen_values = true)]
     pub vary: Vec<String>,
 
     /// Follow each run, window after window, until its motion repeats, or up to this time in s; where the
@@ -59,6 +60,11 @@ pub struct Arguments {
     /// scene's run]
     #[arg(long, value_name = "MAX_S", allow_hyphen_values = true)]
     pub until_settled: Option<String>,
+
+    /// Keep the results of each run in this file (CSV) as soon as it has ended, and take from there those
+    /// that the same search kept before it was interrupted
+    #[arg(long, value_name = "FILE")]
+    pub runs_to: Option<PathBuf>,
 
     /// Seed of the samples of --vary
     #[arg(long, value_name = "SEED", default_value_t = 1)]
@@ -79,11 +85,13 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         vary: options.vary.clone(),
         seed: options.seed,
         until_settled: settle_limit(options.until_settled.as_deref())?,
+        runs_to: options.runs_to.clone(),
     };
     let question = request.question(&document)?;
     warn(&document, common, &warnings, None);
     let environments = environment_files(&options.environment);
-    let read = [inputs(&options.scene, &document), environments.clone()].concat();
+    let kept = options.runs_to.clone().into_iter().collect();
+    let read = [inputs(&options.scene, &document), environments.clone(), kept].concat();
     let mut outputs =
         Outputs::new(&read).with_rows(Some(common.out()))?.reading(&environments)?.with_picture(picture)?;
     let mut so_far = None;
@@ -92,6 +100,9 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     });
     if let (Err(_), Some(words)) = (&found, &so_far) {
         say(&format!("{}: best so far at {words}", document.name));
+    }
+    if let (Err(_), Some(kept)) = (interrupt::check(), &options.runs_to) {
+        say(&format!("the runs so far are in {}: the same command goes on from them", kept.display()));
     }
     let found = found?;
     outputs.table(Output::DATA, &found.table())?;

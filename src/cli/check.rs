@@ -3,13 +3,13 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use interwell::numeric::short;
+use interwell::numeric::{one_line, short, visible};
 use interwell::system::page_address;
 
 use super::shard::line;
 use interwell::questions::Simulation;
 
-use super::support::{load, read};
+use super::support::{load, mechanism, read};
 use super::{Common, Failure, Output, Outputs, say};
 
 #[derive(Debug, Args)]
@@ -53,6 +53,8 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
 
 fn link(spec: &str, common: &Common) -> Result<String, Failure> {
     let (document, _) = load(spec, common)?;
+    // a link brings no file that is no table
+    mechanism(&document)?;
     let link = document.link().map_err(|error| Failure::argument(format!("{}: {error}", document.name)))?;
     Ok(page_address().map_err(Failure::argument)? + &link + "\n")
 }
@@ -60,7 +62,7 @@ fn link(spec: &str, common: &Common) -> Result<String, Failure> {
 fn report(spec: &str, common: &Common) -> Result<String, Failure> {
     let simulation = Simulation::new(&read(spec, common)?)?;
     let document = simulation.document();
-    let mut text = format!("{}: {}\n", document.name, document.scene.title);
+    let mut text = format!("{}: {}\n", document.name, one_line(&document.scene.title));
     simulation.describe().iter().for_each(|line| text += &format!("  {line}\n"));
     if let Some(drive) = document.scene.harmonic()
         && simulation.can_cross()
@@ -79,5 +81,5 @@ fn report(spec: &str, common: &Common) -> Result<String, Failure> {
         text += &format!("  least amplitude that crosses: {}\n", line(words));
     }
     simulation.warnings().for_each(|warning| text += &format!("  warning: {warning}\n"));
-    Ok(text)
+    Ok(visible(&text).into_owned())
 }

@@ -95,8 +95,8 @@ arguments_are_wrong! {
 impl From<OpenError> for Failure {
     fn from(error: OpenError) -> Self {
         match error {
-            OpenError::MissingFolder { .. } | OpenError::IsFolder(_) => Self::Wrong(error.into()),
             OpenError::Refused { .. } => Self::Failed(error.into()),
+            error => Self::Wrong(error.into()),
         }
     }
 }

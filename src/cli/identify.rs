@@ -54,14 +54,6 @@ pub struct Arguments {
     #[arg(long, value_name = "UNIT")]
     pub base_unit: Option<String>,
 
-    /// Of restitution: about where the left stop is [default: the leftmost impacts]
-    #[arg(long, value_name = "MM", allow_hyphen_values = true)]
-    pub left_mm: Option<f64>,
-
-    /// Of restitution: about where the right stop is [default: the rightmost impacts]
-    #[arg(long, value_name = "MM", allow_hyphen_values = true)]
-    pub right_mm: Option<f64>,
-
     /// Of force: points of the curve, 4 to 100000 [default: 101, or as many as the samples allow]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(4..=100_000))]
     pub points: Option<u32>,
@@ -125,7 +117,6 @@ fn question(options: &Arguments, of: WhatToIdentify) -> Identify {
         base: both(&options.base, &options.base_unit),
         between: [options.from, options.to],
         impact_times: options.impact_times,
-        stops_mm: [options.left_mm, options.right_mm],
         points: options.points,
     }
 }

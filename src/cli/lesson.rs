@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use interwell::numeric::visible;
 use interwell::questions::check_lessons;
 use interwell::scene::Fault;
 use interwell::scene::lesson::{Choice, LESSONS, LessonDocument, LessonError, Step, TEMPLATE};
@@ -94,7 +95,8 @@ fn full_text(document: &LessonDocument) -> String {
         };
         text += &format!("{}. {word}{}\n{more}", number + 1, step.text());
     }
-    text + &format!("\nMisconception: {}\nLecturer: {}\n", lesson.misconception, lesson.lecturer)
+    text += &format!("\nMisconception: {}\nLecturer: {}\n", lesson.misconception, lesson.lecturer);
+    visible(&text).into_owned()
 }
 
 /// Checks the lessons. Returns one line for each, and the error of the command if a lesson is wrong.

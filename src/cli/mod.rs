@@ -36,6 +36,7 @@ use std::process::ExitCode;
 
 use clap::FromArgMatches;
 use clap::error::ErrorKind;
+use interwell::numeric::visible;
 
 pub use failure::Failure;
 pub use options::{Options, command_names};
@@ -120,7 +121,7 @@ pub fn run(
     }
 }
 
-/// Prints a line on standard error; a closed standard error is ignored.
+/// Prints a line on standard error, without what a terminal would obey; a closed standard error is ignored.
 pub fn say(line: &str) {
-    let _ = writeln!(std::io::stderr(), "{line}");
+    let _ = writeln!(std::io::stderr(), "{}", visible(line));
 }

@@ -4,7 +4,7 @@ use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
 use clap::{ArgGroup, Args, CommandFactory, Parser, Subcommand};
-use interwell::system::threads::processors;
+use interwell::system::threads::{MAX_THREADS, processors};
 
 use super::pages::{Page, VERSION};
 use super::{Failure, say};
@@ -211,7 +211,7 @@ pub struct Common {
 
     /// Threads to use [default: one per core]
     #[arg(long, value_name = "N", allow_hyphen_values = true,
-          value_parser = whole::<u16>(1..=1024))]
+          value_parser = whole::<u16>(1..=MAX_THREADS.into()))]
     pub jobs: Option<u16>,
 
     /// Print only errors on standard error

@@ -2,8 +2,9 @@
 
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser};
+use interwell::dynamics::MapState;
 use interwell::output::{branch_chart, loci_chart};
-use interwell::questions::{Branch, BranchEvent, Error, FieldRange, Locus, Orbit};
+use interwell::questions::{Begin, Branch, BranchEvent, Error, FieldRange, Locus, Orbit};
 use interwell::scene::{Axis, Document};
 use interwell_studies::study::BranchOptions;
 
@@ -15,6 +16,7 @@ const EXAMPLES: &str = "\
 Examples:
   interwell --headless orbit paper
   interwell --headless orbit duffing-chaos --period 1
+  interwell --headless orbit impact-oscillator --from impacts=1
   interwell --headless orbit paper-unconstrained --set run.duration_s=200 \\
       --branch excitation.amplitude_g=1.3:1.1 --out branch.csv --plot branch.png
   interwell --headless orbit impact-oscillator --branch excitation.amplitude_g=0.056:0.0545 --switch 3
@@ -32,6 +34,11 @@ pub struct Arguments {
     #[arg(long, value_name = "N", allow_hyphen_values = true,
           value_parser = whole::<u32>(1..=1000))]
     pub period: Option<u32>,
+
+    /// The motion to take in place of that of the run: its state at that phase, X_MM,V_M_PER_S (with A or V
+    /// of a circuit as a third number), or impacts=N for one with N impacts in the period, stable or not
+    #[arg(long, value_name = "STATE", allow_hyphen_values = true)]
+    pub from: Option<String>,
 
     /// Phase of the drive at which states are taken, in degrees
     #[arg(long, value_name = "P", default_value = "0", allow_hyphen_values = true)]
@@ -102,15 +109,16 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let count = |done: u64, _: Option<u64>| bar.set_position(done);
     let progress = interrupt::progress().reporting_to(&count);
     let period = options.period;
+    let begin = options.from.as_deref().map_or(Ok(Begin::Run), begin)?;
     let Some(FieldRange { field, range }) = over else {
-        let found = Orbit { period, phase_deg }.run(&simulation, &progress)?;
+        let found = Orbit { period, phase_deg, begin }.run(&simulation, &progress)?;
         outputs.table(Output::DATA, &found.table())?;
         return outputs.finish_rows(document, 1);
     };
     let step = if_given("--step", options.step.as_deref(), "give a share, such as 0.01")?;
     let step = step.unwrap_or(BranchOptions::STEP);
     let count = options.count.unwrap_or(BranchOptions::COUNT);
-    let branch = Branch { field, range, period, phase_deg, step, count };
+    let branch = Branch { field, range, period, phase_deg, begin, step, count };
     let of = options.locus.as_deref().map(|name| name.strip_suffix("-breaking").unwrap_or(name));
     let told = |error: Error| {
         bar.finish_and_clear();
@@ -142,6 +150,27 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     remarks.iter().for_each(|line| common.say(line));
     outputs.table(Output::DATA, &table)?;
     outputs.finish_rows(document, 1)
+}
+
+/// The motion of an option `--from`.
+fn begin(text: &str) -> Result<Begin, Failure> {
+    let wrong = || {
+        let problem = "write X_MM,V_M_PER_S, such as 1.5,0.02, with A or V of a circuit as a third number, \
+                       or impacts=N, such as impacts=1";
+        Failure::argument(format!("--from {text}: {problem}"))
+    };
+    if let Some(number) = text.strip_prefix("impacts=") {
+        return number.trim().parse().map(Begin::Impacts).map_err(|_| wrong());
+    }
+    let numbers =
+        text.split(',').map(|part| part.trim().parse().ok().filter(|number: &f64| number.is_finite()));
+    match numbers.collect::<Option<Vec<f64>>>().as_deref() {
+        Some([x, v]) => Ok(Begin::State(MapState { x: x * 1e-3, v: *v, electrical: 0.0 })),
+        Some([x, v, electrical]) => {
+            Ok(Begin::State(MapState { x: x * 1e-3, v: *v, electrical: *electrical }))
+        }
+        _ => Err(wrong()),
+    }
 }
 
 /// The field of an option `FIELD=A:B` and the ends of its range.

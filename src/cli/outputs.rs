@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use interwell::output::{Manifest, Sink, header, is_regular, manifest_path, repeated, rows, same_target};
+use interwell::output::{Manifest, Sink, header, is_regular, manifest_path, repeated, rows};
 use interwell::questions::Table;
 use interwell::scene::{Document, is_manifest, is_scene_file};
 use interwell::system::checksum::{Checksum, file_checksum};
@@ -128,13 +128,18 @@ impl Outputs {
         } else if output == Output::MANIFEST && is_file(path) && !is_manifest(path) {
             return would_overwrite("a file that is no manifest");
         }
-        let sink = Sink::open(path)?;
-        if let Some((first, _)) = self.sinks.iter().find(|(_, earlier)| same_target(earlier, &sink)) {
-            let (first, name) = (first.option(), sink.name());
+        if let Some((first, earlier)) = self.sinks.iter().find(|(_, earlier)| earlier.is_at(path)) {
+            let (first, name) = (first.option(), earlier.name());
             refuse!("{first} and {option} both go to {name}: give each a place of its own");
         }
-        self.sinks.push((output, sink));
+        self.sinks.push((output, Sink::open(path)?));
         Ok(())
+    }
+
+    /// Takes an open output out.
+    pub fn take(&mut self, output: Output) -> Option<Sink> {
+        let place = self.sinks.iter().position(|(open, _)| *open == output)?;
+        Some(self.sinks.remove(place).1)
     }
 
     /// Closes an output without a change of its file.

@@ -2,7 +2,7 @@
 
 use clap::Args;
 use interwell::output::{can_show_thresholds, threshold_chart};
-use interwell::questions::{Escape, Onset, ProbableThreshold, Threshold};
+use interwell::questions::{Escape, Onset, ProbableThreshold, Searched, Threshold};
 use interwell::scene::Document;
 
 use super::support::{if_given, load_over, mechanism_of_all, outputs, settle_limit};
@@ -28,10 +28,11 @@ pub struct Arguments {
     #[arg(value_name = "SCENE", default_value = "paper")]
     pub scene: String,
 
-    /// The field and its range [default of the step: a 200th of the range]
-    #[arg(long, value_name = "FIELD=FROM:TO[:STEP]", allow_hyphen_values = true)]
-    #[arg(default_value = "excitation.amplitude_g=0:2")]
-    pub field: String,
+    /// The field and its range [default of the step: a 200th of the range]. An amplitude of the drive needs
+    /// no range: it is searched upward, in steps that suit the mechanism, as by compare [default: the
+    /// amplitude of the drive; with --probability the RMS of the noise, 0 to 2 g]
+    #[arg(long, value_name = "FIELD[=FROM:TO[:STEP]]", allow_hyphen_values = true)]
+    pub field: Option<String>,
 
     /// Onset: release (the mass leaves the stop it rests on), crossing (the settled motion
     /// crosses at all) or interwell (its crossings repeat)
@@ -98,21 +99,22 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let picture = Picture::of_chart(&options.chart, common)?;
     let (document, warnings, grid) = load_over(&options.scene, &options.over, common)?;
     let ((question, probable), Document { scene, name, .. }) = (questions(options)?, &document);
-    let (onset, scan) = match &probable {
+    let (onset, searched) = match &probable {
         Some(probable) => {
             probable.chance(&document, &grid)?;
-            (Onset::Crossing, probable.scan(&document, &grid)?)
+            (Onset::Crossing, Searched::Scan(probable.scan(&document, &grid)?))
         }
-        None => (question.of, question.scan(&document, &grid)?),
+        None => (question.of, question.searched(&document, &grid)?),
     };
     if picture.is_some() {
         can_show_thresholds(&grid)?;
     }
+    let parts = if let Searched::Scan(_) = &searched { "values" } else { "thresholds" };
     let mechanism = mechanism_of_all(&document, &grid, common, &warnings)?;
     let mut outputs = outputs(&options.scene, &document, common)?.with_picture(picture)?;
     let table = match &probable {
         Some(probable) => ask("runs", common, |progress| probable.in_cells(&document, &grid, progress)),
-        None => ask("values", common, |progress| question.in_cells(&document, &grid, progress)),
+        None => ask(parts, common, |progress| question.in_cells(&document, &grid, progress)),
     }?;
     outputs.table(Output::DATA, &table)?;
     let remarks = match &probable {
@@ -120,7 +122,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         None => question.remarks_in_cells(&document, &grid, mechanism.as_deref(), &table),
     };
     remarks.iter().for_each(|words| common.say(&format!("{name}: {words}")));
-    let chart = |ranges| Ok(threshold_chart(&table, &grid, scene, &scan.field, onset, ranges)?);
+    let chart = |ranges| Ok(threshold_chart(&table, &grid, scene, searched.field(), onset, ranges)?);
     outputs.draw(picture, &document, chart)?;
     outputs.finish_rows(&document, common.jobs())
 }

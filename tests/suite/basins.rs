@@ -22,23 +22,26 @@ fn refused(document: &Document, x_mm: (f64, f64, u64), v: (f64, f64, u64)) -> Re
     Basins::new(&document.scene, mechanism(document), starts)
 }
 
-/// The whole map of a document.
+/// The whole map of a document, checked.
 fn map(document: &Document, x_mm: (f64, f64, u64), v: (f64, f64, u64)) -> (Basins, Answer) {
-    let mut basins = refused(document, x_mm, v).unwrap();
+    let mut basins = refused(document, x_mm, v).unwrap().checked();
     let answer = whole(&mut basins);
     (basins, answer)
 }
 
 fn whole(basins: &mut Basins) -> Answer {
+    whole_on(basins, 2)
+}
+
+/// The whole map by so many threads.
+fn whole_on(basins: &mut Basins, threads: usize) -> Answer {
     let cancel = AtomicBool::new(false);
     let task = Task { tick: &|| (), cancel: &cancel };
-    let pool = Pool::new(2).unwrap();
+    let pool = Pool::new(threads).unwrap();
     while !basins.is_whole() {
         assert!(basins.run_level(&pool, &task));
     }
-    let mut answer = basins.answer(&task).unwrap();
-    assert!(basins.check(&mut answer, &pool, &task));
-    answer
+    basins.answer(&task).unwrap()
 }
 
 /// The unit double well, m = 1, F = x^3 - x, with the other fields in `rest`.
@@ -242,6 +245,7 @@ fn a_pursuit_has_the_same_bits_in_any_number_of_lanes() {
                 max_periods: 60,
                 releases: number as u32 % 3,
                 max_work: u64::MAX,
+                beside: None,
             })
             .collect();
         let texts = |all: Vec<Pursued>| {
@@ -276,10 +280,10 @@ fn a_pursuit_comes_to_the_first_release_of_the_run() {
         for number in 0..60_u32 {
             let start = (1.5e-3 * (f64::from(number) / 30.0 - 1.0), f64::from(number % 11) / 10.0 - 0.5);
             let (known, regions, repeats_from, releases) = (&[], &[], u64::MAX, number % 2);
-            let max_work = u64::MAX;
-            let start = MapState::from(start);
+            let (start, max_work, beside) = (MapState::from(start), u64::MAX, None);
+            let max_periods = 60;
             let pursuit =
-                Pursuit { start, known, regions, repeats_from, max_periods: 60, releases, max_work };
+                Pursuit { start, known, regions, repeats_from, max_periods, releases, max_work, beside };
             let run = model.with_start(start).with_duration(10.0 * period, 0.0);
             let events = run.run(&Request { events: true, ..Request::default() }).events;
             let release =
@@ -306,6 +310,7 @@ fn a_pursuit_ends_where_its_work_is_done() {
         max_periods: 1000,
         releases: 0,
         max_work: 1_000_000,
+        beside: None,
     };
     for width in [1, 4, 8, 16] {
         for pursued in model.pursue_in_lanes(&[pursuit; 20], width).unwrap_or_default() {

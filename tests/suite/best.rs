@@ -6,7 +6,7 @@ use interwell::dynamics::{Outcome, Request};
 use interwell::scene::{Document, Files};
 use interwell::system::threads::Pool;
 use interwell_studies::study::{
-    BestDesign, BestQuestion, Constraint, DesignRange, Environment, NoBest, SummaryField, Task, Variation,
+    BestDesign, BestQuestion, Constraint, DesignRange, Environment, NoBest, SummaryField, Task, Tolerance,
     best,
 };
 
@@ -37,7 +37,12 @@ pub fn question(document: &Document, over: (&str, f64, f64), intervals: usize) -
 
 pub fn found_by(question: &BestQuestion, threads: usize) -> Result<BestDesign, NoBest> {
     let task = Task { tick: &|| (), cancel: &AtomicBool::new(false) };
-    best(question, &Pool::new(threads).unwrap(), &task, &mut |_| ())
+    best(question, &Pool::new(threads).unwrap(), &task, None, &|_| (), &mut |_| ())
+}
+
+/// A field that comes out at most so large a share of its value smaller or larger.
+fn within(field: &str, share: f64) -> Tolerance {
+    Tolerance { field: field.into(), low: -share, high: share, relative: true }
 }
 
 /// A linear oscillator of 2 Hz with a quality of 5, shaken with 1 m/s^2; long enough to be steady.
@@ -169,7 +174,7 @@ fn the_mean_over_environments_is_largest_and_each_ones_value_is_there() {
 fn stepping_back_from_a_cliff_costs_less_than_falling() {
     let document = changed("paper", &["run.duration_s=6"]);
     let mut asked = question(&document, ("stops.travel_limit_mm", 1.5, 2.5), 25);
-    asked.vary = vec![Variation { field: "excitation.amplitude_g".into(), by: 0.1, relative: true }];
+    asked.vary = vec![within("excitation.amplitude_g", 0.1)];
     let one = found_by(&asked, 1).unwrap();
     assert_eq!(one, found_by(&asked, 3).unwrap());
     let (back, spread) = one.stepped_back.clone().unwrap();
@@ -187,7 +192,7 @@ fn the_best_worst_case_is_that_of_all_samples_at_every_place() {
     let document = changed("paper", &["run.duration_s=6"]);
     for (by, inward) in [(0.02, 1.6), (0.1, 1.5), (0.3, 1.0)] {
         let mut asked = question(&document, ("stops.travel_limit_mm", inward, 2.5), 25);
-        asked.vary = vec![Variation { field: "excitation.amplitude_g".into(), by, relative: true }];
+        asked.vary = vec![within("excitation.amplitude_g", by)];
         let best = found_by(&asked, 2).unwrap();
         let (back, spread) = best.stepped_back.clone().unwrap();
         // of a range that ends at it the optimum is a place of its own, with the same samples
@@ -225,21 +230,23 @@ fn two_fields_are_searched_together() {
     let table = best.table(&asked);
     let columns: Vec<&str> = table.columns().iter().map(|column| column.name.as_str()).collect();
     let all = "frequency_hz n_per_m maximised value margin_low margin_high worst quantile_5 \
-               margin_low.n_per_m margin_high.n_per_m back_to back_value back_worst back_quantile_5";
+               margin_low.n_per_m margin_high.n_per_m back_to back_value back_worst back_quantile_5 \
+               margin_low_step margin_high_step margin_low_step.n_per_m margin_high_step.n_per_m";
     assert_eq!(columns, all.split(' ').collect::<Vec<_>>());
 }
 
 #[test]
 fn the_command_writes_one_row_the_same_for_any_jobs_and_says_what_it_found() {
     let command = "best paper --over stops.travel_limit_mm=1.5:2.5:0.05 --set run.duration_s=6 \
-                   --environment excitation.amplitude_g=0.8*2,1 --vary mass_g=+-1%";
+                   --environment excitation.amplitude_g=0.8*2,1 --vary mass_g=-1%:1%";
     let row = stdout(&format!("{command} --quiet --jobs 1"));
     assert_eq!(row, stdout(&format!("{command} --quiet --jobs 3")));
     assert_eq!(row.lines().count(), 2);
     assert!(
         row.starts_with("travel_limit_mm,maximised,value,margin_low,margin_high,worst,quantile_5,back_to,")
     );
-    assert!(row.lines().next().unwrap().ends_with(",value_1,value_2"), "{row}");
+    let last = ",value_1,value_2,margin_low_step,margin_high_step";
+    assert!(row.lines().next().unwrap().ends_with(last), "{row}");
     let said = headless(command).output().unwrap().stderr;
     let said = String::from_utf8(said).unwrap();
     for words in [
@@ -273,7 +280,7 @@ fn a_best_motion_that_does_not_repeat_is_said_to_be_uncertain() {
 #[test]
 fn what_is_said_has_units() {
     let line = "best paper --over stops.travel_limit_mm=1.5:2.5:0.25 --over stops.restitution=0.2:0.4:0.1 \
-                --set run.duration_s=6 --vary mass_g=+-1%";
+                --set run.duration_s=6 --vary mass_g=-1%:1%";
     let said = |line: &str| {
         let output = headless(line).assert().success().get_output().clone();
         String::from_utf8(output.stderr).unwrap()
@@ -327,7 +334,7 @@ fn fields_of_whole_numbers_are_searched_among_whole_numbers() {
     );
     refused(headless("best paper --over mechanism.parallel.count=1.5:4"), &["whole, 1 to 64", "1.5"]);
     refused(
-        headless("best paper --over mass_g=10:20 --vary mechanism.parallel.count=+-1"),
+        headless("best paper --over mass_g=10:20 --vary mechanism.parallel.count=-1:1"),
         &["holds whole numbers"],
     );
 }
@@ -390,14 +397,20 @@ fn what_cannot_be_searched_is_refused_with_what_would_be_right() {
         of("--subject-to max_abs_x_m<=1e-6"),
         &["nothing that was tried", "travel_limit_mm = 1 mm,", "is 0.001 m"],
     );
-    refused(of("--vary stops.bogus=+-1%"), &["--vary", "stops.restitution"]);
-    refused(of("--vary start.x_mm=+-1%"), &["--vary"]);
-    refused(of("--vary stops.restitution=0.05"), &["--vary", "write FIELD=+-1% or FIELD=+-0.05"]);
+    refused(of("--vary stops.bogus=-1%:1%"), &["--vary", "stops.restitution"]);
+    refused(of("--vary start.x_mm=-1%:1%"), &["--vary"]);
+    refused(of("--vary stops.restitution=0.05"), &["--vary", "write FIELD=-1%:1% or FIELD=-0.05:0.05"]);
+    refused(
+        of("--vary stops.restitution=+-10%"),
+        &["--vary", "+- is a standard deviation", "write stops.restitution=-10%:10%"],
+    );
+    refused(of("--vary stops.restitution=-1%:0.05"), &["--vary", "both in the unit of the field"]);
+    refused(of("--vary stops.restitution=0.05:-0.05"), &["--vary", "the least deviation first"]);
     refused(of("--environment excitation.amplitude_g=1*0"), &["weight"]);
     refused(of("--environment nowhere"), &["--environment nowhere: ", "no built-in scene"]);
     refused(of("--environment nowhere.csv"), &["--environment nowhere.csv: no such file; give a record"]);
     refused(
-        of("--environment walking --vary excitation.amplitude_g=+-1%"),
+        of("--environment walking --vary excitation.amplitude_g=-1%:1%"),
         &["walking", "has no such number"],
     );
     refused(of("--maximise peak_contact_force_n"), &["no design of the range has this result"]);
@@ -413,6 +426,6 @@ fn a_search_that_is_cancelled_makes_none_of_its_places() {
         asked.over.push(DesignRange::new(field, (1.0, 2.0), 30_000));
     }
     let task = Task { tick: &|| (), cancel: &AtomicBool::new(true) };
-    let found = best(&asked, &Pool::new(2).unwrap(), &task, &mut |_| ());
+    let found = best(&asked, &Pool::new(2).unwrap(), &task, None, &|_| (), &mut |_| ());
     assert_eq!(found.unwrap_err(), NoBest::Cancelled);
 }

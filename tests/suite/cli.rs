@@ -1,6 +1,7 @@
 //! The command line: every command, option, column and exit status that its page names.
 
 mod accuracy;
+mod at_once;
 mod bad_input;
 mod basins;
 mod blocks;

@@ -44,7 +44,7 @@ const ORDERS: [Order; 3] = [
         root: &["dynamics"],
         names: &[
             "clock", "result", "model", "equation", "series", "drive", "state", "step", "record", "motion",
-            "contact", "run", "map", "lanes", "live",
+            "contact", "advance", "map", "run", "lanes", "live",
         ],
         with_tests: false,
     },

@@ -1,8 +1,11 @@
 //! Live runs: the same run in any pieces, changes on the way, and the memory of what was seen.
 
 use interwell::dynamics::{EventKind, Live, LiveOutput, Model, Phase, Request, Sample, Side};
+use interwell::scene::{PRESETS, Preset};
 use interwell_studies::study::Watch;
+use proptest::prelude::*;
 
+use crate::properties::harness::hold_for;
 use crate::support::*;
 
 const SCENES: [&str; 7] = [
@@ -272,4 +275,87 @@ fn a_stop_that_is_moved_away_leaves_the_mass_where_it_was() {
     // one that is moved inward takes it along
     watch.change(&model(1.0));
     assert_eq!((watch.now().x, watch.samples().back().unwrap().x), (1e-3, 1e-3));
+}
+
+#[test]
+fn without_a_barrier_nothing_is_crossed() {
+    let (mut with, mut without) = (0, 0);
+    for Preset { name, .. } in PRESETS {
+        let model = preset(name, &["run.recurrence=false"]);
+        let to = model.duration().min(4.0);
+        let mut watch = Watch::new(&model);
+        while watch.time() < to && watch.ended().is_none() && watch.forgotten_events() == 0 {
+            watch.advance((watch.time() + 0.05).min(to));
+        }
+        let run = model.run(&Request { events: true, ..Request::default() });
+        let has_barrier = model.mechanism().landscape.barrier.is_some();
+        let crosses = |kind: EventKind| kind == EventKind::Crossing;
+        let kept = run.events.iter().filter(|event| has_barrier || !crosses(event.kind));
+        let kept: Vec<_> = kept.take_while(|event| event.t < 0.9 * watch.time()).collect();
+        let seen: Vec<_> = watch.events().iter().take(kept.len()).collect();
+        // steps that end at each frame round otherwise
+        let are_alike = seen.len() == kept.len()
+            && seen
+                .iter()
+                .zip(&kept)
+                .all(|(a, b)| (a.kind, a.side) == (b.kind, b.side) && (a.t - b.t).abs() < 1e-9 * to);
+        assert!(watch.forgotten_events() > 0 || are_alike, "{name}");
+        assert!(has_barrier || !watch.events().iter().any(|event| crosses(event.kind)), "{name}");
+        *(if has_barrier { &mut with } else { &mut without }) += 1;
+    }
+    assert!(with > 5 && without > 3, "{with} {without}");
+}
+
+/// A circuit whose state is continuous at impacts, where its current or voltage is often largest.
+#[test]
+fn a_circuit_has_its_state_at_impacts() {
+    let drawn = (any::<bool>(), 0.8..2.5f64, 0.1..0.8f64, 1e-3..0.05f64);
+    let show = |drawn: &(bool, f64, f64, f64)| format!("{drawn:?}");
+    hold_for(
+        "a_circuit_has_its_state_at_impacts",
+        12,
+        0.5,
+        drawn,
+        show,
+        |(coil, amplitude, restitution, piece)| {
+            let transducer = match coil {
+                true => {
+                    "Electromagnetic(coupling_v_s_per_m: 5, coil_ohm: 40, load_ohm: 60, inductance_mh: 800)"
+                }
+                false => "Piezoelectric(coupling_n_per_v: 1e-3, capacitance_nf: 50, load_kohm: 200)",
+            };
+            let changes = [
+                format!("transducer={transducer}"),
+                format!("excitation.amplitude_g={amplitude}"),
+                format!("stops.restitution={restitution}"),
+            ];
+            let model = preset("harvester", &changes.each_ref().map(String::as_str));
+            let mut watch = Watch::new(&model);
+            while watch.time() < 2.0 {
+                watch.advance(watch.time() + piece);
+            }
+            let run = model.run(&Request { events: true, ..Request::default() });
+            let impacts = run.events.iter().filter(|event| event.kind == EventKind::Impact && event.t < 1.9);
+            let times: Vec<f64> = impacts.map(|event| event.t).collect();
+            // a nanosecond before and after each
+            let near: Vec<f64> = times.iter().flat_map(|t| [t - 1e-9, t + 1e-9]).collect();
+            let mut sorted = near.clone();
+            sorted.sort_by(f64::total_cmp);
+            sorted.dedup();
+            let beside = run_at(&model, &sorted).samples;
+            let largest = beside.iter().map(|sample| sample.electrical.abs()).fold(0.0, f64::max);
+            let at = |t: f64| beside[beside.partition_point(|sample| sample.t < t)].electrical;
+            for (t, pair) in times.iter().zip(near.chunks(2)) {
+                let seen = watch.samples().iter().filter(|sample| sample.t == *t);
+                for sample in seen {
+                    let apart =
+                        (sample.electrical - at(pair[0])).abs().max((sample.electrical - at(pair[1])).abs());
+                    prop_assert!(apart < 1e-5 * largest, "{} at {t} s: {apart:e}", sample.electrical);
+                }
+                prop_assert!(watch.samples().iter().any(|sample| sample.t == *t), "no sample at {t} s");
+            }
+            prop_assert!(watch.samples().iter().all(|sample| sample.electrical.is_finite()));
+            Ok(!times.is_empty())
+        },
+    );
 }

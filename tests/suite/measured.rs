@@ -9,6 +9,7 @@ mod impacts;
 mod pictures;
 mod reading;
 mod restitution;
+mod spoiled;
 
 use std::f64::consts::TAU;
 

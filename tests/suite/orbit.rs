@@ -1,6 +1,7 @@
 //! Periodic motions, their multipliers and branches against closed forms.
 
 mod circuit;
+mod closing;
 mod events;
 mod leaps;
 mod literature;

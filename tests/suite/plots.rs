@@ -6,9 +6,12 @@ mod legends;
 mod lines;
 mod manifests;
 mod paper;
+mod seams;
 mod search;
 mod studies;
 mod sweeps;
+mod thinned;
+mod walked;
 
 use std::path::{Path, PathBuf};
 

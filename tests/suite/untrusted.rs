@@ -8,6 +8,7 @@ use interwell::dynamics::Model;
 use interwell::mechanics::Mechanism;
 use interwell::scene::{Document, Fault, FieldPath, numeric_fields};
 
+mod elsewhere;
 mod promises;
 
 /// Runs each file of one target's corpus; a panic names the file.

@@ -232,3 +232,63 @@ fn a_ramp_tells_when_it_frees_crosses_and_always_crosses() {
     let firsts = summary.firsts.unwrap();
     assert!(firsts.crossing.is_some() && firsts.crossing_in_every_period.is_none());
 }
+
+/// Runs of a scene that last so many seconds.
+fn lasting(scene: &str, durations: [f64; 2]) -> [Summary; 2] {
+    let run = |duration: f64| model(&scene.replace("DURATION", &format!("{duration:?}")));
+    durations.map(|duration| run(duration).run(&Request::default()).summary)
+}
+
+/// Motions that pass the ghost of a fold, that a run follows for a while only, or that come back by a rest
+/// that they reach at one tolerance alone have not settled; one that alternates has the period of its orbit.
+#[test]
+fn what_returns_for_a_while_has_not_settled() {
+    let ghost = "mass_g: 8.442730795058747, \
+         mechanism: Polynomial(coefficients_si: [0, -0.1368892546276172, 0, 10040.485174620013]), \
+         damping: Coefficient(c_n_s_per_m: 0.012802257106270257), \
+         excitation: Cosine(frequency_rad_per_s: 1.8040705859036295, \
+         amplitude_m_per_s2: 0.027068106312964905), \
+         run: (duration_s: DURATION, settle_s: 104.48347236977607, tolerance: 1e-9)";
+    let [short, long] = lasting(ghost, [174.13912061629344, 870.0]);
+    assert_eq!((short.settled, long.settled), (Some(false), Some(false)));
+    assert_eq!(long.regime, Regime::Irregular);
+
+    let beside = "mass_g: 992.3887077044848, \
+         mechanism: Polynomial(coefficients_si: [0, -11.209961875324778, 0, 202276.14190115652]), \
+         damping: Coefficient(c_n_s_per_m: 0.2217901220347959), \
+         stops: Rigid(travel_limit_mm: 7.802151300845829, restitution: 0), \
+         excitation: Force(frequency_rad_per_s: 3.864639395461653, amplitude_n: 0.04463628149405051, \
+         phase_deg: -46.44358317638856), \
+         run: (duration_s: DURATION, settle_s: 48.7744236724241, tolerance: 1e-9)";
+    assert_eq!(lasting(beside, [81.29070612070683, 160.0]).map(|summary| summary.settled), [Some(false); 2]);
+
+    let alternates = "mass_g: 4.1603630362863075, \
+         mechanism: Polynomial(coefficients_si: [-0.002938492825169029, -0.3605986778799142, \
+         -0.07470875824670765, 1.8335848377144341]), \
+         damping: Coefficient(c_n_s_per_m: 0.0008517059223770924), \
+         stops: Rigid(travel_limit_mm: 478.5071619607956, restitution: 0.4915293191493353), \
+         excitation: Cosine(frequency_rad_per_s: 11.127363699757229, amplitude_m_per_s2: 106.2888299704516, \
+         phase_deg: 92.7219932531774), start: At(x_mm: 321.5006904906504, v_m_per_s: -2.1912307819069055), \
+         run: (duration_s: DURATION, settle_s: 8.46991094662881, tolerance: 1e-10)";
+    let periods = lasting(alternates, [16.93982189325762, 20.0]).map(|summary| summary.period);
+    assert_eq!(periods, [Some(3); 2]);
+
+    let recurs = "mass_g: 249.0170652681843, mechanism: Polynomial(coefficients_si: [-0.0010542767946832728, \
+         -9.69669739945166, -102.11632445762483, 187842.71887674186]), \
+         damping: Coefficient(c_n_s_per_m: 0.34836664200647594), \
+         stops: Rigid(travel_limit_mm: 3.981740574585584, restitution: 0.9437064001116442), \
+         excitation: Cosine(frequency_rad_per_s: 4.70681235005476, amplitude_m_per_s2: 0.13197704843676722, \
+         phase_deg: 146.57504874438484), \
+         run: (duration_s: DURATION, settle_s: 1500, tolerance: 1e-9)";
+    assert_eq!(lasting(recurs, [2000.0, 2200.0]).map(|summary| summary.settled), [Some(false); 2]);
+
+    // in a band of some 4e-7 about an orbit that repels it
+    let band = "mass_g: 1000, mechanism: Cubic(linear_n_per_m: -1, cubic_n_per_m3: 1), \
+         damping: Coefficient(c_n_s_per_m: 0.09105517393294796), \
+         stops: Rigid(travel_limit_mm: 773.5924409002645, restitution: 0.2828202732367634), \
+         excitation: Cosine(frequency_rad_per_s: 0.7765410457931397, \
+         amplitude_m_per_s2: 0.5758794632490406), \
+         start: At(x_mm: -64.09231955051823, v_m_per_s: -0.403974149841585), \
+         run: (duration_s: DURATION, settle_s: 0, tolerance: 1e-9)";
+    assert_eq!(lasting(band, [428.83608417726873, 857.0]).map(|summary| summary.settled), [Some(false); 2]);
+}

@@ -108,7 +108,7 @@ fn covered_it_says_nothing() {
 }
 
 #[test]
-fn the_status_line_says_the_error_or_how_long_to_trust() {
+fn the_bar_of_time_says_the_error_or_how_long_to_trust() {
     for (preset, words) in [
         ("paper", "Path error below 1 nm"),
         ("random-shaking", "Path error "),
@@ -121,7 +121,9 @@ fn the_status_line_says_the_error_or_how_long_to_trust() {
             harness.state_mut().session.wait(LONG);
             harness.run_steps(2);
             let rect = harness.get_by_label_contains(words).rect();
-            assert!(rect.right() <= size[0] && rect.left() > 0.5 * size[0], "{preset}: {rect:?}");
+            let bar = harness.get_by_label("time").rect();
+            assert!(rect.left() >= bar.left() && rect.right() <= size[0], "{preset}: {rect:?}");
+            assert!(rect.top() >= bar.bottom() - 1.0, "{preset}: {rect:?}");
         }
     }
 }

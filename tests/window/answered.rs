@@ -3,7 +3,6 @@
 use eframe::egui::{Event, Key, Modifiers, Order, PointerButton, Rect, accesskit::Role, pos2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use interwell::app::session::pins::PinKind;
 use interwell::app::ui::settings::{Setting, Settings};
 use interwell::app::views::View;
 use interwell::app::window::{Command, Window};
@@ -35,14 +34,18 @@ fn a_key_that_does_nothing_says_why() {
     for (key, why) in [
         (Key::Z, "There is nothing to undo"),
         (Key::Y, "There is nothing to redo"),
-        (Key::Tab, "No two views share a place"),
         (Key::L, "No lesson is open"),
     ] {
         forget_notice(&mut harness);
         press_with_ctrl(&mut harness, key);
         assert_eq!(notice(&harness), why, "{key:?}");
     }
-    let bar = harness.get_by_label("Mechanism").rect();
+    command(&mut harness, Command::Arrange(Layout::Map));
+    forget_notice(&mut harness);
+    press_with_ctrl(&mut harness, Key::Tab);
+    assert_eq!(notice(&harness), "No two views share a place");
+    command(&mut harness, Command::Arrange(Layout::Look));
+    let bar = harness.get_by_role_and_label(Role::Button, "Mechanism").rect();
     harness.hover_at(bar.left_bottom() + vec2(150.0, 60.0));
     harness.run_steps(2);
     for (key, why) in [
@@ -138,8 +141,11 @@ fn what_is_grey_says_why() {
     for size in [WIDE, PROJECTED] {
         let mut harness = window("first-look", size);
         harness.state_mut().session.player.set_playing(false);
+        if size == PROJECTED {
+            click_on(&mut harness, "Controls");
+        }
         harness.run_steps(3);
-        assert!(hover_what_is_grey(&mut harness, &[], "first-look") >= 1, "{size:?}");
+        assert!(hover_what_is_grey(&mut harness, &[], "first-look") >= 2, "{size:?}");
     }
     // the transport bar while a prediction covers the motion
     let mut harness = window("first-look", WIDE);
@@ -343,7 +349,7 @@ fn a_command_that_is_grey_in_the_menu_does_nothing() {
         (Command::GoTo(EventKind::Release), true),
         (Command::GoTo(EventKind::Crossing), false),
         (Command::LeaveLesson, true),
-        (Command::Pin(PinKind::Motion), false),
+        (Command::Pin, false),
         (Command::Toggle(Setting::Dark), false),
     ] {
         assert_eq!(window.impossible(&command).is_some(), is_grey, "{command:?}");

@@ -1,36 +1,33 @@
-//! Pinned motions beside the present one.
+//! The reference beside the present motion.
 
-use eframe::egui::{Key, Shape};
+use eframe::egui::Key;
 use egui_kittest::{Harness, kittest::Queryable as _};
 use interwell::app::session::Session;
-use interwell::app::session::pins::{Pin, PinKind};
+use interwell::app::session::reference::Apart;
 use interwell::app::views::View;
 use interwell::app::window::{Command, Window};
 use interwell::dynamics::EventKind;
-use interwell::scene::{Layout, Stops};
-use interwell_studies::study::distances;
+use interwell::scene::Layout;
 
-use crate::support::{
-    LONG, PROJECTED, WIDE, command, painted, press, press_with_ctrl, session, wait_until, window,
-};
+use crate::support::{LONG, PROJECTED, WIDE, click_on, command, painted, press, session, wait_until, window};
 
-/// Has the motion go on for some seconds, with its pins.
+/// Has the motion go on for some seconds, with the reference.
 fn play(session: &mut Session, seconds: f64) {
     session.player.speed = 10.0;
     let until = session.player.watch().time() + seconds;
     while session.player.watch().time() < until {
         session.player.tick(0.05);
-        session.follow_pins();
+        session.follow_reference();
         assert!(session.player.ended().is_none());
     }
-    // a pin has a share of each frame alone
-    while session.pins.are_behind(session.player.watch().time()) {
-        session.follow_pins();
+    // the reference has a share of each frame alone
+    while session.reference.is_behind(session.player.watch().time()) {
+        session.follow_reference();
     }
 }
 
-fn pinned(session: &Session, letter: char) -> &Pin {
-    session.pins.get(letter).unwrap()
+fn apart(session: &Session) -> &Apart {
+    session.reference.apart().unwrap()
 }
 
 fn frames_until(harness: &mut Harness<'static, Window>, what: &str, is_so: impl Fn(&Session) -> bool) {
@@ -41,45 +38,50 @@ fn frames_until(harness: &mut Harness<'static, Window>, what: &str, is_so: impl 
 }
 
 #[test]
-fn a_pin_of_the_scene_lies_on_the_motion_to_the_bit() {
+fn a_reference_of_the_same_motion_lies_on_it_to_the_bit() {
     let mut harness = window("first-look", WIDE);
     harness.state_mut().session.switch_stops(true);
     harness.state_mut().session.player.speed = 1.0;
     frames_until(&mut harness, "an impact", |session| session.player.watch().events().len() > 3);
     harness.key_press(Key::K);
     harness.run_steps(30);
+    assert!(harness.state().session.reference.apart().is_none());
+    // another scene with the same motion
+    harness.state_mut().session.edit_once(|scene| scene.run.duration_s += 1.0);
+    harness.run_steps(30);
     // in steps of any length
     command(&mut harness, Command::SeekEvent(true));
     command(&mut harness, Command::Step);
     command(&mut harness, Command::Speed(6));
     command(&mut harness, Command::PlayPause);
-    let since = pinned(&harness.state().session, 'A').since;
+    let since = apart(&harness.state().session).since;
     frames_until(&mut harness, "ten periods", |session| session.player.time() > since + 3.4);
     command(&mut harness, Command::PlayPause);
-    frames_until(&mut harness, "the pin", |session| !session.pins.are_behind(session.player.time()));
+    frames_until(&mut harness, "the reference", |session| {
+        !session.reference.is_behind(session.player.time())
+    });
     let session = &harness.state().session;
-    let (watch, pin) = (session.player.watch(), &pinned(session, 'A').watch);
-    assert_eq!(watch.now(), pin.now());
+    let (watch, other) = (session.player.watch(), &apart(session).watch);
+    assert_eq!(watch.now(), other.now());
     // sums that were taken in other pieces
-    let (own_j, pin_j) = (watch.ledger().work_j, pin.ledger().work_j);
-    assert!(own_j > 0.01 && (own_j / pin_j - 1.0).abs() < 1e-13, "{own_j} {pin_j}");
-    assert_eq!(watch.events(), pin.events());
+    let (own_j, other_j) = (watch.ledger().work_j, other.ledger().work_j);
+    assert!(own_j > 0.01 && (own_j / other_j - 1.0).abs() < 1e-13, "{own_j} {other_j}");
+    assert_eq!(watch.events(), other.events());
     assert!(watch.events().iter().any(|event| event.kind == EventKind::Impact && event.t > since));
-    let apart = distances(watch, pin, (0.0, watch.time()), 500);
-    assert!(apart.len() > 250 && apart.iter().all(|point| point.1 == 0.0));
+    let times = || (0..1000).map(|i| 1e-3 * f64::from(i) * watch.time());
+    assert!(times().all(|t| (watch.state_at(t).x - other.state_at(t).x).abs() < 1e-12));
     // in the past it is at the same instant
     let then = 0.5 * (since + watch.time());
     harness.state_mut().session.player.seek(then);
     harness.run_steps(2);
     let session = &harness.state().session;
     assert!(session.player.is_past() && session.player.time() == then);
-    assert_eq!(pinned(session, 'A').watch.state_at(then), session.player.state());
+    assert_eq!(apart(session).watch.state_at(then), session.player.state());
 }
 
 #[test]
-fn a_pin_keeps_its_scene_and_comes_back_in_one_step() {
+fn a_reference_keeps_its_scene_and_comes_back_in_one_step() {
     let mut harness = window("first-look", WIDE);
-    command(&mut harness, Command::Pin(PinKind::Motion));
     let before = harness.state().session.scene().clone();
     let session = &mut harness.state_mut().session;
     assert!(session.set_number("excitation.amplitude_g", 1.4).unwrap());
@@ -89,180 +91,125 @@ fn a_pin_keeps_its_scene_and_comes_back_in_one_step() {
     session.player.speed = 1.0;
     harness.run_steps(60);
     let session = &harness.state().session;
-    let pin = pinned(session, 'A');
-    assert_eq!((&pin.scene, pin.watch.time()), (&before, session.player.watch().time()));
-    assert!((pin.watch.now().x - session.player.watch().now().x).abs() > 1e-4);
-    assert_eq!(pin.watch.model_at(pin.watch.time()).stop_positions(), (None, None));
+    let watch = &apart(session).watch;
+    assert_eq!((&session.reference.scene, watch.time()), (&before, session.player.watch().time()));
+    assert!((watch.now().x - session.player.watch().now().x).abs() > 1e-4);
+    assert_eq!(watch.model_at(watch.time()).stop_positions(), (None, None));
     frames_until(&mut harness, "what both settle to", |session| {
-        session.now_card().settled.is_some() && pinned(session, 'A').settled().is_some()
+        session.now_card().settled.is_some() && session.reference_card().unwrap().settled.is_some()
     });
     harness.run_steps(2);
+    click_on(&mut harness, "Compare");
+    harness.get_by_label("start");
     harness.get_by_label("±1.50");
-    harness.get_by_label("Take A back").click();
+    harness.get_by_label("Back").click();
     harness.run_steps(3);
     let session = &mut harness.state_mut().session;
     assert_eq!(*session.scene(), before);
     assert!(session.undo() && *session.scene() == changed);
-}
-
-#[test]
-fn without_stops_it_is_another_motion_from_here_on() {
-    let mut session = session("paper", &[]);
-    play(&mut session, 1.0);
-    assert_eq!(session.pin(PinKind::OtherStops), Ok('A'));
-    let fork = session.player.watch().now();
-    let now = pinned(&session, 'A').watch.now();
-    assert_eq!((now.t, now.x, now.v), (fork.t, fork.x, fork.v));
-    play(&mut session, 3.0);
-    let (watch, pin) = (session.player.watch(), pinned(&session, 'A'));
-    assert_eq!((pin.scene.stops, pin.since), (Stops::None, fork.t));
-    assert_ne!(session.scene().stops, Stops::None);
-    let reach = |samples: &std::collections::VecDeque<interwell::dynamics::Sample>| {
-        samples.iter().map(|sample| sample.x.abs()).fold(0.0, f64::max)
-    };
-    assert!(reach(watch.samples()) <= 1.5e-3 && reach(pin.watch.samples()) > 3e-3);
-    // the same drive at the same time, and the same way before
-    assert_eq!((watch.time(), watch.now().base_accel), (pin.watch.time(), pin.watch.now().base_accel));
-    assert!(distances(watch, &pin.watch, (0.0, fork.t), 100).iter().all(|point| point.1 == 0.0));
-    // and back: with the stops that were there
-    session.take_back('A');
-    session.poll();
-    assert_eq!(session.scene().stops, Stops::None);
-    assert_eq!(session.pin(PinKind::OtherStops), Ok('B'));
-    assert_eq!(pinned(&session, 'B').scene.stops.travel_limit_mm(), Some(1.5));
-}
-
-#[test]
-fn there_is_room_for_three() {
-    let mut harness = window("paper", WIDE);
-    for _ in 0..3 {
-        press(&mut harness, Key::K);
-    }
-    let letters = |harness: &Harness<'static, Window>| -> String {
-        harness.state().session.pins.all().iter().map(|pin| pin.letter).collect()
-    };
-    assert_eq!(letters(&harness), "ABC");
+    // a pinned one takes the place of the start
     press(&mut harness, Key::K);
-    assert_eq!(letters(&harness), "ABC");
-    let told = harness.state().notice().unwrap_or_default();
-    assert!(told.contains("unpin one first, in the view Compare or by Motion, Unpin"), "{told}");
-    harness.get_by_label("Unpin A").click();
-    harness.run_steps(2);
-    assert_eq!(letters(&harness), "BC");
-    harness.get_by_label("Pin").click();
-    harness.run_steps(2);
-    assert_eq!(letters(&harness), "BCA");
-    // another scene has none
+    let session = &mut harness.state_mut().session;
+    assert!(session.reference.scene == changed && session.reference.apart().is_none());
+    session.edit_once(|scene| scene.mass_g = 16.0);
+    harness.run_steps(3);
+    harness.get_by_label("pinned");
+    // another scene begins with its own start
     harness.state_mut().open_another("duffing");
-    assert_eq!(letters(&harness), "");
+    let session = &harness.state().session;
+    assert!(session.reference.scene == *session.scene() && !session.reference.is_pinned);
 }
 
 #[test]
-fn pins_begin_again_with_the_motion() {
+fn only_another_motion_is_followed() {
     let mut session = session("paper", &[]);
     play(&mut session, 1.0);
-    session.pin(PinKind::OtherStops).unwrap();
+    assert!(session.reference.apart().is_none() && session.reference_card().is_none());
+    // a mass moved by hand
+    session.hold(0.0);
+    session.player.let_go();
+    session.moved_by_hand();
+    session.follow_reference();
+    let reference = apart(&session).watch.now();
+    assert!((reference.x - session.player.watch().now().x).abs() > 1e-4);
+    // which comes back to the same motion
+    play(&mut session, 20.0);
+    assert!(session.reference.apart().is_none());
+    // and a scene that is changed and taken back
+    session.edit_once(|scene| scene.mass_g = 18.0);
+    play(&mut session, 1.0);
+    assert!(session.reference.apart().is_some());
+    assert!(session.take_back() && !session.take_back());
+    play(&mut session, 20.0);
+    assert!(session.reference.apart().is_none());
+}
+
+#[test]
+fn a_reference_begins_again_with_the_motion() {
+    let mut session = session("paper", &[]);
+    play(&mut session, 1.0);
+    session.pin().unwrap();
+    session.switch_stops(false);
     play(&mut session, 1.0);
     session.restart();
-    let pin = pinned(&session, 'A');
-    assert_eq!((pin.watch.time(), pin.since), (0.0, 0.0));
-    assert!(pin.settled().is_none());
+    assert_eq!((apart(&session).watch.time(), apart(&session).since), (0.0, 0.0));
+    assert!(session.reference_card().unwrap().settled.is_none());
     play(&mut session, 0.5);
-    assert_eq!(pinned(&session, 'A').watch.time(), session.player.watch().time());
-}
-
-/// Distance in m of a twin from the mass after some seconds, and at the start.
-fn twins(changes: &[&str], seconds: f64) -> (f64, f64) {
-    let mut session = session("first-look", changes);
-    play(&mut session, 0.5);
-    assert_eq!(session.pin(PinKind::Twin), Ok('A'));
-    assert_eq!(session.player.watch().time(), 0.0);
-    let first = session.player.watch().now().x - pinned(&session, 'A').watch.now().x;
-    play(&mut session, seconds);
-    let last = session.player.watch().now().x - pinned(&session, 'A').watch.now().x;
-    (first.abs(), last.abs())
+    assert_eq!(apart(&session).watch.time(), session.player.watch().time());
+    session.undo();
+    session.restart();
+    assert!(session.reference.apart().is_none());
 }
 
 #[test]
-fn chaos_drives_twins_apart_and_stops_bring_them_together() {
-    let (first, last) = twins(&["excitation.amplitude_g=1.5"], 40.0);
-    assert!((first - 1e-6).abs() < 1e-15, "{first:e}");
-    assert!(last > 1e-4, "{last:e}");
-    let stops = "stops=Rigid(travel_limit_mm: 1.5, restitution: 0.36)";
-    let (first, last) = twins(&["excitation.amplitude_g=1.5", stops], 40.0);
-    assert!((first - 1e-6).abs() < 1e-15, "{first:e}");
-    assert!(last < 1e-12, "{last:e}");
-}
-
-#[test]
-fn a_pin_that_ends_early_stays_there() {
+fn a_reference_that_ends_early_stays_there() {
     let mut session = session("paper-table", &["excitation.amplitude_g=5"]);
-    session.pin(PinKind::OtherStops).unwrap();
+    session.switch_stops(false);
+    session.pin().unwrap();
+    session.switch_stops(true);
     play(&mut session, 2.0);
-    let pin = pinned(&session, 'A');
-    let at = pin.watch.ended().and_then(|outcome| outcome.ended_at()).unwrap();
-    assert!(at < 2.0 && pin.watch.time() == at);
-    assert_eq!(pin.watch.state_at(session.player.time()), pin.watch.now());
+    let at = session.reference_card().unwrap().ended.unwrap();
+    let watch = &apart(&session).watch;
+    assert!(at < 2.0 && watch.time() == at);
+    assert_eq!(watch.state_at(session.player.time()), watch.now());
 }
 
 #[test]
-fn every_view_draws_pins() {
+fn every_view_draws_the_reference() {
     for size in [WIDE, PROJECTED] {
         let mut harness = window("first-look", size);
         command(&mut harness, Command::Arrange(Layout::Study));
         harness.state_mut().session.player.speed = 1.0;
-        for kind in [PinKind::Twin, PinKind::OtherStops, PinKind::Motion] {
-            command(&mut harness, Command::Pin(kind));
-            harness.run_steps(20);
-        }
+        harness.state_mut().session.switch_stops(true);
+        harness.run_steps(20);
         for view in View::ALL {
             command(&mut harness, Command::Show(view, true));
             harness.run_steps(2);
         }
-        for view in [View::Distance, View::Compare] {
-            command(&mut harness, Command::Fill);
-            command(&mut harness, Command::Show(view, true));
-            harness.run_steps(2);
-        }
-        assert_eq!(harness.state().session.pins.all().len(), 3);
+        assert!(harness.state().session.reference.apart().is_some());
         harness.state_mut().session.wait_settled(LONG);
         command(&mut harness, Command::SeekEvent(false));
     }
 }
 
 #[test]
-fn the_distance_is_shown_beside_the_card() {
-    let mut harness = window("first-look", WIDE);
-    command(&mut harness, Command::Pin(PinKind::Twin));
-    harness.get_by_label("distance of the pinned motions");
-    harness.get_by_label("Before / now").click();
-    harness.run_steps(2);
-    assert!(harness.query_by_label("distance of the pinned motions").is_none());
-    assert!(harness.state().tiling.shows(View::BeforeNow));
-}
-
-#[test]
-fn the_table_of_three_pins_needs_no_scrolling_sideways() {
+fn the_table_needs_no_scrolling_sideways() {
     for size in [WIDE, PROJECTED] {
         let mut harness = window("paper", size);
         command(&mut harness, Command::Arrange(Layout::Look));
-        for kind in [PinKind::Motion, PinKind::OtherStops, PinKind::Twin] {
-            command(&mut harness, Command::Pin(kind));
-        }
         let session = &mut harness.state_mut().session;
         assert!(session.set_number("excitation.amplitude_g", 1.4).unwrap());
         session.end_gesture();
-        wait_until("what all settle to", || {
+        wait_until("what both settle to", || {
             harness.run_steps(1);
             let session = &harness.state().session;
-            session.now_card().settled.is_some()
-                && session.pins.all().iter().all(|pin| pin.settled().is_some())
+            session.now_card().settled.is_some() && session.reference_card().unwrap().settled.is_some()
         });
         command(&mut harness, Command::Show(View::Compare, true));
         harness.get_by_label("Compare").click();
         harness.run_steps(3);
         let place = harness.state().tiling.place_of(View::Compare).unwrap();
-        for name in ["Take A back", "Unpin A", "Unpin B", "Unpin C"] {
+        for name in ["Pin", "Back"] {
             let rect = harness.get_by_label(name).rect();
             assert!(
                 rect.left() >= place.left() && rect.right() <= place.right(),
@@ -279,91 +226,7 @@ fn the_table_of_three_pins_needs_no_scrolling_sideways() {
 }
 
 #[test]
-fn two_motions_stand_side_by_side_and_a_hand_moves_the_present_one_alone() {
-    let mut harness = window("first-look", WIDE);
-    for view in View::ALL {
-        command(&mut harness, Command::Show(view, view == View::SideBySide));
-    }
-    harness.get_by_label("Beside it with stops").click();
-    harness.run_steps(3);
-    command(&mut harness, Command::Show(View::Compare, false));
-    harness.get_by_label("0.90 g, 3.0 Hz, no stops");
-    harness.get_by_label("0.90 g, 3.0 Hz, ±1.50 mm");
-    harness.state_mut().session.player.speed = 1.0;
-    harness.run_steps(60);
-    let session = &harness.state().session;
-    let (state, pin) = (session.player.state(), pinned(session, 'A').watch.state_at(session.player.time()));
-    assert!(state.t == pin.t && state.base_accel == pin.base_accel && (state.x - pin.x).abs() > 1e-3);
-    // two drawings and two wells, and one motion that can be taken hold of in each of them
-    assert_eq!(harness.query_all_by_label("proof mass").count(), 2);
-    press(&mut harness, Key::Space);
-    let place = harness.state().tiling.place_of(View::SideBySide).unwrap();
-    let masses: Vec<f32> =
-        harness.query_all_by_label("proof mass").map(|node| node.rect().center().x).collect();
-    assert!(masses.iter().all(|x| *x < place.center().x), "{masses:?}");
-    // the stops of the pinned one are no sliders
-    assert_eq!(harness.query_all_by_label("right stop").count(), 0);
-    command(&mut harness, Command::Pin(PinKind::Motion));
-    command(&mut harness, Command::Show(View::Compare, false));
-    harness.get_by_label("B").click();
-    harness.run_steps(3);
-    assert!(harness.query_by_label("0.90 g, 3.0 Hz, ±1.50 mm").is_none());
-    assert!(!harness.state().session.editor.can_undo());
-}
-
-#[test]
-fn pins_stay_through_ctrl_1_and_leave_by_the_menu() {
-    let mut harness = window("paper", WIDE);
-    press(&mut harness, Key::K);
-    assert!(harness.state().tiling.place_of(View::Compare).is_some());
-    press_with_ctrl(&mut harness, Key::Num1);
-    assert_eq!(harness.state().session.pins.all().len(), 1);
-    assert!(harness.state().tiling.place_of(View::Compare).is_some());
-    harness.get_by_label("Motion").click();
-    harness.run_steps(3);
-    // that of the menu, beside the button in the table
-    assert_eq!(harness.query_all_by_label_contains("Unpin").count(), 2);
-    press(&mut harness, Key::Escape);
-    command(&mut harness, Command::Unpin('B'));
-    assert_eq!(harness.state().session.pins.all().len(), 1);
-    command(&mut harness, Command::Unpin('A'));
-    assert!(harness.state().session.pins.all().is_empty());
-    press_with_ctrl(&mut harness, Key::Num1);
-    assert!(harness.state().tiling.place_of(View::Compare).is_none());
-}
-
-#[test]
-fn a_pin_has_its_letter_at_its_end_and_lies_under_the_motion() {
-    let mut harness = window("first-look", WIDE);
-    harness.state_mut().session.player.speed = 1.0;
-    press(&mut harness, Key::K);
-    harness.state_mut().session.switch_stops(true);
-    harness.run_steps(60);
-    let place = harness.state().tiling.place_of(View::Displacement).unwrap();
-    let at_end = |text: &&(String, eframe::egui::Rect, eframe::egui::Rect)| {
-        text.0 == "A" && place.contains(text.1.center()) && text.1.top() > place.top() + 50.0
-    };
-    let all = painted(&harness);
-    let ends: Vec<_> = all.iter().filter(at_end).collect();
-    assert_eq!(ends.len(), 1, "{ends:?}");
-    // in the drawing the box of the mass is painted after the outline and letter of the pinned one
-    let place = harness.state().tiling.place_of(View::Mechanism).unwrap();
-    let shapes = &harness.output().shapes;
-    let is_letter = |shape: &Shape| {
-        matches!(shape, Shape::Text(text)
-            if text.galley.text() == "A" && place.contains(text.visual_bounding_rect().center()))
-    };
-    let is_box = |shape: &Shape| match shape {
-        Shape::Rect(rect) => place.contains_rect(rect.rect) && rect.stroke.width == 1.5,
-        _ => false,
-    };
-    let letter = shapes.iter().position(|clipped| is_letter(&clipped.shape)).unwrap();
-    let mass = shapes.iter().rposition(|clipped| is_box(&clipped.shape)).unwrap();
-    assert!(letter < mass, "{letter} {mass}");
-}
-
-#[test]
-fn the_well_has_room_for_a_pinned_motion_that_is_pushed_harder() {
+fn the_well_has_room_for_a_reference_that_is_pushed_harder() {
     let mut harness = window("paper", WIDE);
     let ticks = |harness: &Harness<'static, Window>| {
         let place = harness.state().tiling.place_of(View::Well).unwrap();
@@ -375,7 +238,6 @@ fn the_well_has_room_for_a_pinned_motion_that_is_pushed_harder() {
         ticks.sort();
         ticks
     };
-    press(&mut harness, Key::K);
     harness.run_steps(20);
     let before = ticks(&harness);
     let session = &mut harness.state_mut().session;

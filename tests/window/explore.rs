@@ -1,6 +1,6 @@
 //! The layout Explore: the scene turned up and down, asked for while it is looked at.
 
-use eframe::egui::{Key, accesskit::Role};
+use eframe::egui::{Key, Modifiers, PointerButton, accesskit::Role, vec2};
 use egui_kittest::{Harness, kittest::Queryable as _};
 use interwell::app::session::explore::WalkQuantity;
 use interwell::app::views::View;
@@ -8,6 +8,7 @@ use interwell::app::window::{Command, Window};
 use interwell::scene::{Layout, Start};
 use interwell_studies::study::{Direction, Signal};
 
+use crate::cursors::drag;
 use crate::shared::axis;
 use crate::support::{LONG, PROJECTED, WIDE, command, painted, press_with_ctrl, wait_until, window};
 
@@ -51,7 +52,7 @@ fn a_lesson_shows_no_coarse_steps() {
 }
 
 #[test]
-fn both_directions_come_and_a_drag_takes_the_scene_there() {
+fn both_directions_come_and_a_click_or_its_line_takes_the_scene_there() {
     let mut harness = open(WIDE);
     fill(&mut harness);
     let up = fine(harness.state(), Direction::Up);
@@ -62,18 +63,24 @@ fn both_directions_come_and_a_drag_takes_the_scene_there() {
     let name = "RMS velocity (mm/s) over amplitude, turned up and down";
     let place = harness.get_by_role_and_label(Role::Canvas, name).rect();
     harness.drag_at(place.center());
-    harness.run_steps(2);
+    harness.run_steps(1);
     harness.drop_at(place.center());
-    harness.run_steps(2);
-    let session = &mut harness.state_mut().session;
-    assert!(
-        session.amplitude_g().is_some_and(|amplitude| amplitude == 1.0 || amplitude == 1.1),
-        "{:?}",
-        session.amplitude_g()
-    );
+    // until it can be no double click
+    harness.run_steps(6);
+    let amplitude = |harness: &Harness<'_, Window>| harness.state().session.amplitude_g().unwrap();
+    let clicked = amplitude(&harness);
+    assert!(clicked == 1.0 || clicked == 1.1, "{clicked}");
     // the field that is walked has no part in the question: what is known stays
-    assert!(session.explore.walks.found.is_whole());
-    assert!(session.undo() && *session.scene() == before && !session.undo());
+    assert!(harness.state().session.explore.walks.found.is_whole());
+    // the line at the scene goes with the hand; elsewhere a drag pans
+    let share = ((clicked - 0.8) / 0.5) as f32;
+    let [line, right] = [share, 0.9].map(|x| place.lerp_inside(vec2(x, 0.5)));
+    drag(&mut harness, line, right, (PointerButton::Primary, Modifiers::NONE));
+    let dragged = amplitude(&harness);
+    assert!(dragged > clicked, "{clicked} {dragged}");
+    assert_eq!(harness.state().memory.chosen_axes(View::UpAndDown), [None; 2]);
+    let session = &mut harness.state_mut().session;
+    assert!(session.undo() && session.undo() && *session.scene() == before && !session.undo());
     session.explore.walks.quantity = WalkQuantity::Strobes;
     harness.run_steps(3);
     harness.get_by_label("displacement once a period (mm) over amplitude, turned up and down");
@@ -118,6 +125,8 @@ fn basins_come_coarse_first_and_a_click_begins_there() {
     let (parts, current) = harness.state().session.explore.basins.parts();
     assert!(current && parts.len() > 1);
     let last = parts.last().unwrap().as_ref().unwrap();
+    // each start is followed once more, by which those that are not sure are paler
+    assert_eq!(last.answer.sure.len(), last.answer.rows.len());
     // a motion that rests on a stop forgets its start: one attractor, and all starts go to it
     assert_eq!((last.answer.attractors.len(), last.answer.lost + last.answer.undecided), (1, 0));
     assert_eq!(last.answer.attractors[0].starts, last.answer.rows.iter().flatten().count() as u64);
@@ -126,7 +135,8 @@ fn basins_come_coarse_first_and_a_click_begins_there() {
     harness.drag_at(place.center());
     harness.run_steps(1);
     harness.drop_at(place.center());
-    harness.run_steps(1);
+    // it is known after a while that it was no double click
+    harness.run_steps(30);
     let session = &mut harness.state_mut().session;
     let Start::At { x_mm, .. } = session.scene().start else { panic!("{:?}", session.scene().start) };
     assert!(x_mm.abs() < 1.0, "{x_mm}");

@@ -13,7 +13,7 @@ use interwell::app::window::{Place, Window};
 use interwell::dynamics::EventKind;
 use interwell::scene::{PRESETS, Stops};
 
-use crate::support::{LONG, PROJECTED, WIDE, command, press, press_with_ctrl, window};
+use crate::support::{LONG, PROJECTED, WIDE, click_on, command, press, press_with_ctrl, window};
 
 /// Lets frames pass until the motion has come to where it was sent.
 fn arrive(harness: &mut Harness<'_, Window>) {
@@ -33,8 +33,6 @@ fn covered_nothing_of_the_motion_is_seen() {
     for view in View::ALL {
         command(&mut harness, Command::Show(view, true));
     }
-    // two motions side by side have opened over the window
-    press(&mut harness, Key::Z);
     harness.state_mut().session.player.set_playing(false);
     press(&mut harness, Key::PageDown);
     let seen = |harness: &Harness<'static, Window>| {
@@ -154,23 +152,17 @@ fn where_room_is_short_well_and_mechanism_are_seen() {
     assert_eq!(harness.query_all_by_label("proof mass").count(), 2);
     let tab = |name| harness.get_by_label(name).rect();
     assert!(tab("Displacement").left() > tab("Mechanism").left());
-    // all of the row of controls is there
-    let more = harness.get_by_label("More").rect();
-    assert!(more.right() <= PROJECTED[0], "{more:?}");
-    let sliders = harness.query_all_by_role(Role::Slider).map(|node| node.rect());
-    let row: Vec<Rect> = sliders.filter(|rect| rect.bottom() < 120.0).collect();
-    assert!(row.len() >= 2 && row.iter().all(|rect| rect.right() < more.left()), "{row:?}");
 }
 
 #[test]
-fn more_stands_beside_the_views() {
+fn the_controls_of_a_narrow_window_open_beside_the_views() {
     let mut harness = window("paper", PROJECTED);
-    harness.get_by_label("More").click();
-    harness.run_steps(3);
+    assert!(harness.query_by_role_and_label(Role::Slider, "preload").is_none());
+    click_on(&mut harness, "Controls");
     let column = harness.get_by_role_and_label(Role::Slider, "preload").rect();
     let masses: Vec<Rect> = harness.query_all_by_label("proof mass").map(|mass| mass.rect()).collect();
-    assert!(masses.len() == 2 && masses.iter().all(|rect| rect.right() < column.left()), "{masses:?}");
-    press(&mut harness, Key::Escape);
+    assert!(masses.len() == 2 && masses.iter().all(|rect| rect.left() > column.right()), "{masses:?}");
+    click_on(&mut harness, "Controls");
     assert!(harness.query_by_role_and_label(Role::Slider, "preload").is_none());
 }
 
@@ -178,6 +170,7 @@ fn more_stands_beside_the_views() {
 fn words_say_what_they_mean() {
     let mut harness = window("paper", WIDE);
     harness.state_mut().session.player.set_playing(false);
+    click_on(&mut harness, "Compare");
     let labels = [
         ("reach", "largest distance from the middle"),
         ("crosses from", "least shaking at this frequency"),
@@ -186,11 +179,12 @@ fn words_say_what_they_mean() {
     ];
     let mut places: Vec<(egui::Pos2, &str)> =
         labels.map(|(label, words)| (harness.get_by_label(label).rect().center(), words)).to_vec();
-    // the words of the drawing stand at its edges
-    let drawing = harness.get_by_label("Mechanism").rect().left_bottom();
+    // the drawing says its scale, the bulge and the motion of the base
+    let drawing = harness.get_by_role_and_label(Role::Button, "Mechanism").rect().left_bottom();
     let foot = harness.get_by_label("Well").rect().top();
-    places.push((pos2(drawing.x + 40.0, foot - 36.0), "bows sideways between its two ends"));
-    places.push((pos2(drawing.x + 130.0, drawing.y - 14.0), "stretched across the flexures"));
+    for words in ["across the flexures.", "Bulge ", "The base moves by ±"] {
+        places.push((pos2(drawing.x + 40.0, foot - 36.0), words));
+    }
     for (at, words) in places {
         harness.hover_at(at);
         harness.run_steps(90);
@@ -205,7 +199,7 @@ fn the_mechanism_has_its_share_of_the_height() {
     for key in [Key::Num1, Key::Num2] {
         let mut harness = window("paper", WIDE);
         press_with_ctrl(&mut harness, key);
-        let top = |name| harness.get_by_label(name).rect().top();
+        let top = |name| harness.get_by_role_and_label(Role::Button, name).rect().top();
         // the bar below the views is 60 points high
         let share = (top("Well") - top("Mechanism")) / (WIDE[1] - 60.0 - top("Mechanism"));
         assert!((0.39..0.42).contains(&share), "{share}");
@@ -228,6 +222,7 @@ fn tabs_go_round_by_key() {
 #[test]
 fn escape_leaves_a_view_over_the_window() {
     let mut harness = window("paper", WIDE);
+    click_on(&mut harness, "Compare");
     harness.get_by_label("fill the window with Displacement").click();
     harness.run_steps(3);
     harness.get_by_label("all views");
@@ -467,6 +462,7 @@ fn an_event_is_named_by_what_happened() {
                 let speed = |v: f64| interwell::app::words::status::speed(v.abs());
                 format!("impact, {}, {} to {} mm/s", event.side.name(), speed(event.v_in), speed(event.v_out))
             }
+            EventKind::Crossing => "crossing to the ".to_owned(),
             kind => kind.name().to_owned(),
         };
         harness.get_by_label_contains(&words);

@@ -17,6 +17,7 @@ mod figures;
 mod first_minute;
 mod flexures;
 mod frame;
+mod gestures;
 mod guidance;
 mod keyboard;
 mod lesson_window;

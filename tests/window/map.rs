@@ -1,11 +1,12 @@
 //! The map: filled, stopped and made again; a click on a cell; agreement with the command line's sweep.
 
-use eframe::egui::{Key, Modifiers, accesskit::Role};
+use eframe::egui::{Key, Modifiers, PointerButton, accesskit::Role};
 use egui_kittest::{Harness, kittest::Queryable as _};
 use interwell::app::session::map::Map;
 use interwell::app::window::Window;
 use interwell::scene::{Layout, Start, Stops, SweepAxis};
 
+use crate::cursors::{drag, wheel};
 use crate::shared::axis;
 use crate::support::{
     LONG, WIDE, open_options, press, press_with_ctrl, session, wait_for_threads, wait_until, window,
@@ -48,7 +49,7 @@ fn it_fills_and_a_click_is_one_step() {
     harness.drag_at(place.center());
     harness.run_steps(1);
     harness.drop_at(place.center());
-    harness.run_steps(1);
+    harness.run_steps(8);
     let session = &mut harness.state_mut().session;
     assert_eq!(session.scene().stops, Stops::Rigid { travel_limit_mm: 2.0, restitution: 0.36 });
     assert_eq!(session.amplitude_g(), Some(1.0));
@@ -226,7 +227,7 @@ fn it_keeps_its_own_axes_when_it_is_clicked() {
     harness.drag_at(at);
     harness.run_steps(1);
     harness.drop_at(at);
-    harness.run_steps(4);
+    harness.run_steps(8);
     let g = harness.state().session.amplitude_g().unwrap();
     assert!((0.1..0.3).contains(&g), "{g}");
     assert_eq!(ranges(&harness), before);
@@ -244,19 +245,24 @@ fn a_box_enlarges_and_a_double_click_is_back() {
     let (before, scene) = (ranges(&harness), harness.state().session.scene().clone());
     let place = harness.get_by_role_and_label(Role::Image, "map").rect();
     let at = |x: f32, y: f32| place.min + eframe::egui::vec2(x, y) * place.size();
-    harness.drag_at(at(0.5, 0.6));
-    harness.run_steps(2);
-    for share in [0.6, 0.7, 0.8] {
-        harness.hover_at(at(share, 0.6 - 0.5 * (share - 0.5)));
-        harness.run_steps(1);
-    }
-    harness.drop_at(at(0.8, 0.45));
-    harness.run_steps(3);
+    drag(&mut harness, at(0.5, 0.6), at(0.8, 0.45), (PointerButton::Secondary, Modifiers::NONE));
     let [across, up] = ranges(&harness);
     assert!(across.0 > 1.8 && across.1 < 2.8 && across.2 < 0.25, "{across:?}");
     assert!(up.0 > 0.8 && up.1 < 1.2 && up.2 < 0.25, "{up:?}");
     assert_eq!(*harness.state().session.scene(), scene);
-    harness.get_by_label("Whole map");
+    harness.get_by_label("axes of Map as they were");
+    // a drag pans, the wheel enlarges and goes back
+    drag(&mut harness, at(0.5, 0.5), at(0.3, 0.7), (PointerButton::Primary, Modifiers::NONE));
+    let panned = ranges(&harness);
+    for (now, then) in [(panned[0], across), (panned[1], up)] {
+        // in whole cells
+        assert!(now.0 > then.0 && (now.1 - now.0 - then.1 + then.0).abs() < 2.1 * now.2, "{panned:?}");
+    }
+    wheel(&mut harness, at(0.5, 0.5), Modifiers::NONE, 120.0);
+    let closer = ranges(&harness);
+    assert!(closer[0].1 - closer[0].0 < 0.6 * (panned[0].1 - panned[0].0), "{closer:?} {panned:?}");
+    wheel(&mut harness, at(0.5, 0.5), Modifiers::NONE, -120.0);
+    assert_eq!(*harness.state().session.scene(), scene);
     // a test's frames are long
     harness.ctx.options_mut(|options| options.input_options.max_double_click_delay = 5.0);
     for _ in 0..2 {
@@ -296,7 +302,7 @@ fn the_cross_hair_is_dragged_and_stepped() {
 #[test]
 fn ends_and_steps_are_typed() {
     let mut harness = open("paper", WIDE, (0.25, 0.25));
-    harness.get_by_label("Range").click();
+    harness.get_by_label("Options").click();
     harness.run_steps(4);
     let mut enter = |name: &str, text: &str| {
         harness.get_by_role_and_label(Role::SpinButton, name).click();

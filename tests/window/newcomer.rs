@@ -10,7 +10,9 @@ use interwell::app::window::Window;
 use interwell::app::words::fields::info;
 use interwell::scene::{FieldPath, PRESETS, Stops};
 
-use crate::support::{LONG, command, is_painted, painted, press, press_with_ctrl, session, sliced, window};
+use crate::support::{
+    LONG, click_on, command, is_painted, painted, press, press_with_ctrl, session, sliced, window,
+};
 
 const WIDE: [f32; 2] = [1280.0, 720.0];
 /// In points: 1280x720 and 900x600 pixels, as they are and projected.
@@ -190,6 +192,7 @@ fn a_reach_is_not_beyond_its_stop() {
     harness.state_mut().session.edit_once(|scene| scene.stops = stops);
     harness.state_mut().session.wait(LONG);
     harness.run_steps(3);
+    click_on(&mut harness, "Compare");
     harness.get_by_label("2.25");
     assert!(harness.query_by_label("2.3").is_none());
 }
@@ -253,6 +256,7 @@ fn what_stands_in_rows_is_whole() {
     stops_on(&mut harness);
     harness.run_steps(60);
     set(&mut harness, "stops.travel_limit_mm", 2.25);
+    click_on(&mut harness, "Compare");
     harness.get_by_label("What stops do:");
     harness.get_by_label("shaking");
     let last = harness.get_by_label("crosses from").rect();

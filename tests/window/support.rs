@@ -72,9 +72,9 @@ pub fn click_on(harness: &mut Harness<'_, Window>, label: &str) {
     harness.run_steps(3);
 }
 
-/// Opens the menu with the choices of a map, where these have no rows of their own.
+/// Opens the menu with the choices of a map, where these have no row of their own.
 pub fn open_options(harness: &mut Harness<'_, Window>) {
-    if harness.query_by_label("Options").is_some() && harness.query_by_label("Flat").is_none() {
+    if harness.query_by_label("Flat").is_none() {
         click_on(harness, "Options");
     }
 }
@@ -144,13 +144,30 @@ pub fn is_painted(harness: &Harness<'static, Window>, words: &str) -> bool {
 
 /// The texts of which a part is seen and a part is not.
 pub fn sliced(harness: &Harness<'static, Window>) -> Vec<String> {
-    let cut = |label: &&(String, Rect, Rect)| {
+    described(&cut(harness))
+}
+
+fn described(texts: &[(String, Rect, Rect)]) -> Vec<String> {
+    texts.iter().map(|text| format!("{} {:?} in {:?}", text.0, text.1, text.2)).collect()
+}
+
+fn cut(harness: &Harness<'static, Window>) -> Vec<(String, Rect, Rect)> {
+    let is_cut = |label: &(String, Rect, Rect)| {
         let (text, clip) = (label.1.shrink(1.0), label.2);
         text.is_positive() && text.intersects(clip) && !clip.expand(0.5).contains_rect(text)
     };
-    painted(harness)
-        .iter()
-        .filter(cut)
-        .map(|text| format!("{} {:?} in {:?}", text.0, text.1, text.2))
-        .collect()
+    painted(harness).into_iter().filter(is_cut).collect()
+}
+
+/// The texts that are cut where they are and after the column that holds them was scrolled down.
+pub fn out_of_reach(harness: &mut Harness<'static, Window>) -> Vec<String> {
+    let mut lost = cut(harness);
+    for (text, _, clip) in lost.clone() {
+        crate::cursors::wheel(harness, clip.center(), Modifiers::NONE, -2000.0);
+        let still = cut(harness);
+        let is_there = painted(harness).iter().any(|shown| shown.0 == text);
+        lost.retain(|(other, ..)| *other != text || !is_there || still.iter().any(|cut| cut.0 == text));
+        crate::cursors::wheel(harness, clip.center(), Modifiers::NONE, 2000.0);
+    }
+    described(&lost)
 }

@@ -1,14 +1,13 @@
-//! Before / now and Compare: one table.
+//! The table of Compare.
 
 use std::f64::consts::TAU;
 
 use egui_kittest::Harness;
-use interwell::app::session::pins::PinKind;
 use interwell::app::views::View;
 use interwell::app::window::{Command, Window};
 use interwell::scene::Excitation;
 
-use crate::support::{LONG, WIDE, command, painted, window};
+use crate::support::{LONG, WIDE, command, painted, wait_until, window};
 
 /// Shows one view alone.
 fn alone(harness: &mut Harness<'static, Window>, view: View) {
@@ -33,7 +32,7 @@ fn rows(harness: &Harness<'static, Window>, view: View) -> Vec<Vec<String>> {
         let beside = texts.iter().filter(|text| (text.1.center().y - name.center().y).abs() < 7.0);
         beside.map(|text| text.0.clone()).collect::<Vec<_>>()
     };
-    names.iter().map(|name| row(&name.1)).filter(|row| row[0] != "Pin" && row[0] != "With stops").collect()
+    names.iter().map(|name| row(&name.1)).filter(|row| row[0] != "Pin").collect()
 }
 
 fn named<'a>(rows: &'a [Vec<String>], name: &str) -> &'a Vec<String> {
@@ -41,37 +40,37 @@ fn named<'a>(rows: &'a [Vec<String>], name: &str) -> &'a Vec<String> {
 }
 
 #[test]
-fn before_now_and_compare_are_one_table() {
+fn the_reference_stands_beside_the_present_motion() {
     let mut harness = window("paper", WIDE);
-    command(&mut harness, Command::Pin(PinKind::Motion));
     let session = &mut harness.state_mut().session;
     session.edit_once(|scene| {
         assert!(interwell::scene::FieldPath::new("stops.restitution").set(scene, 0.5));
         assert!(interwell::scene::FieldPath::new("mechanism.preload_mm").set(scene, 2.5));
     });
     session.wait(LONG);
-    harness.run_steps(5);
-    alone(&mut harness, View::BeforeNow);
-    let card = rows(&harness, View::BeforeNow);
+    wait_until("what the start settles to", || {
+        harness.run_steps(1);
+        harness.state().session.reference_card().unwrap().settled.is_some()
+    });
+    harness.run_steps(3);
     alone(&mut harness, View::Compare);
-    let compare = rows(&harness, View::Compare);
-    let names = |rows: &[Vec<String>]| rows.iter().map(|row| row[0].clone()).collect::<Vec<_>>();
-    // the same rows in the same order; what differs has the name of its slider
-    assert_eq!(names(&card), names(&compare));
+    let card = rows(&harness, View::Compare);
+    let names: Vec<&String> = card.iter().map(|row| &row[0]).collect();
+    // what differs has the name of its slider
     for name in ["shaking", "stops", "restitution", "preload", "motion", "RMS velocity", "reach"] {
         named(&card, name);
     }
     // what is equal in both has no row
-    assert!(!names(&card).iter().any(|name| name == "mass" || name == "damping"));
-    let order = |name: &str| names(&card).iter().position(|other| other == name).unwrap();
+    assert!(!names.iter().any(|name| *name == "mass" || *name == "damping"));
+    let order = |name: &str| names.iter().position(|other| *other == name).unwrap();
     assert!(order("preload") < order("motion") && order("motion") < order("RMS velocity"));
     assert_eq!(named(&card, "motion")[1], "once settled");
-    // the same units, and the same digits of the present motion
-    for (name, unit) in [("RMS velocity", "mm/s"), ("reach", "mm"), ("stops", "mm"), ("preload", "mm")] {
-        let (row, beside) = (named(&card, name), named(&compare, name));
-        assert!(row[1] == unit && beside[1] == unit, "{row:?} {beside:?}");
-        assert_eq!(row[3], beside[2], "{row:?} {beside:?}");
-        assert_eq!(row[2], beside[3], "{row:?} {beside:?}");
+    for (name, unit) in [("RMS velocity", "mm/s"), ("reach", "mm")] {
+        let row = named(&card, name);
+        let number = |text: &str| text.trim_matches(['(', ')']).replace('\u{2212}', "-").parse::<f64>();
+        let (before, now) = (number(&row[2]).unwrap(), number(&row[3]).unwrap());
+        let apart = number(&row[4]).unwrap_or(0.0);
+        assert!(row[1] == unit && (now - before - apart).abs() < 1e-9, "{row:?}");
     }
     assert_eq!(named(&card, "restitution")[1..], ["0.36", "0.5"]);
     assert_eq!(named(&card, "preload")[2..], ["2.7", "2.5"]);
@@ -81,7 +80,6 @@ fn before_now_and_compare_are_one_table() {
 fn one_threshold_on_all_surfaces() {
     let mut harness = window("paper", WIDE);
     harness.state_mut().session.wait(LONG);
-    command(&mut harness, Command::Pin(PinKind::Motion));
     harness.run_steps(3);
     // the amplitude has no part in the threshold: with it alone changed both are equal
     let session = &mut harness.state_mut().session;
@@ -97,11 +95,8 @@ fn one_threshold_on_all_surfaces() {
     session.wait(LONG);
     harness.run_steps(3);
     let row = named(&rows(&harness, View::Compare), "crosses from").clone();
-    let (now, pinned) = (row[2].clone(), row[3].clone());
-    assert_eq!(pinned, "0.718");
-    alone(&mut harness, View::BeforeNow);
-    let card = rows(&harness, View::BeforeNow);
-    assert_eq!(named(&card, "crosses from")[2..], [pinned, now.clone()]);
+    assert_eq!(row[2], "0.718");
+    let now = &row[3];
     let text = harness.state().session.sentence().whole();
     assert!(text.contains(&format!("{now} g")), "{now}: {text}");
     let ways = harness.state_mut().session.ways();
@@ -113,8 +108,8 @@ fn an_undecided_threshold_is_one_number() {
     let mut harness = window("first-look", WIDE);
     harness.state_mut().session.wait(LONG);
     harness.run_steps(3);
-    alone(&mut harness, View::BeforeNow);
-    let shown = named(&rows(&harness, View::BeforeNow), "crosses from").last().unwrap().clone();
+    alone(&mut harness, View::Compare);
+    let shown = named(&rows(&harness, View::Compare), "crosses from").last().unwrap().clone();
     assert!(shown.starts_with("about 1.1"), "{shown}");
     let text = harness.state().session.sentence().whole();
     let number = shown.trim_start_matches("about ");
@@ -122,15 +117,15 @@ fn an_undecided_threshold_is_one_number() {
 }
 
 #[test]
-fn the_state_before_a_change_has_the_threshold_that_is_found_after_it() {
+fn the_reference_has_the_threshold_that_is_found_after_it() {
     let mut harness = window("paper", WIDE);
     harness.state_mut().session.set_number("excitation.amplitude_g", 1.1).unwrap();
     harness.state_mut().session.end_gesture();
     harness.state_mut().session.wait(LONG);
     harness.run_steps(3);
-    alone(&mut harness, View::BeforeNow);
-    let row = named(&rows(&harness, View::BeforeNow), "crosses from").clone();
-    assert_eq!(row[2..], ["0.718", "0.718"]);
+    alone(&mut harness, View::Compare);
+    let row = named(&rows(&harness, View::Compare), "crosses from").clone();
+    assert_eq!(row[2..], ["0.718", "0.718", "(same)"]);
 }
 
 #[test]
@@ -144,10 +139,32 @@ fn a_threshold_is_in_the_unit_of_the_drive() {
     });
     session.wait(LONG);
     harness.run_steps(3);
-    alone(&mut harness, View::BeforeNow);
-    let row = named(&rows(&harness, View::BeforeNow), "crosses from").clone();
+    alone(&mut harness, View::Compare);
+    let row = named(&rows(&harness, View::Compare), "crosses from").clone();
     // two drives of two units, each with its own
     assert_eq!(row[1..], ["g", "0.718", "0.107 N"]);
     let text = harness.state().session.sentence().whole();
     assert!(text.contains("0.107 N"), "{text}");
+}
+
+#[test]
+fn numbers_of_a_motion_that_does_not_settle_are_those_of_a_time() {
+    let cases = [
+        ("bouncing-ball", "from 2.5 s to 5.0 s"),
+        ("paper-ramp", "from "),
+        ("random-shaking", "from "),
+        ("paper", "once settled"),
+        ("duffing-chaos", "once settled"),
+    ];
+    for (preset, words) in cases {
+        let mut harness = window(preset, WIDE);
+        harness.run_steps(3);
+        alone(&mut harness, View::Compare);
+        // the note stands beside the word for the motion or below it
+        let all = rows(&harness, View::Compare).concat();
+        assert!(all.iter().any(|text| text.starts_with(words)), "{preset}: {all:?}");
+        let summary = *harness.state().session.settled_now().unwrap();
+        let settles = summary.settled.is_some() && !summary.is_transient();
+        assert_eq!(all.iter().any(|text| text == "once settled"), settles, "{preset}: {all:?}");
+    }
 }

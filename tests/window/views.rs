@@ -1,5 +1,7 @@
 //! The views: drawing of every scene, and the hand on each of them.
 
+use std::collections::HashMap;
+
 use eframe::egui::{Key, Modifiers, Pos2, accesskit::Role, pos2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
@@ -59,17 +61,18 @@ fn layouts_switch() {
         harness.get_by_label(view.name());
     }
     press_with_ctrl(&mut harness, Key::Num1);
-    assert!(!harness.state().tiling.shows(View::PhasePortrait));
-    assert!(harness.query_by_label("Phase portrait").is_none());
+    assert!(!harness.state().tiling.shows(View::ForceCurve));
+    assert!(harness.query_by_label("Force curve").is_none());
+    assert!(harness.state().tiling.shows(View::PhasePortrait));
     // the own arrangement is what was there first, and then what becomes of it
     press_with_ctrl(&mut harness, Key::Num4);
     command(&mut harness, Command::Show(View::Velocity, true));
-    command(&mut harness, Command::Show(View::BeforeNow, false));
+    command(&mut harness, Command::Show(View::Compare, false));
     command(&mut harness, Command::Arrange(Layout::Study));
     assert!(!harness.state().tiling.shows(View::Velocity));
     press_with_ctrl(&mut harness, Key::Num4);
     let window = harness.state();
-    assert!(window.tiling.shows(View::Velocity) && !window.tiling.shows(View::BeforeNow));
+    assert!(window.tiling.shows(View::Velocity) && !window.tiling.shows(View::Compare));
     let kept = window.custom.clone();
     assert!(kept.is_some());
     // it outlives the scene and the program
@@ -78,13 +81,56 @@ fn layouts_switch() {
     let mut again = self::window("paper", WIDE);
     again.state_mut().custom = kept;
     command(&mut again, Command::ArrangeOwn);
-    assert!(again.state().tiling.shows(View::Velocity) && !again.state().tiling.shows(View::BeforeNow));
+    assert!(again.state().tiling.shows(View::Velocity) && !again.state().tiling.shows(View::Compare));
+}
+
+/// What the program keeps, as text under a key.
+#[derive(Default)]
+struct Kept(HashMap<String, String>);
+
+impl eframe::Storage for Kept {
+    fn get_string(&self, key: &str) -> Option<String> {
+        self.0.get(key).cloned()
+    }
+
+    fn set_string(&mut self, key: &str, value: String) {
+        self.0.insert(key.to_owned(), value);
+    }
+
+    fn remove_string(&mut self, key: &str) {
+        self.0.remove(key);
+    }
+
+    fn flush(&mut self) {}
+}
+
+#[test]
+fn an_arrangement_with_views_that_are_gone_keeps_the_others() {
+    let mut harness = window("paper", WIDE);
+    for view in [View::Velocity, View::Events, View::Energy] {
+        command(&mut harness, Command::Show(view, true));
+    }
+    command(&mut harness, Command::KeepOwn);
+    let mut kept = Kept::default();
+    eframe::App::save(harness.state_mut(), &mut kept);
+    let text = kept.0.get_mut("arrangement").unwrap();
+    let gone = [("Events", "SideBySide"), ("Energy", "Distance"), ("Compare", "BeforeNow")];
+    for (view, gone) in gone {
+        *text = text.replace(view, gone);
+        assert_eq!(text.matches(gone).count(), 1, "{text}");
+    }
+    let mut again = window("paper", WIDE);
+    again.state_mut().restore(&kept);
+    command(&mut again, Command::ArrangeOwn);
+    assert!([View::Velocity, View::Compare].iter().all(|view| again.state().tiling.shows(*view)));
+    let text = format!("{:?}", again.state().custom);
+    assert!(text.contains("Velocity") && text.matches("Compare").count() == 1, "{text}");
 }
 
 #[test]
 fn a_projector_has_room_for_the_study() {
     let mut harness = study("paper", PROJECTED);
-    assert_eq!(harness.state().tiling.room(), Room::Compact);
+    assert_eq!(harness.state().tiling.room(), Room::Narrow);
     for name in ["Well", "Mechanism", "Phase portrait", "Force curve", "Displacement", "Energy"] {
         let rect = harness.get_by_label(name).rect();
         assert!(
@@ -111,7 +157,17 @@ fn a_click_in_the_phase_portrait_places_the_mass() {
     assert_eq!(state.t, before.t);
     assert!(state.x < -1e-3 && state.v > 0.01, "{state:?}");
     assert!(session.player.watch().ledger().by_hand_j != 0.0);
-    assert!(!session.editor.can_undo());
+    // one step brings the mass back, and again to where it was placed
+    let of_mass = |harness: &Harness<'static, Window>| {
+        let state = harness.state().session.player.state();
+        (state.x, state.v)
+    };
+    let placed = of_mass(&harness);
+    command(&mut harness, Command::Undo);
+    assert_eq!(of_mass(&harness), (before.x, before.v));
+    assert!(!harness.state().session.editor.can_undo());
+    command(&mut harness, Command::Redo);
+    assert_eq!(of_mass(&harness), placed);
 }
 
 #[test]
@@ -246,25 +302,11 @@ fn a_displacement_is_zoomed_with_shift_and_back() {
 }
 
 #[test]
-fn the_phase_portrait_shows_points_only() {
-    let mut harness = study("paper", WIDE);
-    assert!(!harness.state().memory.points_only);
-    harness.get_by_label("points only").click();
-    harness.run_steps(3);
-    assert!(harness.state().memory.points_only);
-    let before = harness.state().session.player.watch().ledger().by_hand_j;
-    // and the choice is no click on the states below it
-    assert_eq!(before, 0.0);
-}
-
-#[test]
 fn a_view_without_room_says_so() {
     let mut harness = window("first-look", WIDE);
     for view in View::ALL {
         command(&mut harness, Command::Show(view, true));
     }
-    // two motions side by side have opened over the window
-    press(&mut harness, Key::Z);
     harness.run_steps(4);
     harness.get_by_label("Energy");
     // at least a digit of the ledger, or the word that there is no room for it

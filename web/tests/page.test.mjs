@@ -19,9 +19,9 @@ const dist = fileURLToPath(new URL("../dist/", import.meta.url));
 const pictures = process.env.PICTURES;
 const types = { ".html": "text/html", ".js": "text/javascript", ".wasm": "application/wasm", ".png": "image/png" };
 // heights of rows of the menu of files
-const SAVE_THE_RUN = 292;
-const SAVE_THE_EVENTS = 316;
-const SAVE_THE_MAP = 388;
+const SAVE_THE_RUN = 280;
+const SAVE_THE_EVENTS = 304;
+const SAVE_THE_MAP = 376;
 const arguments_ = ["--no-sandbox", "--disable-quic", "--no-first-run", "--disable-background-networking"];
 
 let server, browser, address;
@@ -285,7 +285,7 @@ test("a lesson is done to its end, and that is kept", async () => {
   await next();
   await next();
   // the amplitude of the task
-  await drag(page, [178, 200, 230, 253], 182);
+  await drag(page, [88, 120, 150, 180], 234);
   await says(page, "cross");
   await page.waitForTimeout(5_000);
   await picture(page, "lesson-task");

@@ -72,7 +72,9 @@ pub use scalar::{Number, Scalar};
 pub(crate) use shift::shift;
 pub use sum::CompensatedSum;
 pub use survival::{QuantileRanks, Rate, Waiting, median};
-pub use text::{Ending, decimals, number_text, push_number, rounded, short, significant};
+pub use text::{
+    Ending, decimals, is_obeyed, number_text, one_line, push_number, rounded, short, significant, visible,
+};
 pub use turns::{Turn, extent, turns};
 
 /// The coefficients of the polynomial `factor` times (x - root) for each root.

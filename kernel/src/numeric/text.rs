@@ -1,5 +1,6 @@
-//! Numbers as text: the shortest form that parses back, and few digits for sentences.
+//! Numbers as text: the shortest form that parses back, and few digits for sentences. Text for a terminal.
 
+use std::borrow::Cow;
 use std::fmt::Write;
 use std::ops::Range;
 
@@ -89,6 +90,35 @@ pub fn decimals(value: f64, digits: i32) -> usize {
     (digits - 1 - power).clamp(0, 12) as usize
 }
 
+/// Whether a character moves about a terminal, changes it, or turns the text around it: a control character,
+/// or one of Unicode for the direction of text or for the end of a line.
+#[doc(hidden)]
+pub fn is_obeyed(c: char) -> bool {
+    let turns = ['\u{61c}', '\u{200e}', '\u{200f}', '\u{2028}', '\u{2029}'];
+    c.is_control() || turns.contains(&c) || matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+}
+
+/// The text with an escape such as `\u{1b}` for each character that a terminal would obey, but for tabs and
+/// line ends.
+#[doc(hidden)]
+pub fn visible(text: &str) -> Cow<'_, str> {
+    let is_escaped = |c: char| is_obeyed(c) && c != '\n' && c != '\t';
+    if !text.contains(is_escaped) {
+        return text.into();
+    }
+    let mut shown = String::with_capacity(text.len());
+    for c in text.chars() {
+        if is_escaped(c) { shown.extend(c.escape_default()) } else { shown.push(c) }
+    }
+    shown.into()
+}
+
+/// The same on one line: blanks in place of tabs and line ends.
+#[doc(hidden)]
+pub fn one_line(text: &str) -> String {
+    visible(text).replace(['\n', '\t'], " ")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -132,6 +162,14 @@ mod tests {
             assert_eq!(written, right);
             assert_eq!(written.parse::<f64>().unwrap().to_bits(), value.to_bits());
         }
+    }
+
+    #[test]
+    fn what_a_terminal_obeys_is_escaped() {
+        assert_eq!(visible("a\tb\n\u{1b}[2J\r\u{9b}\u{7f}"), "a\tb\n\\u{1b}[2J\\r\\u{9b}\\u{7f}");
+        assert_eq!(one_line("a\tb\n\u{202e}\u{2067}x"), "a b \\u{202e}\\u{2067}x");
+        let plain = "Größe → \u{5d0} 𝄞 \\u{1b}";
+        assert!(matches!(visible(plain), Cow::Borrowed(same) if same == plain));
     }
 
     #[test]

@@ -210,8 +210,8 @@ impl Parser<'_> {
     }
 
     fn signed(&mut self) -> Result<f64, Problem> {
-        // every part within another one comes through here
-        if self.depth == MAX_DEPTH {
+        // every part within another one comes through here; the outermost is in none
+        if self.depth > MAX_DEPTH {
             return Err(self.wrong(&format!("it is nested deeper than {MAX_DEPTH} levels; write its result")));
         }
         self.depth += 1;

@@ -2,7 +2,8 @@
 //!
 //! The text is comma separated (optionally also by semicolons or tabs) and has a header row with the needed
 //! columns in any order, possibly among others. Lines that begin with `#` are comments. Nothing is repaired
-//! silently: an invalid value is rejected with its line.
+//! silently: an invalid value is rejected with its line. A scene from elsewhere may name any file, so no
+//! message quotes one that does not look like a table.
 
 use super::error::clip;
 use super::names::find_name;
@@ -179,6 +180,33 @@ impl Sheet {
         }
     }
 
+    /// Whether the row below the header has as many values as the header has names, at least two of them
+    /// numbers, or one of the first rows has numbers alone.
+    fn is_table(&self) -> bool {
+        const ROWS: usize = 20;
+        let lines: Vec<&str> = self.body.split('\n').take(ROWS).collect();
+        let [header, rows @ ..] = &lines[..] else { return false };
+        let is_number = |value: &&str| value.trim().replace(',', ".").parse::<f64>().is_ok();
+        [',', ';', '\t'].into_iter().any(|separator| {
+            let counts = |row: &&str| {
+                let values = || row.split(separator);
+                (values().count(), values().filter(is_number).count())
+            };
+            let names = header.split(separator).count();
+            let has_names =
+                rows.first().map(counts).is_some_and(|(all, numbers)| all == names && numbers >= 2);
+            has_names || rows.iter().map(counts).any(|(all, numbers)| all == numbers && numbers >= 2)
+        })
+    }
+
+    /// What the header has, in words; its names only if this is a table.
+    pub fn header(&self) -> String {
+        match self.is_table() {
+            true => format!("the header has: {}", clip(&self.names.join(", "))),
+            false => "the file is no table of numbers below a header".to_owned(),
+        }
+    }
+
     /// Index of the column that a person calls `name`, in full or without its unit.
     pub fn named_column(&self, name: &str) -> Result<usize, ColumnsError> {
         let known: Vec<&str> = self.names.iter().map(String::as_str).collect();
@@ -186,6 +214,7 @@ impl Sheet {
             Ok(full) => self.column(full),
             Err(problem) => {
                 let known = clip(problem.trim_start_matches("no such column"));
+                let known = if self.is_table() { known } else { format!("; {}", self.header()) };
                 let (line, name) = (self.line(0), clip(name));
                 Err(ColumnsError::MissingColumn(format!("line {line}: no column {name}{known}")))
             }
@@ -197,10 +226,10 @@ impl Sheet {
         let mut at = self.names.iter().enumerate().filter(|(_, other)| *other == name).map(|(i, _)| i);
         let first = at.next().ok_or_else(|| {
             ColumnsError::MissingColumn(format!(
-                "line {}: no column {}; the header has: {} (comma separated; needed: {})",
+                "line {}: no column {}; {} (comma separated; needed: {})",
                 self.line(0),
                 clip(name),
-                clip(&self.names.join(", ")),
+                self.header(),
                 self.wanted
             ))
         })?;

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::scanner::Place;
+use crate::numeric::one_line;
 
 /// One thing that is wrong with a scene.
 ///
@@ -121,13 +122,13 @@ fn lines(name: &str, faults: &[PlacedFault], more: usize) -> String {
     faults.iter().map(line).chain(more).collect::<Vec<_>>().join("\n")
 }
 
-/// The text shortened to one line without control characters.
+/// The text shortened to one line without characters that a terminal would obey.
 pub(super) fn clip(text: &str) -> String {
     const MAX_LENGTH: usize = 200;
-    let clean = |c: char| if c.is_control() { ' ' } else { c };
-    let mut clipped: String = text.chars().take(MAX_LENGTH).map(clean).collect();
-    if text.chars().nth(MAX_LENGTH).is_some() {
-        clipped.push_str("..");
+    let begin: String = text.chars().take(MAX_LENGTH + 1).collect();
+    let shown = one_line(&begin);
+    match shown.char_indices().nth(MAX_LENGTH) {
+        Some((end, _)) => format!("{}..", &shown[..end]),
+        None => shown,
     }
-    clipped
 }

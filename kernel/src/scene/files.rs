@@ -19,6 +19,9 @@ pub struct Files {
     pub folder: Option<PathBuf>,
     /// Texts of files that are already in memory, by the path in the scene.
     pub cached: BTreeMap<String, String>,
+    /// Whether no file of the machine is read, but those in memory and the embedded tables alone: a link may
+    /// come from anywhere.
+    pub sealed: bool,
 }
 
 /// Reason why a file that a scene names cannot be read. The messages give the path that was tried.
@@ -51,7 +54,7 @@ impl Files {
     /// The location of a file that a scene names; `None` for an embedded one.
     pub fn place(&self, path: &str) -> Option<PathBuf> {
         match &self.folder {
-            _ if Path::new(path).is_absolute() => Some(PathBuf::from(path)),
+            _ if Path::new(path).is_absolute() && !self.sealed => Some(PathBuf::from(path)),
             Some(folder) => Some(folder.join(path)),
             None => files::is_in_page(path).then(|| PathBuf::from(path)),
         }
@@ -74,14 +77,23 @@ impl Files {
         let Some(tried) = self.place(path) else {
             return embedded.map(|table| table.text.to_owned()).ok_or_else(|| {
                 let names = presets::TABLES.iter().map(|table| table.name).collect::<Vec<_>>().join(", ");
+                let remedy = match self.sealed {
+                    true => {
+                        "a link reads no file but those that it brings: save the scene as a file beside it"
+                    }
+                    false => "a built-in or pasted scene has no folder: give an absolute path",
+                };
                 FileError::Unusable(format!(
-                    "no embedded table is called {} (there are: {names}), and a built-in or pasted scene has \
-                     no folder: give an absolute path",
+                    "no embedded table is called {} (there are: {names}), and {remedy}",
                     clip(path)
                 ))
             });
         };
         let shown = clip(&tried.display().to_string());
+        // a scene from elsewhere may name any descriptor, where an argument names one of its own shell
+        if let Some(problem) = files::special(&tried) {
+            return Err(FileError::Unusable(format!("{shown}: {problem}")));
+        }
         match read_text(&tried, MAX_TABLE_BYTES) {
             Ok(text) => Ok(text),
             Err(ReadError::Missing) => Err(FileError::Missing { path: shown, embedded: embedded.is_some() }),
@@ -96,16 +108,15 @@ pub(super) enum ReadError {
     Unusable(String),
 }
 
-/// Reads a file of at most `largest` bytes of UTF-8. Pipes and devices are read like files up to that size.
+/// Reads a file of at most `largest` bytes of UTF-8.
 pub(super) fn read_text(path: &Path, largest: usize) -> Result<String, ReadError> {
-    let unusable = |problem: String| Err(ReadError::Unusable(problem));
-    if files::is_folder(path) {
-        return unusable("is a directory; a file is needed".to_owned());
+    if let Some(problem) = files::refused(path) {
+        return Err(ReadError::Unusable(problem));
     }
     match files::open(path) {
         Ok(file) => read_from(file, largest).map_err(ReadError::Unusable),
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => Err(ReadError::Missing),
-        Err(error) => unusable(format!("cannot be read: {error}")),
+        Err(error) => Err(ReadError::Unusable(format!("cannot be read: {error}"))),
     }
 }
 

@@ -4,6 +4,22 @@ use super::data::{Excitation, Scene};
 use super::unit::{STANDARD_GRAVITY, unit_ending};
 use crate::numeric::short;
 
+/// A field that scales the drive of a scene, or one of the drives that it sums.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Amplitude {
+    /// Path of the field.
+    pub path: String,
+    /// As in [`Harmonic`].
+    acceleration_of_one: [f64; 2],
+}
+
+impl Amplitude {
+    /// The value of the field for this acceleration of the base in m/s^2, of a noise its root mean square.
+    pub fn of(&self, acceleration: f64) -> f64 {
+        acceleration * self.acceleration_of_one[1] / self.acceleration_of_one[0]
+    }
+}
+
 /// A drive of one frequency, as the base acceleration with the same motion, `acceleration`
 /// sin(2 pi `frequency_hz` t + `phase_deg` + 90 degrees times `quarters`): a force F(t) on the mass m moves
 /// it as the base acceleration -F(t)/m does.
@@ -57,6 +73,28 @@ impl Excitation {
         })
     }
 
+    /// The fields that scale this drive at `path`, or those that it sums, for a proof mass in kg. A constant
+    /// acceleration has one only where it is the whole drive: in a sum it is what the others shake about.
+    fn amplitudes(&self, path: &str, mass: f64) -> Vec<Amplitude> {
+        let (name, acceleration_of_one) = match self {
+            Self::Sum(all) => {
+                let one = |(i, one): (usize, &Self)| match one {
+                    Self::Constant { .. } => Vec::new(),
+                    one => one.amplitudes(&format!("{path}.{i}"), mass),
+                };
+                return all.iter().enumerate().flat_map(one).collect();
+            }
+            Self::None | Self::Recorded { .. } => return Vec::new(),
+            Self::Constant { .. } => ("accel_g", [STANDARD_GRAVITY, 1.0]),
+            Self::Sine { .. } | Self::Chirp { .. } => ("amplitude_g", [STANDARD_GRAVITY, 1.0]),
+            Self::AmplitudeRamp { .. } => ("to_g", [STANDARD_GRAVITY, 1.0]),
+            Self::Noise { .. } => ("rms_g", [STANDARD_GRAVITY, 1.0]),
+            Self::Cosine { .. } => ("amplitude_m_per_s2", [1.0, 1.0]),
+            Self::Force { .. } => ("amplitude_n", [1.0, mass]),
+        };
+        vec![Amplitude { path: format!("{path}.{name}"), acceleration_of_one }]
+    }
+
     /// The amplitude of a drive of one frequency, in the unit of its field.
     pub fn amplitude_mut(&mut self) -> Option<&mut f64> {
         match self {
@@ -72,6 +110,11 @@ impl Scene {
     /// The drive as an acceleration of the base, if it has one frequency and one amplitude.
     pub fn harmonic(&self) -> Option<Harmonic> {
         self.excitation.harmonic(self.mass_g / 1e3)
+    }
+
+    /// The fields that scale the drive, or the drives that it sums: none of a record, several of most sums.
+    pub fn amplitudes(&self) -> Vec<Amplitude> {
+        self.excitation.amplitudes("excitation", self.mass_g / 1e3)
     }
 }
 

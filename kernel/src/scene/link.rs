@@ -115,7 +115,7 @@ impl Document {
         }
         for path in self.paths() {
             let read = self.files.read(&path).map_err(|error| LinkError::Unreadable(error.to_string()))?;
-            let embedded = Files::default().read(&path);
+            let embedded = Files { sealed: true, ..Files::default() }.read(&path);
             if embedded.is_ok_and(|embedded| embedded == read) {
                 continue;
             }
@@ -147,14 +147,15 @@ impl Document {
             "" => Payload::default(),
             packed => unpacked(packed).ok_or_else(|| wrong(broken))?,
         };
+        let files = Files { folder: None, cached: payload.files, sealed: true };
         let mut document = match name {
             "" if payload.text.is_empty() => {
                 return Err(wrong("it names no scene: a link has `?scene=NAME`, such as `?scene=paper`"));
             }
-            "" => Self::from_text(NAME, &payload.text, Files { folder: None, cached: payload.files })?,
+            "" => Self::from_text(NAME, &payload.text, files)?,
             name => {
                 let mut document = Self::preset(name)?;
-                document.files.cached = payload.files;
+                document.files = files;
                 document
             }
         };

@@ -283,13 +283,13 @@ impl ColumnRequest {
             Some([option, unit]) => format!("Name the column by {option} and its unit by {unit}"),
         };
         let problem = format!(
-            "line {line}: no column of {name} ({name} in {units}, as in `{example}`); the header has: \
-             {found}. {remedy}. The header is the first line that does not begin with #: put that before \
+            "line {line}: no column of {name} ({name} in {units}, as in `{example}`); {found}. \
+             {remedy}. The header is the first line that does not begin with #: put that before \
              what stands above it",
             name = quantity.name(),
             units = quantity.units(),
             example = self.wanted(),
-            found = clip(&sheet.names.join(", "))
+            found = sheet.header()
         );
         Err(MeasuredError::NoColumn { quantity, problem })
     }

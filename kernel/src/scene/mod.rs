@@ -81,7 +81,7 @@ pub use field_table::{
 };
 pub use fields::{FieldPath, all_fields, is_whole, numeric_fields};
 pub use files::{FileError, Files, MAX_TABLE_BYTES};
-pub use harmonic::Harmonic;
+pub use harmonic::{Amplitude, Harmonic};
 pub use link::{LinkError, is_link, linked_lesson};
 pub use manifest::{PROGRAM, SweepRequest, Uncertain, is_manifest};
 pub use measured::{

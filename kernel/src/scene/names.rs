@@ -5,8 +5,12 @@ use super::unit::{Unit, unit_ending};
 /// Smallest similarity, by Jaro and Winkler, of a name that may have been meant.
 const SIMILAR: f64 = 0.87;
 
+/// Earlier names, each with the present one.
+const EARLIER: [(&str, &str); 1] = [("mean_power_w", "mean_load_power_w")];
+
 /// The name among `known` that is written as `name`: the same, or the only one that is the same without the
-/// unit at its end, as `rms_velocity` is short for `rms_velocity_m_per_s`. Otherwise a sentence that says
+/// unit at its end, as `rms_velocity` is short for `rms_velocity_m_per_s`, or the present one in place of an
+/// earlier one. Otherwise a sentence that says
 /// what `kind` of name is missing, which one may have been meant, and which there are.
 ///
 /// ```
@@ -28,6 +32,11 @@ pub fn find_name<'a>(kind: &str, name: &str, known: &[&'a str]) -> Result<&'a st
     let meant = match short[..] {
         [only] => return Ok(only),
         [] => {
+            let is_earlier = |(earlier, _): &&(&str, &str)| *earlier == name || without_unit(earlier) == name;
+            let present = EARLIER.iter().find(is_earlier).map(|(_, present)| *present);
+            if let Some(present) = known.iter().find(|known| Some(**known) == present) {
+                return Ok(present);
+            }
             let without =
                 || known.iter().copied().filter(|known| nearest(name, [without_unit(known)]).is_some());
             let near = nearest(name, known.iter().copied()).or_else(|| without().next());

@@ -8,7 +8,7 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use super::columns::{ColumnsError, MAX_ROWS, read_columns};
 use super::data::Excitation;
-use super::error::Fault;
+use super::error::{Fault, clip};
 use super::files::Files;
 use super::measured::{ColumnRequest, Measured, MeasuredError, too_few};
 use super::timing::Timing;
@@ -193,7 +193,7 @@ pub(super) fn warnings(excitation: &Excitation, duration: f64) -> Vec<String> {
         Excitation::Recorded { path, record: Some(record) } => record
             .warnings(duration)
             .into_iter()
-            .map(|warning| format!("the record {path} {warning}"))
+            .map(|warning| format!("the record {} {warning}", clip(path)))
             .collect(),
         Excitation::Sum(terms) => terms.iter().flat_map(|term| warnings(term, duration)).collect(),
         _ => Vec::new(),

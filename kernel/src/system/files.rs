@@ -1,7 +1,8 @@
 //! Read access to files; in a web page, to those that it keeps.
 //!
 //! A function that reads returns the error of the system, without the path, which the caller adds. One that
-//! asks returns false, or `None`, also where the system refuses the answer.
+//! asks returns false, or `None`, also where the system refuses the answer. What is no regular file is
+//! refused before it is opened, since opening a pipe waits for the process at its other end.
 
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
@@ -9,18 +10,55 @@ use std::path::{Path, PathBuf};
 
 #[cfg(target_arch = "wasm32")]
 use super::page;
+use super::sink::is_descriptor;
 
-/// Opens the file, device or pipe at `path`.
+/// Opens the regular file at `path`, or what a shell has opened already under the name of a descriptor.
 pub fn open(path: &Path) -> io::Result<impl Read + use<>> {
     #[cfg(target_arch = "wasm32")]
     return page::bytes(path).map(io::Cursor::new);
     #[cfg(not(target_arch = "wasm32"))]
-    File::open(path)
+    open_on_disk(path)
+}
+
+fn open_on_disk(path: &Path) -> io::Result<File> {
+    refused(path).map_or_else(|| File::open(path), |problem| Err(io::Error::other(problem)))
+}
+
+/// Why [`open`] refuses `path`, as [`special`] says it.
+pub fn refused(path: &Path) -> Option<String> {
+    special(path).filter(|_| !is_descriptor(path))
+}
+
+/// What is at `path` if it is no regular file, as a clause with its remedy; `None` also if nothing is there.
+pub fn special(path: &Path) -> Option<String> {
+    let kind = std::fs::metadata(path).ok()?.file_type();
+    if kind.is_file() {
+        return None;
+    }
+    let name = if kind.is_dir() { "directory" } else { special_name(kind) };
+    Some(format!("is a {name}; a file is needed"))
+}
+
+#[cfg(unix)]
+fn special_name(kind: std::fs::FileType) -> &'static str {
+    use std::os::unix::fs::FileTypeExt;
+    if kind.is_fifo() {
+        "pipe"
+    } else if kind.is_socket() {
+        "socket"
+    } else {
+        "device"
+    }
+}
+
+#[cfg(not(unix))]
+fn special_name(_: std::fs::FileType) -> &'static str {
+    "device"
 }
 
 /// Opens the file at `path` for reading from byte `offset`.
 pub fn open_at(path: &Path, offset: u64) -> io::Result<impl Read> {
-    let mut file = File::open(path)?;
+    let mut file = open_on_disk(path)?;
     file.seek(SeekFrom::Start(offset))?;
     Ok(file)
 }

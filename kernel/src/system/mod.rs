@@ -24,6 +24,9 @@ pub mod clock;
 #[doc(hidden)]
 pub mod files;
 mod journal;
+#[doc(hidden)]
+pub mod lines;
+mod lock;
 #[cfg(target_arch = "wasm32")]
 pub mod page;
 mod part;
@@ -32,7 +35,7 @@ pub mod threads;
 
 pub use journal::Block;
 pub use part::{Opened, Part, PartError};
-pub use sink::{OpenError, Sink, is_regular, same_target, write_file};
+pub use sink::{OpenError, Sink, is_regular, write_file};
 
 /// The address that stands before a link: in a web page that of the page, elsewhere what the environment
 /// variable `INTERWELL_PAGE` has, up to a `?` or `#`. The error is a sentence.

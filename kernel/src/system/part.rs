@@ -2,11 +2,11 @@
 //!
 //! `map.csv` is written as `map.csv.part` with the journal `map.csv.part.journal`. A block is complete when
 //! its bytes and its line in the journal are on the disk. A separate thread writes and syncs, so that the
-//! caller does not wait for the disk. The file gets its name when it is complete. The lock on the journal
-//! protects the file against other processes.
+//! caller does not wait for the disk. The file gets its name when it is complete. Its lock is on the
+//! journal.
 
-use std::fs::{self, File, OpenOptions, TryLockError};
-use std::io::{self, ErrorKind, Read, Seek, SeekFrom, Write};
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -15,7 +15,8 @@ use std::thread::JoinHandle;
 
 use super::checksum::Checksum;
 use super::journal::{self, Block, Journal};
-use super::sink::{follow_links, inode};
+use super::lock::{Lock, lock_path, with_ending};
+use super::sink::{Sink, follow_links};
 
 /// A message to the writing thread: bytes to write, or the end of a block with its number of rows and a note.
 enum Message {
@@ -31,7 +32,7 @@ const MAX_WAITING: usize = 256;
 #[derive(Debug)]
 pub struct Opened {
     paths: Paths,
-    lock: File,
+    lock: Lock,
     journal: Journal,
     exists: bool,
 }
@@ -47,9 +48,6 @@ struct Paths {
 #[doc(hidden)]
 #[derive(Debug, thiserror::Error)]
 pub enum PartError {
-    /// Another process is writing it.
-    #[error("another process is writing {}: wait for it, or name another file", .0.display())]
-    Busy(PathBuf),
     /// A block has been changed since it was written.
     #[error("{part}: {what}")]
     Damaged {
@@ -78,41 +76,19 @@ pub struct Part {
     kept: Arc<AtomicU64>,
     sender: Option<SyncSender<Message>>,
     thread: Option<JoinHandle<io::Result<Checksum>>>,
-    /// Keeps the journal locked.
-    _lock: File,
-}
-
-/// `path` with `ending` appended to its name.
-fn with_ending(path: &Path, ending: &str) -> PathBuf {
-    let mut name = path.as_os_str().to_owned();
-    name.push(ending);
-    name.into()
+    lock: Lock,
 }
 
 impl Opened {
-    /// Locks the file that will become `target` and reads its journal. This creates a journal if there is
-    /// none and changes nothing else.
-    pub fn new(target: &Path) -> Result<Self, PartError> {
+    /// Reads the journal of the file that will become `target`, with the lock of `sink`, which is open on
+    /// `target` and is closed. This changes nothing.
+    pub fn new(target: &Path, sink: Sink) -> Result<Self, PartError> {
         let target = follow_links(target);
-        let part = with_ending(&target, ".part");
-        let paths = Paths { journal: with_ending(&part, ".journal"), part, target };
+        let (part, journal) = (with_ending(&target, ".part"), lock_path(&target));
+        let paths = Paths { part, journal, target };
         let refused = |problem| PartError::Refused { path: paths.journal.clone(), problem };
-        let mut lock = loop {
-            let mut open = OpenOptions::new();
-            let lock = open.read(true).append(true).create(true).open(&paths.journal).map_err(refused)?;
-            match lock.try_lock() {
-                Ok(()) => {}
-                Err(TryLockError::WouldBlock) => return Err(PartError::Busy(paths.target)),
-                // a file system without locks
-                Err(TryLockError::Error(error)) if error.kind() == ErrorKind::Unsupported => {}
-                Err(TryLockError::Error(error)) => return Err(refused(error)),
-            }
-            // The previous owner of the lock may have removed the journal meanwhile.
-            let current = fs::metadata(&paths.journal);
-            if current.is_ok_and(|current| lock.metadata().is_ok_and(|ours| inode(&ours) == inode(&current)))
-            {
-                break lock;
-            }
+        let Some(mut lock) = sink.into_lock() else {
+            return Err(refused(io::Error::other("it is no regular file")));
         };
         let mut bytes = Vec::new();
         lock.read_to_end(&mut bytes).map_err(refused)?;
@@ -144,9 +120,8 @@ impl Opened {
 
     /// Closes the file unchanged; a journal that is empty or has no file is removed.
     pub fn leave(self) {
-        let empty = self.lock.metadata().is_ok_and(|journal| journal.len() == 0);
-        if !self.exists || empty {
-            let _ = fs::remove_file(&self.paths.journal);
+        if !self.exists {
+            let _ = self.lock.set_len(0);
         }
     }
 
@@ -160,12 +135,13 @@ impl Opened {
                 part.set_permissions(existing.permissions())?;
             }
             lock.set_len(0)?;
+            lock.rewind()?;
             lock.write_all(journal::line(head).as_bytes())?;
             lock.sync_data()?;
             Ok(part)
         };
         let part = begin().map_err(|problem| {
-            let _ = (fs::remove_file(&paths.part), fs::remove_file(&paths.journal));
+            let _ = (fs::remove_file(&paths.part), lock.set_len(0));
             PartError::Refused { path, problem }
         })?;
         let mut part = Part::new(paths, lock, part, Checksum::default(), 0)?;
@@ -179,7 +155,7 @@ impl Opened {
     /// kept. If a block has been changed, this fails without changing anything, or, if `repair`, keeps only
     /// the blocks before it.
     pub fn resume(self, repair: bool) -> Result<(Part, Vec<Block>), PartError> {
-        let Self { paths, lock, mut journal, .. } = self;
+        let Self { paths, mut lock, mut journal, .. } = self;
         let path = paths.part.clone();
         let refused = |problem| PartError::Refused { path: path.clone(), problem };
         let mut part = OpenOptions::new().read(true).write(true).open(&path).map_err(refused)?;
@@ -209,13 +185,14 @@ impl Opened {
             return Err(PartError::Damaged { part: path.display().to_string(), what, rows });
         }
         let cut = part.set_len(length).and_then(|()| part.seek(SeekFrom::Start(length)));
-        cut.and_then(|_| lock.set_len(journal.head_length)).map_err(refused)?;
+        let cut = cut.and_then(|_| lock.set_len(journal.head_length));
+        cut.and_then(|()| lock.seek(SeekFrom::End(0))).map_err(refused)?;
         Ok((Part::new(paths, lock, part, whole, rows)?, kept))
     }
 }
 
 impl Part {
-    fn new(paths: Paths, lock: File, part: File, whole: Checksum, rows: u64) -> Result<Self, PartError> {
+    fn new(paths: Paths, lock: Lock, part: File, whole: Checksum, rows: u64) -> Result<Self, PartError> {
         let kept = Arc::new(AtomicU64::new(rows));
         let (sender, receiver) = sync_channel(MAX_WAITING);
         let start = || {
@@ -225,7 +202,7 @@ impl Part {
         };
         let refused = |problem| PartError::Refused { path: paths.part.clone(), problem };
         let thread = start().map_err(refused)?;
-        Ok(Self { paths, kept, sender: Some(sender), thread: Some(thread), _lock: lock })
+        Ok(Self { paths, kept, sender: Some(sender), thread: Some(thread), lock })
     }
 
     /// The path of the file with the rows so far.
@@ -268,14 +245,14 @@ impl Part {
         // Sync the new name before the journal is removed; not every system can do this.
         let folder = self.paths.target.parent().filter(|folder| !folder.as_os_str().is_empty());
         let _ = File::open(folder.unwrap_or(Path::new("."))).and_then(|folder| folder.sync_all());
-        fs::remove_file(&self.paths.journal)
+        self.lock.set_len(0)
     }
 
     /// Closes the file and removes it if it has no rows.
     pub fn discard(mut self) {
         let _ = self.close();
         if self.kept() == 0 {
-            let _ = (fs::remove_file(&self.paths.part), fs::remove_file(&self.paths.journal));
+            let _ = (fs::remove_file(&self.paths.part), self.lock.set_len(0));
         }
     }
 }

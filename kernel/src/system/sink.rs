@@ -10,6 +10,8 @@ use std::path::{Path, PathBuf};
 
 use tempfile::NamedTempFile;
 
+use super::lock::Lock;
+
 /// Reason why an output cannot be opened.
 #[derive(Debug, thiserror::Error)]
 pub enum OpenError {
@@ -24,6 +26,9 @@ pub enum OpenError {
     /// The path is a folder.
     #[error("cannot write {}: it is a folder; name a file in it", .0.display())]
     IsFolder(PathBuf),
+    /// Another process is writing it.
+    #[error("another process is writing {}: wait for it, or name another file", .0.display())]
+    Busy(PathBuf),
     /// The operating system reports an error.
     #[error("cannot write {}: {problem}", path.display())]
     Refused {
@@ -53,6 +58,8 @@ enum Kind {
     Replace {
         part: NamedTempFile,
         target: PathBuf,
+        /// Held until the file has its name.
+        lock: Lock,
     },
     /// A file that a web page hands to its user.
     #[cfg(target_arch = "wasm32")]
@@ -103,24 +110,21 @@ impl Sink {
             let inode = inode(existing).filter(|_| !is_device(existing));
             return Ok(Self::new(name, Kind::Direct(file), inode));
         }
-        let folder = match target.parent() {
-            Some(folder) if !folder.as_os_str().is_empty() => folder.to_owned(),
-            _ => PathBuf::from("."),
-        };
-        let Some(file_name) = target.file_name().filter(|_| !path.as_os_str().is_empty()) else {
+        if path.as_os_str().is_empty() || target.file_name().is_none() {
             return Err(OpenError::IsFolder(path.to_owned()));
+        }
+        let Some((whole_folder, target)) = whole(&target) else {
+            return Err(OpenError::MissingFolder { path: path.to_owned(), folder: folder(&target) });
         };
-        let Some(whole_folder) = folder.canonicalize().ok().filter(|folder| folder.is_dir()) else {
-            return Err(OpenError::MissingFolder { path: path.to_owned(), folder });
-        };
-        let target = whole_folder.join(file_name);
         if existing.is_some() {
             // A rename would replace even a write-protected file, so check that it can be written.
             fs::OpenOptions::new().write(true).open(&target).map_err(refused)?;
         }
+        let locked = Lock::of(&target).map_err(refused)?;
+        let Some(lock) = locked else { return Err(OpenError::Busy(path.to_owned())) };
         let part = create_part(&whole_folder, existing.as_ref()).map_err(refused)?;
         let inode = existing.as_ref().and_then(inode);
-        Ok(Self::new(name, Kind::Replace { part, target }, inode))
+        Ok(Self::new(name, Kind::Replace { part, target, lock }, inode))
     }
 
     fn new(name: String, kind: Kind, inode: Option<(u64, u64)>) -> Self {
@@ -135,6 +139,32 @@ impl Sink {
     /// Whether it is standard output.
     pub fn is_stdout(&self) -> bool {
         matches!(self.kind, Kind::Stdout)
+    }
+
+    /// Closes it unchanged and keeps the lock of its file, if it is a regular one.
+    pub(super) fn into_lock(self) -> Option<Lock> {
+        match self.kind {
+            Kind::Replace { lock, .. } => Some(lock),
+            _ => None,
+        }
+    }
+
+    /// Whether an output at `path` would overwrite this one: both are standard output, or two names of one
+    /// file.
+    #[doc(hidden)]
+    pub fn is_at(&self, path: &Path) -> bool {
+        let other = match is_stdout(path) {
+            true if self.is_stdout() => return true,
+            true => stdout_inode(),
+            false => fs::metadata(path).ok().filter(|other| !is_device(other)).as_ref().and_then(inode),
+        };
+        let is_same_name = match &self.kind {
+            Kind::Replace { target, .. } => {
+                whole(&follow_links(path)).is_some_and(|(_, other)| other == *target)
+            }
+            _ => false,
+        };
+        is_same_name || (self.inode.is_some() && self.inode == other)
     }
 
     /// Whether the reader has closed this pipe, so that further output is dropped.
@@ -194,7 +224,9 @@ impl Sink {
     pub fn finish(mut self) -> io::Result<()> {
         self.flush()?;
         match self.kind {
-            Kind::Replace { part, target } => part.persist(target).map(|_| ()).map_err(|error| error.error),
+            Kind::Replace { part, target, .. } => {
+                part.persist(target).map(|_| ()).map_err(|error| error.error)
+            }
             #[cfg(target_arch = "wasm32")]
             Kind::Download(path) => super::page::write(&path, &self.buffer).map_err(io::Error::other),
             _ => Ok(()),
@@ -227,19 +259,22 @@ fn is_stdout(path: &Path) -> bool {
 }
 
 /// Whether a path is a name of a file descriptor that a shell has opened.
-fn is_descriptor(path: &Path) -> bool {
-    path.starts_with("/dev/fd") || path.starts_with("/proc/self/fd") || path == "/dev/stderr"
+pub(super) fn is_descriptor(path: &Path) -> bool {
+    let names = ["/dev/stdin", "/dev/stderr"].map(Path::new);
+    path.starts_with("/dev/fd") || path.starts_with("/proc/self/fd") || names.contains(&path)
 }
 
-/// Whether two outputs would overwrite each other: both are standard output, or two names of one file.
-#[doc(hidden)]
-pub fn same_target(a: &Sink, b: &Sink) -> bool {
-    let is_same_name = match (&a.kind, &b.kind) {
-        (Kind::Stdout, Kind::Stdout) => true,
-        (Kind::Replace { target: a, .. }, Kind::Replace { target: b, .. }) => a == b,
-        _ => false,
-    };
-    is_same_name || (a.inode.is_some() && a.inode == b.inode)
+/// The folder of a file as its path has it.
+fn folder(file: &Path) -> PathBuf {
+    let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty());
+    folder.unwrap_or(Path::new(".")).to_owned()
+}
+
+/// The absolute paths of the folder of a file and of the file in it; `None` without a folder or a name.
+fn whole(file: &Path) -> Option<(PathBuf, PathBuf)> {
+    let folder = folder(file).canonicalize().ok().filter(|folder| folder.is_dir())?;
+    let file = folder.join(file.file_name()?);
+    Some((folder, file))
 }
 
 /// The end of a chain of symbolic links, whether it exists or not.
@@ -347,10 +382,12 @@ mod tests {
     fn two_names_of_one_file_are_recognised() {
         let folder = tempfile::tempdir().unwrap();
         let a = Sink::open(&folder.path().join("a.csv")).unwrap();
-        let b = Sink::open(&folder.path().join(".").join("a.csv")).unwrap();
-        let c = Sink::open(&folder.path().join("c.csv")).unwrap();
-        assert!(same_target(&a, &b));
-        assert!(!same_target(&a, &c));
+        let same = folder.path().join(".").join("a.csv");
+        assert!(a.is_at(&same) && !a.is_at(&folder.path().join("c.csv")));
+        assert!(matches!(Sink::open(&same).unwrap_err(), OpenError::Busy(_)));
+        a.finish().unwrap();
+        Sink::open(&same).unwrap();
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
     }
 
     #[test]

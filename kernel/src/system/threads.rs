@@ -14,9 +14,13 @@ use std::time::Duration;
 use rayon::prelude::*;
 use web_time::Instant;
 
-/// Number of processors that the program may use; at least 1.
+/// Largest number of threads that a person may ask for; starting more takes minutes and makes nothing faster.
+#[doc(hidden)]
+pub const MAX_THREADS: u16 = 1024;
+
+/// Number of processors that the program may use; from 1 to [`MAX_THREADS`].
 pub fn processors() -> usize {
-    std::thread::available_parallelism().map_or(1, usize::from)
+    std::thread::available_parallelism().map_or(1, usize::from).min(MAX_THREADS.into())
 }
 
 /// Stack size in bytes of a thread for studies. Without optimisation the integrator needs more than the

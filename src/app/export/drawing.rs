@@ -14,13 +14,13 @@ use crate::mechanics::Mechanism;
 use crate::numeric::extent;
 use crate::output::{
     Caption, Chart, Figure, Overlay, Ranges, RunPanel, SpectrumQuantity, SweepPicture, Theme, View,
-    basins_chart, can_show, compared_name, comparison_chart, comparison_title, curve_chart, distance_chart,
-    measured_chart, measured_force_chart, mechanism_chart, run_chart, scene_accuracy_chart, section_chart,
-    shown_columns, spectrum_chart, sweep_chart, well_chart,
+    basins_chart, can_show, compared_name, comparison_chart, comparison_title, curve_chart, measured_chart,
+    measured_force_chart, mechanism_chart, run_chart, scene_accuracy_chart, section_chart, shown_columns,
+    spectrum_chart, sweep_chart, well_chart,
 };
 use crate::questions::{
-    Accuracy, Basins, Carry, Compare, Curve, Distance, EvenRange, Grid, Progress, Scheme, Section,
-    SectionOptions, Signal, Simulation, Spectrum, Sweep,
+    Accuracy, Basins, Carry, Compare, Curve, EvenRange, Grid, Progress, Scheme, Section, SectionOptions,
+    Signal, Simulation, Spectrum, Sweep,
 };
 use crate::scene::{Document, FieldPath, arguments};
 use interwell_studies::study::{Keep, default_positions, metres, stop_positions};
@@ -44,15 +44,14 @@ fn figure(order: &FigureOrder, cancel: &AtomicBool) -> Result<Figure> {
     let chart = match &order.subject {
         Subject::Run(times, panels) => drawing.run(*times, panels),
         Subject::Curve => drawing.curve(),
-        Subject::Mechanism(mm, beside) => drawing.mechanism_at(*mm, beside.as_ref(), &mut caption),
+        Subject::Mechanism(mm) => drawing.mechanism_at(*mm),
         Subject::Well(mm, accel_g) => drawing.well(*mm, *accel_g),
         Subject::Accuracy(stepped) => drawing.accuracy(*stepped),
         Subject::Measured(over) => drawing.measured(over),
         Subject::Sweep(_, quantity, view) => drawing.sweep(&order.subject, quantity, view.clone()),
         Subject::Diagram(_) => drawing.diagram(&order.subject),
         Subject::Section => drawing.section(),
-        Subject::Distance(times, others) => drawing.distance(*times, others, &mut caption),
-        Subject::Compare(others) => drawing.compare(others, &order.origin, &mut caption),
+        Subject::Compare(other) => drawing.compare(other, &order.origin, &mut caption),
         Subject::Basins(x_mm, v) => drawing.basins(*x_mm, *v),
         Subject::Spectrum(signal, until) => drawing.spectrum(*signal, *until),
     };
@@ -119,18 +118,8 @@ impl Drawing<'_> {
         Ok(well_chart(simulation.model(), x, base_accel, (ends[0], ends[1])))
     }
 
-    fn mechanism_at(&self, mm: f64, beside: Option<&(String, f64)>, caption: &mut Caption) -> Result<Chart> {
-        let simulation = self.simulation()?;
-        let here = (simulation.model(), metres(mm));
-        let Some((link, mm)) = beside else { return Ok(mechanism_chart(&[here])?) };
-        let other = self.beside(link)?;
-        *caption = std::mem::take(caption).with_others([other.document()]);
-        Ok(mechanism_chart(&[here, (other.model(), metres(*mm))])?)
-    }
-
-    /// The simulation of the scene of a link.
-    fn beside(&self, link: &str) -> Result<Simulation> {
-        Ok(Simulation::build(Document::of_argument(link)?, &self.progress)?)
+    fn mechanism_at(&self, mm: f64) -> Result<Chart> {
+        Ok(mechanism_chart(&[(self.simulation()?.model(), metres(mm))])?)
     }
 
     fn accuracy(&self, stepped: Option<(Scheme, f64)>) -> Result<Chart> {
@@ -187,18 +176,9 @@ impl Drawing<'_> {
         Ok(section_chart(&rows, None, Some(0.0), simulation.model().stop_positions(), Ranges::default()))
     }
 
-    fn distance(&self, times: Option<(f64, f64)>, others: &[String], caption: &mut Caption) -> Result<Chart> {
-        let of = others.iter().map(|link| self.beside(link)).collect::<Result<Vec<_>>>()?;
-        *caption = std::mem::take(caption).with_others(of.iter().map(Simulation::document));
-        Ok(distance_chart(&Distance { of, times }.run(&self.simulation()?, &self.progress)?))
-    }
-
-    fn compare(&self, others: &[String], origin: &str, caption: &mut Caption) -> Result<Chart> {
-        let other = |link: &String| -> Result<(String, Simulation)> {
-            let simulation = self.beside(link)?;
-            Ok((compared_name(link, simulation.document()), simulation))
-        };
-        let with = others.iter().map(other).collect::<Result<Vec<_>>>()?;
+    fn compare(&self, other: &str, origin: &str, caption: &mut Caption) -> Result<Chart> {
+        let simulation = Simulation::build(Document::of_argument(other)?, &self.progress)?;
+        let with = vec![(compared_name(other, simulation.document()), simulation)];
         let question = Compare { with, name: compared_name(origin, &self.document), ..Compare::default() };
         let found = question.run(&self.simulation()?, &self.progress)?;
         caption.title = comparison_title(&found);
@@ -209,7 +189,7 @@ impl Drawing<'_> {
         let even = |(from, to): (f64, f64)| EvenRange { from, to, count: STARTS };
         let question = Basins { x_mm: even(x_mm), v: even(v), random: None };
         let begun = question.begin(question.starts()?, &self.document, &self.mechanism()?)?;
-        let found = Basins::followed(begun, &self.progress, None)?.checked(&self.progress)?;
+        let found = Basins::followed(begun.checked(), &self.progress, None)?;
         Ok(basins_chart(&found.basins, &found.answer))
     }
 

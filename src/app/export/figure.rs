@@ -31,8 +31,8 @@ pub enum Subject {
     Run(Option<(f64, f64)>, Vec<RunPanel>),
     /// Force and potential of the mechanism.
     Curve,
-    /// The mechanism with the mass at a displacement in mm, and beside it that of a scene given as a link.
-    Mechanism(f64, Option<(String, f64)>),
+    /// The mechanism with the mass at a displacement in mm.
+    Mechanism(f64),
     /// The potential with the mass at a displacement in mm, tipped by the push of the base at an acceleration
     /// in g.
     Well(f64, f64),
@@ -48,10 +48,8 @@ pub enum Subject {
     Section,
     /// The attractor of each start, for ranges of displacements in mm and of velocities in m/s.
     Basins((f64, f64), (f64, f64)),
-    /// How far the motions of other scenes, given as links, are from this one, over a range of times in s.
-    Distance(Option<(f64, f64)>, Vec<String>),
-    /// This scene and others, given as links, under its sine.
-    Compare(Vec<String>),
+    /// This scene and another, given as a link, under its sine.
+    Compare(String),
     /// Amplitude spectrum of a signal, and how long in s to wait for the motion to repeat.
     Spectrum(Signal, Option<f64>),
 }
@@ -140,19 +138,12 @@ impl Subject {
 
     /// The mechanism with the mass at `x` in m.
     pub fn mechanism(x: f64) -> Self {
-        Self::Mechanism(tenths_of_um(x), None)
+        Self::Mechanism(tenths_of_um(x))
     }
 
     /// The potential with the mass at `x` in m and the base's acceleration in m/s^2.
     pub fn well(x: f64, base_accel: f64) -> Self {
         Self::Well(tenths_of_um(x), (base_accel / STANDARD_GRAVITY * 1e4).round() / 1e4)
-    }
-
-    /// The mechanism beside that of the pin at this place, with the masses at these displacements in m.
-    pub fn side_by_side(session: &Session, place: usize, x: [f64; 2]) -> Result<Self, String> {
-        let pinned = session.pins.all().iter().map(|pin| &pin.scene).skip(place).take(1);
-        let ([here, there], link) = (x.map(tenths_of_um), links(session, pinned)?.remove(0));
-        Ok(Self::Mechanism(here, Some((link, there))))
     }
 
     pub fn accuracy(session: &Session) -> Self {
@@ -167,18 +158,13 @@ impl Subject {
         Ok(Self::Measured(session.measured.over.clone().ok_or(none)?))
     }
 
-    /// The distance of the pinned motions, over times in s.
-    pub fn distance(session: &Session, times: Option<(f64, f64)>) -> Result<Self, String> {
-        let pinned = session.pins.all().iter().map(|pin| &pin.scene);
-        Ok(Self::Distance(times, links(session, pinned)?))
-    }
-
-    /// The scene beside those that are pinned, or beside the one before the last change.
-    pub fn compare(session: &Session, is_with_before: bool) -> Result<Self, String> {
-        let (before, pins) = (session.before.iter(), session.pins.all().iter());
-        let before = before.filter(|_| is_with_before).map(|card| &card.scene);
-        let pinned = pins.filter(|_| !is_with_before).map(|pin| &pin.scene);
-        Ok(Self::Compare(links(session, before.chain(pinned))?))
+    /// The scene beside the reference.
+    pub fn compare(session: &Session) -> Result<Self, String> {
+        let reference = &session.reference.scene;
+        if reference == session.scene() {
+            return Err("There is no other scene yet: change something.".to_owned());
+        }
+        Ok(Self::Compare(link(session, reference)?))
     }
 
     pub fn basins(session: &Session) -> Result<Self, String> {
@@ -225,10 +211,8 @@ impl Subject {
                 options.push(Argument::of("base-accel-g", accel_g.to_string()));
                 "curve"
             }
-            Self::Mechanism(here, beside) => {
-                let there = beside.as_ref().map_or_else(String::new, |(_, there)| format!(",{there}"));
-                options.push(Argument::of("at-mm", format!("{here}{there}")));
-                options.extend(beside.iter().map(|(other, _)| Argument::of("beside", other)));
+            Self::Mechanism(mm) => {
+                options.push(Argument::of("at-mm", mm.to_string()));
                 "curve"
             }
             Self::Accuracy(stepped) => {
@@ -251,14 +235,8 @@ impl Subject {
                 "sweep"
             }
             Self::Diagram(_) | Self::Section => "section",
-            Self::Distance(times, others) => {
-                options.extend(others.iter().map(|other| Argument::of("beside", other)));
-                ranges.extend(times.map(|(from, to)| Argument::of("plot-x", format!("{from}:{to}"))));
-                "simulate"
-            }
-            Self::Compare(others) => {
-                let scene = |other: &String| Argument { option: None, value: Some(other.clone()) };
-                options.extend(others.iter().map(scene));
+            Self::Compare(other) => {
+                options.push(Argument { option: None, value: Some(other.clone()) });
                 "compare"
             }
             Self::Basins(x_mm, v) => {
@@ -282,7 +260,7 @@ impl Subject {
         let (mut from, mut scene) = (editor.named().clone(), editor.scene().clone());
         keep_start_inside(&mut scene);
         match self {
-            Self::Run(Some((_, to)), _) | Self::Distance(Some((_, to)), _) => {
+            Self::Run(Some((_, to)), _) => {
                 scene.run.duration_s = scene.run.duration_s.max(*to);
             }
             // the figure sets the starts
@@ -326,7 +304,7 @@ impl FigureOrder {
             && !settings.is_empty()
         {
             // --set would change all scenes of a comparison
-            origin = links(session, std::iter::once(&scene))?.remove(0);
+            origin = link(session, &scene)?;
             settings.clear();
         }
         Ok(Self { origin, settings, scene, subject, place, read })
@@ -401,16 +379,11 @@ fn tenths_of_um(x: f64) -> f64 {
     (x * 1e7).round() / 1e4
 }
 
-/// Links to scenes beside the open one.
-fn links<'a>(session: &Session, scenes: impl Iterator<Item = &'a Scene>) -> Result<Vec<String>, String> {
-    let link = |scene: &Scene| {
-        let mut document = session.editor.document().clone();
-        document.scene = scene.clone();
-        document.link().map_err(|error| error.to_string())
-    };
-    let links = scenes.map(link).collect::<Result<Vec<_>, _>>()?;
-    let none = "There is no other scene yet: pin a motion, or change something.";
-    if links.is_empty() { Err(none.to_owned()) } else { Ok(links) }
+/// A link to a scene beside the open one.
+fn link(session: &Session, scene: &Scene) -> Result<String, String> {
+    let mut document = session.editor.document().clone();
+    document.scene = scene.clone();
+    document.link().map_err(|error| error.to_string())
 }
 
 /// A suggested range of times, rounded to a thousandth of its length or finer; `None` if it is empty.

@@ -15,7 +15,7 @@ pub fn advanced_ui(ui: &mut Ui, session: &mut Session, width: f32) {
     kind_ui(ui, session);
     excitation_ui(ui, session, width);
     ui.separator();
-    uneven_ui(ui, session, width);
+    uneven_ui(ui, session);
     ui.separator();
     run_ui(ui, session, width);
 }
@@ -110,7 +110,7 @@ fn excitation_ui(ui: &mut Ui, session: &mut Session, width: f32) {
     fields_ui(ui, session, paths, width);
 }
 
-fn uneven_ui(ui: &mut Ui, session: &mut Session, width: f32) {
+fn uneven_ui(ui: &mut Ui, session: &mut Session) {
     let stops = session.scene().stops;
     let mut uneven = matches!(stops, Stops::Uneven { .. });
     let tick = egui::Checkbox::new(&mut uneven, "different stops left and right");
@@ -142,7 +142,6 @@ fn uneven_ui(ui: &mut Ui, session: &mut Session, width: f32) {
             });
         }
     }
-    fields_ui(ui, session, &["stops.restitution_left", "stops.restitution_right"], width);
 }
 
 /// Converts equal stops to stops that may differ, or back: then both take the numbers of the right stop, or

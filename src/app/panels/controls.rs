@@ -1,41 +1,29 @@
 //! Controls of the scene: shaking, stops with the search for the best ones and, under More, rarer fields.
 
-use eframe::egui::{self, Color32, Label, Rect, RichText, Ui, vec2};
+use eframe::egui::{self, Label, Rect, RichText, Ui};
 
 use crate::app::session::Session;
 use crate::app::session::sliders::reach;
 use crate::app::ui::knob::{How, Knob, refuse};
-use crate::app::ui::style::CONTROL;
 use crate::app::ui::widgets::{hover_beside, primary};
 use crate::app::words::fields::{Reach, info, name_and_unit};
 use crate::app::words::numbers::{below, decimals, round_up, shown};
-use crate::scene::{Damping, Excitation, FieldPath, Mechanism, Stops, Transducer, numeric_fields};
+use crate::scene::{Damping, Excitation, FieldPath, Stops, Transducer, numeric_fields};
 
 use super::advanced;
 
-/// Width in points below which the row of controls has no room for headings.
-const NARROW: f32 = 640.0;
-/// Width in points of the search button in that row.
-const SEARCH: f32 = 96.0;
-/// Least width in points of a slider beside the search button.
-const LEAST_BESIDE: f32 = 70.0;
+/// Space in points between the parts of the column.
+const APART: f32 = 14.0;
 
 /// Name of the switch of the stops in a lesson's list of controls.
 const SWITCH: &str = "stops";
-/// Width in points of that switch.
-const SWITCH_WIDTH: f32 = 90.0;
 /// What an amplitude is the amplitude of, as a heading before its control.
 const SHAKING: &str = "Shaking";
-const SHAKING_WIDTH: f32 = 74.0;
-/// Width in points of a slider's control apart from the slider and its name.
-const BESIDE_SLIDER: f32 = 136.0;
 const LEAST_SLIDER: f32 = 60.0;
-const WIDEST_SLIDER: f32 = 280.0;
 /// Additional space in points between the controls of a lesson, one below another.
 const COLUMN_SPACE: f32 = 6.0;
 
-const MORE_HOVER: &str = "Restitution, preload, damping and mass; spring, magnets and transducer, if there \
-                          are any.";
+const MORE_HOVER: &str = "Damping and mass; spring, magnets and transducer, if there are any.";
 
 const SEARCH_HOVER: &str = "Looks for the distance of the stops with which the scene as it stands, from \
                             rest, moves fastest, or where there is a transducer gives most power, and how \
@@ -51,91 +39,38 @@ const AMPLITUDE: [&str; 4] =
 /// The travel limit of the stops, or of each stop. While the stops are off their control is grey, and shows
 /// the limit that they will have.
 const LIMITS: [&str; 3] = ["stops.travel_limit_mm", "stops.left_mm", "stops.right_mm"];
-/// The load of a transducer, which stands below the stops or, in a row of controls, at the top of More.
+/// Number of fields of a mechanism without a preload that have a control.
+const FIRST: usize = 2;
+/// The load of a transducer.
 const LOAD: [&str; 2] = ["transducer.load_ohm", "transducer.load_kohm"];
 /// Other fields of a transducer at the top of More.
 const COUPLING: [&str; 2] = ["transducer.coupling_v_s_per_m", "transducer.coupling_n_per_v"];
 /// Fields of a transducer under Advanced.
 const CIRCUIT: [&str; 3] = ["transducer.coil_ohm", "transducer.inductance_mh", "transducer.capacitance_nf"];
 
+/// The six controls that are always there, those of a transducer, and under More the rarer ones.
 pub fn column_ui(ui: &mut Ui, session: &mut Session, more: &mut bool) {
     let width = (ui.available_width() - 84.0).max(80.0);
     ui.heading(SHAKING);
     shaking_ui(ui, session, width);
     fields_ui(ui, session, &FREQUENCY, width);
-    ui.add_space(14.0);
+    ui.add_space(APART);
     stops_switch_ui(ui, session);
     fields_ui(ui, session, &LIMITS, width);
-    best_stops_ui(ui, session, "Find the best stops");
+    restitution_ui(ui, session, width);
+    best_stops_ui(ui, session);
+    ui.add_space(APART);
+    ui.heading("Mechanism");
+    mechanism_ui(ui, session, width);
     if session.scene().transducer != Transducer::None {
-        ui.add_space(14.0);
+        ui.add_space(APART);
         ui.heading("Load");
         fields_ui(ui, session, &LOAD, width);
     }
-    ui.add_space(14.0);
+    ui.add_space(APART);
     let header = egui::CollapsingHeader::new(RichText::new("More").strong()).open(Some(*more));
-    let header = header.show_unindented(ui, |ui| fields_below_ui(ui, session, width));
+    let header = header.show_unindented(ui, |ui| more_ui(ui, session, width));
     *more ^= header.header_response.on_hover_text(MORE_HOVER).clicked();
-}
-
-/// The controls under More in a compact window, whose row has no room for the frequency and the load.
-pub fn beside_ui(ui: &mut Ui, session: &mut Session, width: f32) {
-    fields_ui(ui, session, &FREQUENCY, width);
-    fields_ui(ui, session, &LOAD, width);
-    fields_below_ui(ui, session, width);
-}
-
-/// A button at the right end of a row, which opens further controls.
-fn more_button_ui(ui: &mut Ui, more: &mut bool) {
-    ui.toggle_value(more, "More").on_hover_text(MORE_HOVER);
-    *more &= !ui.input(|input| input.key_pressed(egui::Key::Escape));
-}
-
-/// Shaking and stops in a row each, for a narrow window; More opens further ones below the views.
-pub fn rows_ui(ui: &mut Ui, session: &mut Session, more: &mut bool) {
-    let row = vec2(ui.available_width(), CONTROL);
-    ui.allocate_ui_with_layout(row, egui::Layout::right_to_left(egui::Align::Center), |ui| {
-        more_button_ui(ui, more);
-        ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
-            let width = (ui.available_width() - BESIDE_SLIDER - SWITCH_WIDTH).max(LEAST_SLIDER);
-            shaking_ui(ui, session, width);
-        });
-    });
-    ui.allocate_ui_with_layout(row, egui::Layout::left_to_right(egui::Align::Center), |ui| {
-        stops_switch_ui(ui, session);
-        let names = if matches!(session.scene().stops, Stops::Uneven { .. }) { 2.0 } else { 1.0 };
-        let room = ui.available_width() - (BESIDE_SLIDER + SWITCH_WIDTH) * names;
-        fields_ui(ui, session, &LIMITS, (room / names).max(30.0));
-    });
-}
-
-/// Shaking and stops in one row, for a compact window; More opens a column beside the views.
-pub fn row_ui(ui: &mut Ui, session: &mut Session, more: &mut bool) {
-    ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-        more_button_ui(ui, more);
-        ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
-            let sides = match session.scene().stops {
-                Stops::Uneven { left_mm, right_mm, .. } => left_mm.iter().chain(&right_mm).count(),
-                _ => 1,
-            };
-            // a narrow row has no room for headings
-            let is_narrow = ui.available_width() < NARROW;
-            let names = if is_narrow { 340.0 } else { 405.0 } + 120.0 * sides as f32;
-            let slider_width = |button: f32| (ui.available_width() - names - button) / (1 + sides) as f32;
-            let has_search = !is_narrow && slider_width(SEARCH) >= LEAST_BESIDE;
-            let width = slider_width(if has_search { SEARCH } else { 0.0 }).clamp(30.0, 260.0);
-            if !is_narrow {
-                ui.heading(SHAKING);
-            }
-            shaking_ui(ui, session, width);
-            ui.separator();
-            stops_switch_ui(ui, session);
-            fields_ui(ui, session, &LIMITS, width);
-            if has_search {
-                best_stops_ui(ui, session, "Best stops");
-            }
-        });
-    });
 }
 
 /// The controls that a lesson names and the scene has.
@@ -144,7 +79,7 @@ fn named<'a>(session: &Session, controls: &'a [String]) -> Vec<&'a String> {
 }
 
 /// The controls that a lesson names, one below another. Returns the rectangle of each control.
-pub fn named_column_ui(ui: &mut Ui, session: &mut Session, controls: &[String]) -> Vec<(String, Rect)> {
+pub fn named_ui(ui: &mut Ui, session: &mut Session, controls: &[String]) -> Vec<(String, Rect)> {
     let width = (ui.available_width() - 84.0).max(LEAST_SLIDER);
     let has_switch = controls.iter().any(|path| path == SWITCH);
     let mut places = Vec::new();
@@ -162,63 +97,6 @@ pub fn named_column_ui(ui: &mut Ui, session: &mut Session, controls: &[String]) 
             }
         });
         places.push((path.clone(), control.response.rect));
-    }
-    places
-}
-
-/// The controls that a lesson names, in rows that fill the width. Returns the rectangle of each control.
-pub fn named_ui(ui: &mut Ui, session: &mut Session, controls: &[String]) -> Vec<(String, Rect)> {
-    let font = egui::TextStyle::Body.resolve(ui.style());
-    let name_width = |ui: &Ui, path: &str| {
-        let name = name_and_unit(path).0;
-        ui.painter().layout_no_wrap(name, font.clone(), Color32::PLACEHOLDER).size().x
-    };
-    let shown = named(session, controls);
-    let is_amplitude = |path: &str| AMPLITUDE.contains(&path);
-    let rows_of = |has_heading: bool| {
-        let width_of = |path: &str| match path {
-            SWITCH => SWITCH_WIDTH,
-            path if has_heading && is_amplitude(path) => SHAKING_WIDTH + name_width(ui, path) + BESIDE_SLIDER,
-            path => name_width(ui, path) + BESIDE_SLIDER,
-        };
-        let least = |row: &[(&String, f32)]| row.iter().map(|control| control.1 + LEAST_SLIDER).sum::<f32>();
-        let mut rows: Vec<Vec<(&String, f32)>> = Vec::new();
-        for path in &shown {
-            let control = (*path, width_of(path));
-            match rows.last_mut() {
-                Some(row) if least(row) + control.1 + LEAST_SLIDER <= ui.available_width() => {
-                    row.push(control);
-                }
-                _ => rows.push(vec![control]),
-            }
-        }
-        rows
-    };
-    // a heading that costs a row is left out
-    let (rows, headed) = (rows_of(false), rows_of(true));
-    let has_heading = headed.len() == rows.len();
-    let rows = if has_heading { headed } else { rows };
-    let has_switch = controls.iter().any(|path| path == SWITCH);
-    let mut places = Vec::new();
-    for row in rows {
-        let sliders = row.iter().filter(|control| control.0 != SWITCH).count().max(1) as f32;
-        let names: f32 = row.iter().map(|control| control.1).sum();
-        let width = ((ui.available_width() - names) / sliders).clamp(LEAST_SLIDER, WIDEST_SLIDER);
-        ui.horizontal(|ui| {
-            for (path, _) in row {
-                let control = ui.scope(|ui| match path.as_str() {
-                    SWITCH => stops_switch_ui(ui, session),
-                    path => {
-                        if has_heading && is_amplitude(path) {
-                            ui.heading(SHAKING);
-                        }
-                        knob_ui(ui, session, path, width, has_switch && is_off(session, path));
-                    }
-                });
-                places.push((path.clone(), control.response.rect));
-                ui.add_space(10.0);
-            }
-        });
     }
     places
 }
@@ -273,10 +151,9 @@ fn stops_switch_ui(ui: &mut Ui, session: &mut Session) {
     }
 }
 
-fn fields_below_ui(ui: &mut Ui, session: &mut Session, width: f32) {
+fn more_ui(ui: &mut Ui, session: &mut Session, width: f32) {
+    fields_ui(ui, session, &["stops.restitution_left", "stops.restitution_right"], width);
     fields_ui(ui, session, &COUPLING, width);
-    restitution_ui(ui, session, width);
-    preload_ui(ui, session, width);
     for path in sliders(session).into_iter().filter(|path| is_balancing(path)) {
         field_ui(ui, session, &path, width);
     }
@@ -298,23 +175,23 @@ fn fields_below_ui(ui: &mut Ui, session: &mut Session, width: f32) {
 
 fn restitution_ui(ui: &mut Ui, session: &mut Session, width: f32) {
     let why = match session.scene().stops {
-        Stops::Rigid { .. } => return field_ui(ui, session, "stops.restitution", width),
-        Stops::None => return,
+        Stops::None | Stops::Rigid { .. } => return field_ui(ui, session, "stops.restitution", width),
+        Stops::Uneven { .. } => "The two stops have a restitution each, under More.",
         Stops::Hertz { .. } => {
             "These stops are compliant: a faster impact keeps a smaller share of its speed."
         }
-        Stops::Uneven { .. } => "The two stops have a restitution each, under Advanced.",
     };
     absent_ui(ui, "restitution", why);
 }
 
-/// A button labelled `name` that starts the search; it is absent in a lesson and without shaking.
-pub fn best_stops_ui(ui: &mut Ui, session: &mut Session, name: &str) {
+/// The button that starts the search; it is absent in a lesson and without shaking.
+fn best_stops_ui(ui: &mut Ui, session: &mut Session) {
     if session.is_lesson || !session.model().is_shaken() {
         return;
     }
     let why = session.best.is_running().then_some("The search is running.");
-    let response = ui.add_enabled(why.is_none(), egui::Button::new(name)).on_hover_text(SEARCH_HOVER);
+    let response = ui.add_enabled(why.is_none(), egui::Button::new("Find the best stops"));
+    let response = response.on_hover_text(SEARCH_HOVER);
     if response.on_disabled_hover_text(why.unwrap_or_default()).clicked() {
         session.find_best_stops();
     }
@@ -354,15 +231,16 @@ fn is_preload(path: &str) -> bool {
     path.ends_with(".preload_mm")
 }
 
-/// The slider of the preload; for a mechanism without one, its name greyed out with the reason.
-fn preload_ui(ui: &mut Ui, session: &mut Session, width: f32) {
-    match sliders(session).into_iter().find(|path| is_preload(path)) {
-        Some(path) => field_ui(ui, session, &path, width),
-        None if matches!(session.scene().mechanism, Mechanism::Table { .. }) => {
-            absent_ui(ui, "preload", "The force comes from a table, which was made at one preload.")
-        }
-        None => absent_ui(ui, "preload", "The force is given by a formula without a preload."),
+/// The slider of the preload, or for a mechanism without one those of its first numbers.
+fn mechanism_ui(ui: &mut Ui, session: &mut Session, width: f32) {
+    let is_number = |path: &String| path.starts_with("mechanism.");
+    let of_preload = sliders(session).into_iter().find(|path| is_preload(path));
+    let first = || numeric_fields(session.scene()).into_iter().filter(is_number).take(FIRST).collect();
+    let shown: Vec<String> = of_preload.map_or_else(first, |path| vec![path]);
+    if shown.is_empty() {
+        absent_ui(ui, "preload", "The force comes from a table, which was made at one preload.");
     }
+    shown.iter().for_each(|path| field_ui(ui, session, path, width));
 }
 
 /// Whether a field belongs to springs or magnets, which lower the barrier as stops do.
@@ -388,9 +266,9 @@ pub(super) fn field_ui(ui: &mut Ui, session: &mut Session, path: &str, width: f3
     knob_ui(ui, session, path, width, off);
 }
 
-/// Whether a field is the travel limit of stops that are off.
+/// Whether a field is one of stops that are off.
 fn is_off(session: &Session, path: &str) -> bool {
-    session.scene().stops == Stops::None && LIMITS.contains(&path)
+    session.scene().stops == Stops::None && path.starts_with("stops.")
 }
 
 /// The control of a field, grey if it is `off`.

@@ -135,7 +135,7 @@ impl Hint {
                     Some(_) => "Between these stops it crosses.",
                     None => "Now with stops.",
                 };
-                return Guide::new(first, format!("Compare before and now. {outward}"));
+                return Guide::new(first, format!("Compare the start and now. {outward}"));
             }
             (Stage::Answer, ..) => {
                 return Guide { more: particulars(session), ..Guide::new("What stops do:", MIDDLE) };

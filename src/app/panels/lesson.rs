@@ -1,9 +1,9 @@
-//! Column or strip of the open lesson: its step, options of a prediction, the state of a task, navigation.
+//! Column of the open lesson: its step, options of a prediction, the state of a task, navigation.
 
 use eframe::egui::text::{LayoutJob, TextFormat};
 use eframe::egui::{
     self, Align, Button, Color32, FontId, Id, Label, Layout, Popup, Pos2, Rect, Response, RichText, Sense,
-    SetOpenCommand, Stroke, TextEdit, Ui, vec2,
+    SetOpenCommand, Stroke, Ui, vec2,
 };
 
 use crate::app::session::Session;
@@ -16,7 +16,7 @@ use crate::app::words::numbers::unbroken;
 use crate::scene::lesson::{Choice, Condition, Step};
 
 use super::controls;
-use super::lesson_options::{option_size, options_text, options_ui};
+use super::lesson_options::{options_text, options_ui};
 use super::status_line::spoken_ui;
 
 /// Greatest width in points of the dots of the steps.
@@ -29,11 +29,7 @@ const SHORT_RESULT: &str = "Answer: B. ";
 const DOT: f32 = 4.5;
 const DOT_SPACING: f32 = 15.0;
 const LEAST_SPACING: f32 = 9.0;
-/// Greatest number of characters of the reason that a student gives.
-const MAX_REASON: usize = 60;
 const MEANING: f32 = 320.0;
-/// Greatest number of options side by side in a strip that is wider than this, in points.
-const SIDE_BY_SIDE: (usize, f32) = (3, 600.0);
 /// Space in points between the parts of a column.
 const COLUMN_SPACE: f32 = 8.0;
 
@@ -53,7 +49,7 @@ pub enum LessonAction {
     NextLesson(&'static str),
 }
 
-/// Draws the column of a wide window: the dots of the steps and the buttons, which stay where they are, and
+/// Draws the column: the dots of the steps and the buttons, which stay where they are, and
 /// below them the text, the options one below another, the reply to a choice, the controls and the state of a
 /// task. If `urged`, the button that continues gets the keyboard focus. Returns the chosen action and the
 /// rectangle of each control.
@@ -83,15 +79,12 @@ pub fn lesson_column_ui(
             }
             step_ui(ui, lesson, style, true);
         });
-        let mut action = options_ui(ui, lesson, style, 1);
+        let mut action = options_ui(ui, lesson, style);
         if lesson.is_covering() {
             action = action.or(reveal_ui(ui, urged));
         }
         if let Some((option, reply)) = lesson.reply() {
             text_ui(ui, style, &format!("{}: ", letter(option)), reply);
-        }
-        if lesson.answer().choice.is_some() && !lesson.is_covering() {
-            reason_ui(ui, lesson, style);
         }
         ui.spacing_mut().item_spacing.y = usual;
         ui.add_space(COLUMN_SPACE);
@@ -100,11 +93,11 @@ pub fn lesson_column_ui(
             if lesson.is_covering() {
                 ui.set_invisible();
             }
-            controls::named_column_ui(ui, session, &lesson.lesson().controls)
+            controls::named_ui(ui, session, &lesson.lesson().controls)
         });
         ui.add_space(COLUMN_SPACE);
         ui.spacing_mut().item_spacing.y = COLUMN_SPACE;
-        (action.or(task_ui(ui, lesson, session, style, (true, true))), enabled.inner)
+        (action.or(task_ui(ui, lesson, session, style)), enabled.inner)
     });
     let (action, places) = below.inner;
     (buttons.inner.or(action), places)
@@ -115,38 +108,6 @@ fn reveal_ui(ui: &mut Ui, urged: bool) -> Option<LessonAction> {
     let reveal = ui.button("Reveal").on_hover_text("Shows what it does, without a choice");
     urge(&reveal, urged);
     reveal.clicked().then_some(LessonAction::Reveal)
-}
-
-/// Draws the strip of a compact window, which has the same height in every step: the text, the state of a
-/// task, the options side by side. Returns the chosen action.
-pub fn lesson_strip_ui(
-    ui: &mut Ui,
-    lesson: &OpenLesson,
-    session: &Session,
-    style: &Style,
-) -> Option<LessonAction> {
-    ui.spacing_mut().item_spacing.y = SPACE;
-    speak_ui(ui, lesson, session);
-    let steps = lesson.lesson().steps.iter();
-    let height = steps.map(|step| height_of(ui, style, step)).fold(0.0, f32::max);
-    ui.set_min_height(height);
-    let width = ui.available_width();
-    // else the hint stands in place of the task
-    let has_both = lesson.hint().is_none_or(|hint| {
-        height_of(ui, style, lesson.step()) + SPACE + height_of_text(ui, style, (HINT, hint), width) <= height
-    });
-    ui.scope(|ui| {
-        if let Step::Predict { ask, .. } = lesson.step() {
-            ui.set_min_height(height_of_text(ui, style, (SHORT_RESULT, ask), width));
-        }
-        match lesson.hint().filter(|_| !has_both) {
-            Some(hint) => text_ui(ui, style, HINT, hint),
-            None => step_ui(ui, lesson, style, false),
-        }
-    });
-    let action = task_ui(ui, lesson, session, style, (false, has_both));
-    let most = most_beside(ui);
-    action.or(options_ui(ui, lesson, style, most))
 }
 
 /// Draws the step in words, as high in every step, above a view that has the whole window: its text, and the
@@ -186,28 +147,6 @@ fn step_ui(ui: &mut Ui, lesson: &OpenLesson, style: &Style, is_column: bool) {
     let space = if is_column { "\n" } else { " " };
     let result = is_shown.then(|| short_verdict(lesson, is_column) + space);
     text_ui(ui, style, &result.unwrap_or_else(|| heading(step).to_owned()), step.text());
-}
-
-/// Greatest number of options side by side in a strip.
-fn most_beside(ui: &Ui) -> usize {
-    if ui.available_width() > SIDE_BY_SIDE.1 { SIDE_BY_SIDE.0 } else { 1 }
-}
-
-/// Height in points of the strip in a step, with everything that may appear below its text.
-fn height_of(ui: &Ui, style: &Style, step: &Step) -> f32 {
-    let of = |heading: &str, text: &str| height_of_text(ui, style, (heading, text), ui.available_width());
-    match step {
-        Step::Say(text) | Step::Explain(text) => of(heading(step), text),
-        Step::Predict { ask, options, .. } => {
-            let rows = options.len().div_ceil(most_beside(ui)).max(1) as f32;
-            let below = option_size(ui, options, most_beside(ui)).y * rows + SPACE * (rows - 1.0);
-            of(SHORT_RESULT, ask) + SPACE + below
-        }
-        Step::Do { ask, hint, .. } => {
-            let hint = hint.as_deref().map_or(0.0, |hint| of(HINT, hint));
-            of(heading(step), ask).max(hint) + ui.spacing().interact_size.y.max(1.4 * BODY) + SPACE
-        }
-    }
 }
 
 /// Height in points of a text after a heading.
@@ -327,14 +266,8 @@ fn text_ui(ui: &mut Ui, style: &Style, heading: &str, text: &str) {
     }
 }
 
-/// Draws the state of a task, in a column or in a row, and its hint if it has a place of its own.
-fn task_ui(
-    ui: &mut Ui,
-    lesson: &OpenLesson,
-    session: &Session,
-    style: &Style,
-    (is_column, has_hint): (bool, bool),
-) -> Option<LessonAction> {
+/// Draws the state of a task and its hint.
+fn task_ui(ui: &mut Ui, lesson: &OpenLesson, session: &Session, style: &Style) -> Option<LessonAction> {
     let Step::Do { .. } = lesson.step() else { return None };
     let mut action = None;
     let starts = lesson.step().conditions().into_iter().flat_map(Condition::all_starts).count();
@@ -351,32 +284,22 @@ fn task_ui(
         TaskState::NotYet(lack) => (unbroken(&not_yet(&lack, is_on_stops(session))), style.ink()),
         TaskState::Judging => ("Being judged.".to_owned(), style.faint()),
     };
-    let layout = match is_column {
-        true => Layout::top_down(Align::Min),
-        false => Layout::left_to_right(Align::Center).with_main_wrap(true),
-    };
-    let size = vec2(ui.available_width(), 0.0);
-    ui.allocate_ui_with_layout(size, layout, |ui| {
-        let state = RichText::new(state).color(color);
-        let state = ui.label(if is_met { state.heading() } else { state });
-        if is_met {
-            ui.label(RichText::new(how).color(style.faint()));
-        } else {
-            state.on_hover_text(how);
-        }
-        let is_shown = lesson.hint().is_some();
-        if lesson.offered_hint().is_some() && !(is_shown && has_hint) {
-            let (name, hover) = match is_shown {
-                true => ("Task (H)", "Shows the task again"),
-                false if lesson.offers_hint() => ("Would a hint help? (H)", "Shows the hint"),
-                false => ("Hint (H)", "Shows the hint"),
-            };
-            let button = Button::new(name).selected(lesson.offers_hint());
-            let button = if is_column { button } else { button.small() };
-            action = ui.add(button).on_hover_text(hover).clicked().then_some(LessonAction::Hint);
-        }
-    });
-    if let Some(hint) = lesson.hint().filter(|_| has_hint) {
+    let state = RichText::new(state).color(color);
+    let state = ui.label(if is_met { state.heading() } else { state });
+    if is_met {
+        ui.label(RichText::new(how).color(style.faint()));
+    } else {
+        state.on_hover_text(how);
+    }
+    if lesson.offered_hint().is_some() && lesson.hint().is_none() {
+        let (name, hover) = match lesson.offers_hint() {
+            true => ("Would a hint help? (H)", "Shows the hint"),
+            false => ("Hint (H)", "Shows the hint"),
+        };
+        let button = ui.add(Button::new(name).selected(lesson.offers_hint()));
+        action = button.on_hover_text(hover).clicked().then_some(LessonAction::Hint);
+    }
+    if let Some(hint) = lesson.hint() {
         text_ui(ui, style, HINT, hint);
     }
     action
@@ -387,16 +310,6 @@ fn is_on_stops(session: &Session) -> bool {
     let model = session.model();
     let well = model.mechanism().landscape.right_stable().map(|well| well.x);
     well.zip(model.stop_positions().1).is_some_and(|(well, stop)| stop < well)
-}
-
-fn reason_ui(ui: &mut Ui, lesson: &mut OpenLesson, style: &Style) {
-    ui.horizontal(|ui| {
-        let text = "Why, in one word?";
-        let name = ui.label(RichText::new(text).color(style.faint()));
-        let width = ui.available_width();
-        let field = TextEdit::singleline(lesson.why_mut()).desired_width(width).char_limit(MAX_REASON);
-        ui.add(field.hint_text("if you like")).labelled_by(name.id);
-    });
 }
 
 /// The steps as dots: filled once they are settled and passed, with a ring around the present one. Without
@@ -423,27 +336,6 @@ fn dots_ui(ui: &mut Ui, lesson: &OpenLesson, style: &Style) {
         }
     }
     response.on_hover_text(name);
-}
-
-/// The buttons and, left of them, the dots of the steps, at one place in all steps; in a layout from right to
-/// left.
-pub fn navigation_ui(ui: &mut Ui, lesson: &OpenLesson, style: &Style, urged: bool) -> Option<LessonAction> {
-    let room = ui.available_width();
-    let mut action = buttons_ui(ui, lesson, urged);
-    if lesson.is_covering() {
-        action = action.or(reveal_ui(ui, urged));
-    }
-    let taken = room - ui.available_width();
-    let button = |name: &str| {
-        let font = egui::TextStyle::Button.resolve(ui.style());
-        let text = ui.painter().layout_no_wrap(name.to_owned(), font, Color32::PLACEHOLDER);
-        text.size().x + 2.0 * ui.spacing().button_padding.x + ui.spacing().item_spacing.x
-    };
-    let last = lesson.following().map_or(0.0, |next| button(numbered(next).as_str()) + button("Finish"));
-    let others = button("Next") + button("Reveal");
-    ui.add_space((last.max(others) + button("Back") - taken).max(0.0));
-    dots_ui(ui, lesson, style);
-    action
 }
 
 /// The buttons, the last one first, in a layout from right to left.

@@ -61,97 +61,65 @@ fn parts_of(ui: &Ui, (option, choice): (usize, &Choice), width: f32, ink: Color3
     [letter, ui.painter().layout(unbroken(&plain(&choice.text)), font(), ink, room)]
 }
 
-/// Width and height in points of each of these options, `columns` of them side by side.
-fn size_of(ui: &Ui, options: &[(usize, &Choice)], columns: usize) -> Vec2 {
-    let (columns, space) = (columns as f32, ui.spacing().item_spacing.x);
-    let width = (ui.available_width() - space * (columns - 1.0)) / columns;
-    let height = |option: &(usize, &Choice)| parts_of(ui, *option, width, Color32::PLACEHOLDER)[1].size().y;
-    let tallest = options.iter().map(height).fold(0.0, f32::max);
-    vec2(width, (tallest + 2.0 * ui.spacing().button_padding.y + 4.0).max(CONTROL))
+/// Width and height in points of an option.
+fn size_of(ui: &Ui, option: (usize, &Choice)) -> Vec2 {
+    let width = ui.available_width();
+    let height = parts_of(ui, option, width, Color32::PLACEHOLDER)[1].size().y;
+    vec2(width, (height + 2.0 * ui.spacing().button_padding.y + 4.0).max(CONTROL))
 }
 
-/// Width and height in points of each option, with at most `most` side by side.
-pub(super) fn option_size(ui: &Ui, options: &[Choice], most: usize) -> Vec2 {
-    let all: Vec<_> = options.iter().enumerate().collect();
-    size_of(ui, &all, columns_of(options.len(), most))
-}
-
-/// Number of options side by side of `count`, at most `most`, in rows that are equally full.
-fn columns_of(count: usize, most: usize) -> usize {
-    count.div_ceil(count.div_ceil(most).max(1)).max(1)
-}
-
-/// The options of a prediction, at most `most` side by side, all of one height, or in a column each as high
-/// as its text. Once the answer is shown, the one that holds is filled, and a ring marks another one that was
-/// chosen.
-pub(super) fn options_ui(
-    ui: &mut Ui,
-    lesson: &OpenLesson,
-    style: &Style,
-    most: usize,
-) -> Option<LessonAction> {
-    let options = lesson.options();
-    if options.is_empty() {
-        return None;
-    }
+/// The options of a prediction, one below another. Once the answer is shown, the one that holds is filled,
+/// and a ring marks another one that was chosen.
+pub(super) fn options_ui(ui: &mut Ui, lesson: &OpenLesson, style: &Style) -> Option<LessonAction> {
     let mut action = None;
-    let columns = columns_of(options.len(), most);
-    for (row, choices) in options.chunks(columns).enumerate() {
-        let each = match choices {
-            [choice] if columns == 1 => size_of(ui, &[(row, choice)], 1),
-            _ => option_size(ui, options, most),
-        };
-        ui.horizontal(|ui| {
-            for (i, choice) in choices.iter().enumerate() {
-                let option = row * columns + i;
-                let count = *lesson.answer().votes.get(option).unwrap_or(&0);
-                let votes = votes_text(count);
-                let letter = letter(option);
-                let text = format!("{letter}   {}", plain(&choice.text));
-                let spoken = if votes.is_empty() { text } else { format!("{text}, {votes}") };
-                let holds = !lesson.is_covering() && lesson.outcome() == Outcome::Holds(option);
-                let is_chosen = lesson.answer().choice.as_ref() == Some(&choice.text);
-                let mut button = if holds { primary(ui, "") } else { Button::new("") };
-                if !lesson.is_covering() {
-                    button = button.sense(Sense::hover());
-                    if is_chosen && !holds {
-                        button = button.stroke(Stroke::new(2.0, style.accent()));
-                    }
-                }
-                let button = ui.add_sized(each, button);
-                let ink = if holds { style.on_action() } else { style.ink() };
-                let [left, right] = parts_of(ui, (option, choice), each.x, ink);
-                let inside = button.rect.shrink2(ui.spacing().button_padding);
-                let top = inside.center().y - 0.5 * right.size().y;
-                ui.painter().galley(pos2(inside.left(), top), left, ink);
-                ui.painter().galley(pos2(inside.left() + INDENT, top), right, ink);
-                // counted in secret, so that no vote follows the others
-                if count > 0 && !lesson.is_covering() {
-                    let font = FontId::new(BODY, strong_family());
-                    ui.painter().text(inside.right_center(), Align2::RIGHT_CENTER, count, font, ink);
-                    let share = count as f32 / lesson.votes() as f32;
-                    let bottom = button.rect.bottom() - 2.0;
-                    let bar = inside.with_min_y(bottom - BAR).with_max_y(bottom);
-                    let bar = bar.with_max_x(bar.left() + share * bar.width());
-                    ui.painter().rect_filled(bar, 0.5 * BAR, if holds { ink } else { style.accent() });
-                }
-                if !lesson.is_covering() {
-                    tell(&button, egui::Role::Label, &spoken);
-                    continue;
-                }
-                let hover = format!(
-                    "Choose this: nothing is scored (key {letter}). Right button or Shift+{letter}: count a \
-                     vote."
-                );
-                let button = button.on_hover_text(hover);
-                tell(&button, egui::Role::Button, &spoken);
-                if button.clicked() {
-                    action = Some(LessonAction::Choose(option));
-                } else if button.secondary_clicked() {
-                    action = Some(LessonAction::Vote(option, 1));
-                }
+    for (option, choice) in lesson.options().iter().enumerate() {
+        let each = size_of(ui, (option, choice));
+        let count = *lesson.answer().votes.get(option).unwrap_or(&0);
+        let votes = votes_text(count);
+        let letter = letter(option);
+        let text = format!("{letter}   {}", plain(&choice.text));
+        let spoken = if votes.is_empty() { text } else { format!("{text}, {votes}") };
+        let holds = !lesson.is_covering() && lesson.outcome() == Outcome::Holds(option);
+        let is_chosen = lesson.answer().choice.as_ref() == Some(&choice.text);
+        let mut button = if holds { primary(ui, "") } else { Button::new("") };
+        if !lesson.is_covering() {
+            button = button.sense(Sense::hover());
+            if is_chosen && !holds {
+                button = button.stroke(Stroke::new(2.0, style.accent()));
             }
-        });
+        }
+        let button = ui.add_sized(each, button);
+        let ink = if holds { style.on_action() } else { style.ink() };
+        let [left, right] = parts_of(ui, (option, choice), each.x, ink);
+        let inside = button.rect.shrink2(ui.spacing().button_padding);
+        let top = inside.center().y - 0.5 * right.size().y;
+        ui.painter().galley(pos2(inside.left(), top), left, ink);
+        ui.painter().galley(pos2(inside.left() + INDENT, top), right, ink);
+        // counted in secret, so that no vote follows the others
+        if count > 0 && !lesson.is_covering() {
+            let font = FontId::new(BODY, strong_family());
+            ui.painter().text(inside.right_center(), Align2::RIGHT_CENTER, count, font, ink);
+            let share = count as f32 / lesson.votes() as f32;
+            let bottom = button.rect.bottom() - 2.0;
+            let bar = inside.with_min_y(bottom - BAR).with_max_y(bottom);
+            let bar = bar.with_max_x(bar.left() + share * bar.width());
+            ui.painter().rect_filled(bar, 0.5 * BAR, if holds { ink } else { style.accent() });
+        }
+        if !lesson.is_covering() {
+            tell(&button, egui::Role::Label, &spoken);
+            continue;
+        }
+        let hover = format!(
+            "Choose this: nothing is scored (key {letter}). Right button or Shift+{letter}: count a \
+             vote."
+        );
+        let button = button.on_hover_text(hover);
+        tell(&button, egui::Role::Button, &spoken);
+        if button.clicked() {
+            action = Some(LessonAction::Choose(option));
+        } else if button.secondary_clicked() {
+            action = Some(LessonAction::Vote(option, 1));
+        }
     }
     action
 }

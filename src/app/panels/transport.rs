@@ -1,16 +1,16 @@
-//! Transport bar: play, pause, step, events, speed and the time bar of the recorded motion.
+//! Transport bar: play, pause, step, events, speed, the time bar of the recorded motion, and its accuracy.
 
 use std::collections::VecDeque;
 
 use eframe::egui::{
-    self, Align2, ComboBox, Painter, Pos2, Rect, RichText, Sense, Shape, Stroke, Ui, UiBuilder, pos2, vec2,
+    self, Align2, ComboBox, Pos2, Rect, RichText, Sense, Shape, Stroke, Ui, UiBuilder, pos2, vec2,
 };
 
-use crate::app::session::Session;
 use crate::app::session::player::{Goal, SPEEDS};
+use crate::app::session::{OFFER_TO_STOP, Session};
 use crate::app::ui::style::Style;
 use crate::app::ui::widgets::{Icon, arrows, icon_button_ui, polygon, tell};
-use crate::app::words::meanings::explained;
+use crate::app::words::meanings::{explained, meaning};
 use crate::app::words::status::{Kind, speed};
 use crate::dynamics::{Event, EventKind};
 
@@ -23,8 +23,8 @@ const BUTTON: (f32, f32) = (32.0, 40.0);
 const TIME: (f32, f32) = (72.0, 140.0);
 /// Width in points of the length of the run, and for a long one of the part that the bar shows too.
 const LENGTH: (f32, f32) = (48.0, 96.0);
-/// Height in points of the bar with the signs of events above and below it.
-const SIGNS: f32 = 32.0;
+/// Height in points of the bar with the signs of crossings above it.
+const SIGNS: f32 = 28.0;
 /// Height in points of the row below the bar, and of the note below the time.
 const BELOW: f32 = 16.0;
 
@@ -39,11 +39,11 @@ const DOTS: f32 = 18.0;
 /// Share of the bar by which an arrow key moves; with Shift, ten times as much.
 const KEY_SHARE: f64 = 0.002;
 
-/// Least interval in points of the bar from which a row shows only its first event.
+/// Least interval in points of the bar of which only the first crossing is shown.
 const TICK: f32 = 5.0;
 
-/// Distances in points of the three rows of signs from the bar.
-const ROWS: [f32; 3] = [-15.5, -6.5, 7.5];
+/// Distance in points of the signs above the bar.
+const SIGN: f32 = 11.5;
 /// Distance in points of the bar from the lower end of the signs.
 const BAR: f32 = 12.0;
 
@@ -103,7 +103,7 @@ fn two_lines_ui(ui: &mut Ui, session: &mut Session, style: &Style, (note, covere
         clock_ui(ui, session);
         to_present_ui(ui, session, "to now");
     });
-    if !(note.is_empty() && skip_ui(ui, session, covered)) {
+    if !(note.is_empty() && (skip_ui(ui, session, covered) || stop_ui(ui, session))) {
         let length = format!("of {}", length_words(session));
         note_ui(ui, style, if note.is_empty() { &length } else { note });
     }
@@ -136,51 +136,22 @@ fn speed_ui(ui: &mut Ui, session: &mut Session) {
     tell(&response, egui::Role::ComboBox, "speed");
 }
 
-/// The row of an event's sign: crossings above releases above the bar, impacts below it.
-fn row(kind: EventKind) -> usize {
-    match kind {
-        EventKind::Crossing => 0,
-        EventKind::Release | EventKind::Separate => 1,
-        EventKind::Impact | EventKind::Rest | EventKind::Contact => 2,
-    }
-}
-
-/// The first event of each row in every interval of time. The length of the intervals in s is the least power
-/// of two that is not below `least`, and they begin at its multiples, so that signs do not change with time.
-fn ticks(events: &VecDeque<Event>, begin: f64, end: f64, least: f64) -> Vec<Event> {
+/// The time of the first crossing in every interval. The length of the intervals in s is the least power of
+/// two that is not below `least`, and they begin at its multiples, so that signs do not change with time.
+fn crossings(events: &VecDeque<Event>, begin: f64, end: f64, least: f64) -> Vec<f64> {
     let interval = least.max(f64::MIN_POSITIVE).log2().ceil().exp2();
-    let mut last = [None; 3];
-    let is_first = |event: &&Event| {
-        let number = Some((event.t / interval).floor());
-        number != std::mem::replace(&mut last[row(event.kind)], number)
+    let mut last = None;
+    let is_first = |t: &f64| {
+        let number = Some((t / interval).floor());
+        number != std::mem::replace(&mut last, number)
     };
-    // in the row of impacts a rest would look like an impact, even of a mass that rests from the start
-    let has_sign = |event: &&Event| event.kind != EventKind::Rest && (begin..=end).contains(&event.t);
-    events.iter().filter(has_sign).filter(is_first).copied().collect()
+    let all = events.iter().filter(|event| event.kind == EventKind::Crossing).map(|event| event.t);
+    all.filter(|t| (begin..=end).contains(t)).filter(is_first).collect()
 }
 
-/// The sign of an event at `at`: a line for an impact, a triangle for a release, a diamond for a crossing.
-fn sign(kind: EventKind, at: Pos2, style: &Style) -> Shape {
-    match row(kind) {
-        0 => {
-            let corners = [(0.0, -4.0), (3.5, 0.0), (0.0, 4.0), (-3.5, 0.0)];
-            polygon(at, 1.0, &corners, style.kind(Kind::Interwell))
-        }
-        1 => polygon(at, 1.0, &[(0.0, -3.5), (3.5, 3.0), (-3.5, 3.0)], style.stop()),
-        _ => Shape::line_segment([at - vec2(0.0, 3.5), at + vec2(0.0, 3.5)], style.impact_stroke()),
-    }
-}
-
-/// The signs that occur, with their meanings, in a row.
-fn legend(painter: &Painter, style: &Style, row: Rect, present: [bool; 3]) {
-    let mut x = row.left() + 10.0;
-    let signs =
-        [(EventKind::Impact, "impact"), (EventKind::Release, "release"), (EventKind::Crossing, "crossing")];
-    for (kind, name) in signs.into_iter().filter(|sign| present[self::row(sign.0)]) {
-        painter.add(sign(kind, pos2(x, row.center().y), style));
-        let at = pos2(x + 8.0, row.center().y);
-        x = painter.text(at, Align2::LEFT_CENTER, name, style.small(), style.faint()).right() + 18.0;
-    }
+/// The sign of a crossing at `at`.
+fn sign(at: Pos2, style: &Style) -> Shape {
+    polygon(at, 1.0, &[(0.0, -4.0), (3.5, 0.0), (0.0, 4.0), (-3.5, 0.0)], style.kind(Kind::Interwell))
 }
 
 /// The length in s of the bar of a run of this length, of which so much has been seen: the whole run, or,
@@ -194,9 +165,9 @@ fn length_of_bar(run: f64, seen: f64) -> f64 {
     length.max(seen)
 }
 
-/// The run as a bar, as far as it has been seen with signs of its events. Dragging, or the arrow keys while
-/// the bar has the focus, shows an earlier time. With a `note` the length of the run stands at the end of the
-/// bar, and there is a row below it: the meanings of the signs, and the note.
+/// The run as a bar, as far as it has been seen with signs of its crossings. Dragging, or the arrow keys
+/// while the bar has the focus, shows an earlier time. With a `note` the length of the run stands at the end
+/// of the bar, and there is a row below it: the meaning of the signs, the accuracy, and the note.
 fn scrub_ui(ui: &mut Ui, session: &mut Session, style: &Style, covered: bool, note: Option<&str>) {
     let watch = session.player.watch();
     let (begin, seen) = (watch.begin(), watch.time());
@@ -219,14 +190,9 @@ fn scrub_ui(ui: &mut Ui, session: &mut Session, style: &Style, covered: bool, no
     let painter = ui.painter();
     painter.rect_filled(bar, 2.0, style.track());
     painter.rect_filled(bar.with_max_x(screen_from_time(seen)), 2.0, style.edge());
-    let mut present = [false; 3];
-    if !covered {
-        for event in ticks(watch.events(), begin, seen, f64::from(TICK / bar.width()) * span) {
-            let at = pos2(screen_from_time(event.t), bar.center().y + ROWS[row(event.kind)]);
-            painter.add(sign(event.kind, at, style));
-            present[row(event.kind)] = true;
-        }
-    }
+    let least = f64::from(TICK / bar.width()) * span;
+    let crossings = if covered { Vec::new() } else { crossings(watch.events(), begin, seen, least) };
+    painter.extend(crossings.iter().map(|t| sign(pos2(screen_from_time(*t), bar.center().y - SIGN), style)));
     let mut at = pos2(bar.right() + 12.0, bar.center().y);
     if !is_whole {
         let dots = [5.0, 10.0, 15.0].map(|x| bar.right_center() + vec2(x, 0.0));
@@ -248,7 +214,6 @@ fn scrub_ui(ui: &mut Ui, session: &mut Session, style: &Style, covered: bool, no
     }
     let Some(note) = note else { return };
     let below = whole.with_min_y(rect.bottom());
-    legend(ui.painter(), style, below, present);
     let hint = if response.hovered() { "drag, or press the arrow keys, to look back" } else { "" };
     let layout = egui::Layout::right_to_left(egui::Align::Center);
     ui.scope_builder(UiBuilder::new().max_rect(below).layout(layout), |ui| {
@@ -257,7 +222,52 @@ fn scrub_ui(ui: &mut Ui, session: &mut Session, style: &Style, covered: bool, no
         if !(note.is_empty() && skip_ui(ui, session, covered)) {
             note_ui(ui, style, if note.is_empty() { hint } else { note });
         }
+        ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
+            if !crossings.is_empty() {
+                let (place, _) = ui.allocate_exact_size(vec2(9.0, BELOW), Sense::hover());
+                ui.painter().add(sign(place.center(), style));
+                line_ui(ui, style, "crossing");
+            }
+            if !covered {
+                accuracy_ui(ui, session, style);
+            }
+        });
     });
+}
+
+fn line_ui(ui: &mut Ui, style: &Style, text: &str) -> egui::Response {
+    ui.add(egui::Label::new(RichText::new(text).small().color(style.faint())).truncate())
+}
+
+/// How accurate the motion is, whether the mass was moved, and the offer to stop computing.
+fn accuracy_ui(ui: &mut Ui, session: &mut Session, style: &Style) {
+    ui.spacing_mut().item_spacing.x = 12.0;
+    if let Some((short, long)) = session.trust() {
+        let meaning = meaning(&short).map_or_else(String::new, |meaning| format!("{meaning}\n\n"));
+        line_ui(ui, style, &short).on_hover_text(format!("{meaning}{long}"));
+    }
+    if session.was_set_on_stop() {
+        let hover = "A stop that was moved or switched on would have gone through it.";
+        line_ui(ui, style, "The mass was set on the stop").on_hover_text(hover);
+    }
+    stop_ui(ui, session);
+}
+
+/// Offers to cancel background work that has taken long, in a link. Returns whether it does.
+fn stop_ui(ui: &mut Ui, session: &mut Session) -> bool {
+    let Some(worked) = session.working() else { return false };
+    if worked < OFFER_TO_STOP {
+        ui.ctx().request_repaint_after(OFFER_TO_STOP - worked);
+        return false;
+    }
+    let hover = "Time spent in the background on the settled motion, on what it would take to cross and on \
+                 the accuracy. The motion continues without these results; the next change starts anew.";
+    let text = RichText::new(format!("Stop computing ({} s)", worked.as_secs())).small();
+    ui.ctx().request_repaint_after_secs(1.0);
+    if ui.link(text).on_hover_text(hover).clicked() {
+        session.stop_working();
+    }
+    true
 }
 
 /// The note on the time that is shown: its event, or the goal.
@@ -347,24 +357,20 @@ mod tests {
     }
 
     #[test]
-    fn ticks_keep_their_distance_and_their_order() {
-        let kinds = [EventKind::Impact, EventKind::Impact, EventKind::Release, EventKind::Crossing];
+    fn crossings_keep_their_distance() {
+        let kinds = [EventKind::Impact, EventKind::Release, EventKind::Crossing, EventKind::Crossing];
         let all = (0..4000).map(|i| event(f64::from(i) * 0.01, kinds[i as usize % 4]));
         let all: VecDeque<Event> = all.collect();
-        let few = ticks(&all, 0.0, 40.0, 0.3);
-        // each interval of half a second has one event of every kind
-        assert_eq!(few.len(), 240);
-        for kind in [EventKind::Crossing, EventKind::Release, EventKind::Impact] {
-            let of_kind: Vec<&Event> = few.iter().filter(|event| event.kind == kind).collect();
-            assert_eq!(of_kind.len(), 80);
-            assert!(of_kind.windows(2).all(|pair| pair[1].t - pair[0].t > 0.3));
-        }
+        let few = crossings(&all, 0.0, 40.0, 0.3);
+        // one in each interval of half a second
+        assert_eq!(few.len(), 80);
+        assert!(few.windows(2).all(|pair| pair[1] - pair[0] > 0.3));
         // later they are the same
-        let later = ticks(&all, 3.2, 40.0, 0.4);
-        assert!(later.iter().skip(3).all(|event| few.contains(event)));
-        // a lone impact is seen
-        let lone: VecDeque<Event> = [event(7.0, EventKind::Impact)].into();
-        assert_eq!(ticks(&lone, 0.0, 1e9, 1.0).len(), 1);
-        assert!(ticks(&VecDeque::new(), 0.0, 1.0, 0.1).is_empty());
+        let later = crossings(&all, 3.2, 40.0, 0.4);
+        assert!(later.iter().skip(1).all(|t| few.contains(t)));
+        // a lone one is seen
+        let lone: VecDeque<Event> = [event(7.0, EventKind::Crossing)].into();
+        assert_eq!(crossings(&lone, 0.0, 1e9, 1.0), [7.0]);
+        assert!(crossings(&VecDeque::new(), 0.0, 1.0, 0.1).is_empty());
     }
 }

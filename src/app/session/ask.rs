@@ -149,7 +149,7 @@ impl Session {
             self.thresholds.running_for(),
             self.stops_that_cross.running_for(),
             self.accuracy.working(),
-            self.pins.working(),
+            self.reference.working(),
         ];
         times.into_iter().flatten().max()
     }
@@ -160,7 +160,7 @@ impl Session {
         self.thresholds.pause();
         self.stops_that_cross.pause();
         self.accuracy.stop();
-        self.pins.stop_working();
+        self.reference.stop_working();
     }
 
     /// Asks for the cost of digits and steps in the scene; to be called by a view in every frame. While the

@@ -22,12 +22,7 @@ const PRESS_GAP: f64 = 1.0;
 impl Session {
     /// Changes the scene as part of a gesture; see [`Editor::edit`].
     pub fn edit(&mut self, change: impl FnOnce(&mut Scene)) -> bool {
-        let now = (!self.editor.in_gesture()).then(|| self.now_card());
-        let changed = self.editor.edit(change);
-        if let (true, Some(now)) = (changed, now) {
-            self.before = Some(now);
-        }
-        changed
+        self.editor.edit(change)
     }
 
     /// Changes the mechanism as part of a gesture, if the changed one can be solved and run. Returns whether
@@ -92,10 +87,12 @@ impl Session {
 
     fn move_in_history(&mut self, step: impl FnOnce(&mut Editor) -> bool) -> bool {
         self.end_gesture();
-        let now = self.now_card();
         let moved = step(&mut self.editor);
-        if moved {
-            self.before = Some(now);
+        if let Some((x, v)) = self.editor.take_placed() {
+            self.leave_reference();
+            self.player.place(x, v);
+            self.note_move();
+        } else if moved {
             self.apply();
             self.ask_thresholds();
         }
@@ -189,7 +186,6 @@ impl Session {
     /// Goes back to the scene as it was opened or last saved, and plays it from its start.
     pub fn back_to_start(&mut self) {
         self.move_in_history(Editor::back_to_start);
-        self.before = None;
         self.remembered_stops = first_stops(self.scene(), &self.model);
         self.restart();
         self.player.speed = opening_speed(self.scene(), &self.model);

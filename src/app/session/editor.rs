@@ -1,7 +1,7 @@
 //! The edited scene with its file and its undo stack.
 //!
 //! Undo is a stack of scenes: a scene is plain, comparable data of a few hundred bytes, and one gesture (a
-//! drag, a click, a number typed) is one step.
+//! drag, a click, a number typed) is one step. So is a move of the mass by hand, which changes no scene.
 
 use std::mem::discriminant;
 use std::path::Path;
@@ -17,14 +17,26 @@ const MAX_STEPS: usize = 500;
 /// Name in messages of a scene that was given as text.
 const PASTED: &str = "the pasted scene";
 
+/// Displacement in m and velocity in m/s of the mass.
+type State = (f64, f64);
+
+/// What one step changes back: the scene, or the state of the mass.
+#[derive(Debug, Clone)]
+enum Step {
+    Scene(Box<Scene>),
+    Mass { from: State, to: State },
+}
+
 #[derive(Debug, Clone)]
 pub struct Editor {
     document: Document,
     /// The scene as it was opened or last saved.
     saved: Scene,
     named: Scene,
-    undo: Vec<Scene>,
-    redo: Vec<Scene>,
+    undo: Vec<Step>,
+    redo: Vec<Step>,
+    /// Where the step that was taken last has placed the mass.
+    placed: Option<State>,
     /// The scene before the current gesture.
     gesture: Option<Scene>,
 }
@@ -32,7 +44,7 @@ pub struct Editor {
 impl Editor {
     pub fn new(document: Document) -> Self {
         let (saved, named) = (document.scene.clone(), document.scene.clone());
-        Self { document, saved, named, undo: Vec::new(), redo: Vec::new(), gesture: None }
+        Self { document, saved, named, undo: Vec::new(), redo: Vec::new(), placed: None, gesture: None }
     }
 
     /// An editor on the scene of a lesson or of a link, which differs from the scene that its source names.
@@ -144,7 +156,24 @@ impl Editor {
         let Some(before) = self.gesture.take().filter(|before| *before != self.document.scene) else {
             return;
         };
-        self.undo.push(before);
+        self.push(Step::Scene(Box::new(before)));
+    }
+
+    /// Adds a move of the mass by hand as one undo step.
+    pub fn moved(&mut self, from: State, to: State) {
+        self.end_gesture();
+        if from != to {
+            self.push(Step::Mass { from, to });
+        }
+    }
+
+    /// The state of the mass that an undo or a redo has brought back, once.
+    pub fn take_placed(&mut self) -> Option<State> {
+        self.placed.take()
+    }
+
+    fn push(&mut self, step: Step) {
+        self.undo.push(step);
         self.redo.clear();
         let excess = self.undo.len().saturating_sub(MAX_STEPS);
         self.undo.drain(..excess);
@@ -169,17 +198,36 @@ impl Editor {
     /// Undoes one step. Returns whether there was one.
     pub fn undo(&mut self) -> bool {
         self.end_gesture();
-        let Some(before) = self.undo.pop() else { return false };
-        self.redo.push(std::mem::replace(&mut self.document.scene, before));
+        let Some(step) = self.undo.pop() else { return false };
+        if let Step::Mass { from, .. } = step {
+            self.placed = Some(from);
+        }
+        let back = self.taken(step);
+        self.redo.push(back);
         true
     }
 
     /// Redoes one step. Returns whether there was one.
     pub fn redo(&mut self) -> bool {
         self.end_gesture();
-        let Some(after) = self.redo.pop() else { return false };
-        self.undo.push(std::mem::replace(&mut self.document.scene, after));
+        let Some(step) = self.redo.pop() else { return false };
+        if let Step::Mass { to, .. } = step {
+            self.placed = Some(to);
+        }
+        let back = self.taken(step);
+        self.undo.push(back);
         true
+    }
+
+    /// Takes a step. Returns the one that leads back.
+    fn taken(&mut self, step: Step) -> Step {
+        match step {
+            Step::Scene(mut scene) => {
+                std::mem::swap(&mut self.document.scene, &mut scene);
+                Step::Scene(scene)
+            }
+            step => step,
+        }
     }
 
     /// Goes to the nearest scene before the present one that has this link, or else after it. Returns whether
@@ -187,12 +235,13 @@ impl Editor {
     #[cfg(any(test, target_arch = "wasm32"))]
     pub fn go_to(&mut self, link: &str) -> bool {
         self.end_gesture();
-        let has_link = |scene: &Scene| {
+        let has_link = |step: &Step| {
+            let Step::Scene(scene) = step else { return false };
             let mut document = self.document.clone();
             document.scene.clone_from(scene);
             document.link().is_ok_and(|other| other == link)
         };
-        let place = |scenes: &[Scene]| scenes.iter().rev().position(has_link);
+        let place = |steps: &[Step]| steps.iter().rev().position(has_link);
         match (place(&self.undo), place(&self.redo)) {
             (Some(steps), _) => (0..=steps).all(|_| self.undo()),
             (None, Some(steps)) => (0..=steps).all(|_| self.redo()),
@@ -217,7 +266,8 @@ impl Editor {
         (document.name, document.source) = (path.display().to_string(), Source::File(path.to_owned()));
         let before = std::mem::replace(&mut document.files, Files::beside(path));
         let mut now = document.scene.clone();
-        for scene in self.undo.iter_mut().chain(&mut self.redo) {
+        for step in self.undo.iter_mut().chain(&mut self.redo) {
+            let Step::Scene(scene) = step else { continue };
             update_names(scene, &before, &mut self.document.scene, &mut now);
         }
         (self.saved, self.named) = (document.scene.clone(), document.scene.clone());
@@ -267,7 +317,8 @@ fn copy_files(scene: &mut Scene, files: &Files, target: &Path) -> Result<Vec<Str
     if files.folder.as_deref().is_some_and(|folder| is_same(folder, target_folder)) {
         return Ok(written);
     }
-    for path in named_paths(scene).into_iter().filter(|path| !Path::new(path.as_str()).is_absolute()) {
+    let stays = |path: &&mut String| Path::new(path.as_str()).is_absolute() && !files.sealed;
+    for path in named_paths(scene).into_iter().filter(|path| !stays(path)) {
         let text = match files.read(path) {
             Err(FileError::Missing { embedded: true, .. }) => Files::default().read(path),
             read => read,

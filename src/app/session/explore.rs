@@ -56,6 +56,26 @@ impl Default for Spectra {
 }
 
 impl Session {
+    /// Takes the studies over from a session on another step of a lesson, without the answers about other
+    /// scenes: a view would show them as those of this one until its own come.
+    pub fn keep_studies_of(&mut self, other: &mut Self) {
+        let chosen = self.explore.walks.chosen.take();
+        self.explore = std::mem::take(&mut other.explore);
+        self.explore.walks.chosen = chosen;
+        let (of, walk) = (ground(self.scene(), self.remembered_stops, &[]), self.walk_question().ok());
+        let scene = self.scene().clone();
+        let Explore { walks, basins, spectra } = &mut self.explore;
+        if basins.question().is_some_and(|asked| *asked.of.of != of) {
+            basins.clear();
+        }
+        if walks.found.question() != walk.as_ref() {
+            walks.found.clear();
+        }
+        if spectra.found.question().is_some_and(|asked| *asked.model.scene() != scene) {
+            spectra.found.clear();
+        }
+    }
+
     /// Asks for the spectrum of the present scene; to be called in every frame that shows it.
     pub fn want_spectrum(&mut self) {
         let (model, signal) = (self.model.clone(), self.explore.spectra.signal);
@@ -209,7 +229,7 @@ impl BasinsQuestion {
         let range = |(from, to): (f64, f64)| EvenRange { from, to, count: self.starts };
         let question = Basins { x_mm: range(self.x_mm), v: range(self.v), random: None };
         let Prepared { of, mechanism, .. } = &self.of;
-        let begun = question.begin(question.starts()?, &of.document(), mechanism)?;
+        let begun = question.begin(question.starts()?, &of.document(), mechanism)?.checked();
         let per_speed = suited_unit("m/s", [self.v.0, self.v.1].into_iter()).0;
         let level = |basins: &_, answer: Answer| Level {
             chart: basins_chart(basins, &answer),

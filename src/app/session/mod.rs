@@ -14,9 +14,9 @@ pub mod explore;
 pub mod lesson;
 pub mod map;
 pub mod measured;
-pub mod pins;
 pub mod player;
 pub mod prepared;
+pub mod reference;
 pub mod sliders;
 
 use std::sync::Arc;
@@ -38,9 +38,9 @@ use editor::Editor;
 use explore::Explore;
 use map::{LOAD_POWER, Mapping};
 use measured::MeasuredData;
-use pins::Pins;
 use player::{Player, opening_speed};
 use prepared::{Prepared, SceneWithFiles, SharedModel};
+use reference::Reference;
 
 /// Time after which the user is offered to stop a background computation.
 pub const OFFER_TO_STOP: Duration = Duration::from_secs(2);
@@ -51,7 +51,7 @@ const LEAST_CONTINUATION: f64 = 0.02;
 /// Least displacement of the mass by a change that is reported, as a share of the length scale.
 const REPORTED_MOVE: f64 = 0.02;
 
-/// A side of the card Before / now.
+/// A column of the view Compare.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Card {
     pub scene: Scene,
@@ -59,6 +59,8 @@ pub struct Card {
     pub settled: Option<Summary>,
     /// Its thresholds; `None` until they are known.
     pub thresholds: Option<Thresholds>,
+    /// Live time in s at which its motion ended.
+    pub ended: Option<f64>,
 }
 
 pub struct Session {
@@ -76,10 +78,8 @@ pub struct Session {
     pub accuracy: Accuracy,
     pub map: Mapping,
     pub explore: Explore,
-    pub pins: Pins,
+    pub reference: Reference,
     pub measured: MeasuredData,
-    /// The scene before the last gesture, for the card.
-    pub before: Option<Card>,
     /// The scene that the model was built from.
     built: Scene,
     mechanism: Arc<Mechanism>,
@@ -91,6 +91,8 @@ pub struct Session {
     pub changed_at: f64,
     /// Whether the last change was a move of the mass by hand.
     pub by_hand: bool,
+    /// The state of the mass when a hand took it.
+    held_from: Option<(f64, f64)>,
     /// Whether the last change moved the mass to a stop.
     moved_to_stop: bool,
     /// The model of the scene as it was opened, whose scales set the ranges of the sliders, so that no slider
@@ -130,14 +132,14 @@ impl Session {
             accuracy: Accuracy::default(),
             map: Mapping::default(),
             explore: Explore::default(),
-            pins: Pins::default(),
+            reference: Reference::new(scene.clone(), model.clone(), false),
             measured: MeasuredData::default(),
-            before: None,
             mechanism_of: scene.mechanism.clone(),
             tolerance: FLEXURE_TOLERANCE,
             mechanism,
             changed_at: 0.0,
             by_hand: false,
+            held_from: None,
             moved_to_stop: false,
             opened: model.clone(),
             is_continued: false,
@@ -166,7 +168,7 @@ impl Session {
         self.explore.walks.found.poll();
         self.explore.basins.poll();
         self.explore.spectra.found.poll();
-        self.pins.poll();
+        self.reference.poll();
         self.note_thresholds();
         self.measured.poll();
         self.apply();
@@ -191,7 +193,7 @@ impl Session {
 
     pub fn restart(&mut self) {
         self.player.restart(&self.model);
-        self.pins.restart(&self.wake);
+        self.reference.restart(self.built == self.reference.scene, &self.wake);
         (self.changed_at, self.is_continued, self.by_hand, self.moved_to_stop) = (0.0, false, false, false);
         self.ask_settled();
     }
@@ -205,8 +207,39 @@ impl Session {
         self.player.set_playing(!playing);
     }
 
-    /// Notes that the mass has been moved by hand, and asks again what the motion settles to.
+    /// Holds the mass at `x` in m.
+    pub fn hold(&mut self, x: f64) {
+        self.leave_reference();
+        if !self.player.is_held() {
+            self.held_from = Some(self.state_of_mass());
+        }
+        self.player.hold(x);
+    }
+
+    /// Places the mass at `x` in m with velocity `v` in m/s; the motion goes on from there.
+    pub fn place(&mut self, x: f64, v: f64) {
+        self.leave_reference();
+        self.held_from = Some(self.state_of_mass());
+        self.player.place(x, v);
+        self.moved_by_hand();
+    }
+
+    /// Displacement in m and velocity in m/s of the mass, at the time that is shown.
+    fn state_of_mass(&self) -> (f64, f64) {
+        let state = self.player.state();
+        (state.x, state.v)
+    }
+
+    /// Notes that the mass has been moved by hand, as one undo step.
     pub fn moved_by_hand(&mut self) {
+        if let Some(from) = self.held_from.take() {
+            self.editor.moved(from, self.state_of_mass());
+        }
+        self.note_move();
+    }
+
+    /// Asks again what the motion settles to after the mass was moved.
+    fn note_move(&mut self) {
         (self.changed_at, self.is_continued, self.by_hand) = (self.player.watch().time(), true, true);
         self.moved_to_stop = false;
         self.ask_settled();
@@ -237,6 +270,7 @@ impl Session {
     /// Continues the motion with the new model; a motion that has ended and cannot continue is restarted.
     fn continue_motion(&mut self) {
         let (ended, before) = (self.player.ended().is_some(), self.player.watch().now().x);
+        self.leave_reference();
         self.player.change(&self.model);
         let lasts = |from: Model| study::lasts(&from, LEAST_CONTINUATION * from.characteristic_time());
         if ended && !self.player.watch().from_here().is_some_and(lasts) {
@@ -332,6 +366,7 @@ impl Session {
             scene: self.scene().clone(),
             settled: self.settled.answer().copied(),
             thresholds: self.thresholds.answer().copied().filter(|_| !self.keeps_remedy),
+            ended: None,
         }
     }
 

@@ -39,7 +39,7 @@ impl From<SceneWithFiles> for WithTexts {
 
 impl From<WithTexts> for SceneWithFiles {
     fn from(WithTexts { name, mut scene, texts }: WithTexts) -> Self {
-        let files = Files { folder: None, cached: texts };
+        let files = Files { cached: texts, ..Files::default() };
         read_records(&mut scene, &files);
         Self { name, scene, files }
     }
@@ -135,6 +135,11 @@ pub struct SharedModel {
 impl SharedModel {
     pub fn new(model: Model, of: Prepared) -> Self {
         Self { model: Identity(Arc::new(model)), of: Arc::new(of) }
+    }
+
+    /// The scene of this model.
+    pub fn scene(&self) -> &Scene {
+        &self.of.of.scene
     }
 
     /// The scene with this model, as questions take it.

@@ -12,7 +12,7 @@ use crate::app::words::fields::Reach;
 use crate::app::words::numbers::{decimal, decimals, exact, rounded, shown, with_minus};
 use crate::scene::read_number;
 
-use super::style::{COMPACT_BELOW, CONTROL, NUMBER, Style};
+use super::style::{CONTROL, NARROW_BELOW, NUMBER, Style};
 use super::widgets::hover_beside;
 
 /// Height in points of a slider, 2.5 times the radius of its handle.
@@ -309,7 +309,7 @@ fn refusal_ui(ui: &Ui, id: egui::Id, response: &Response) {
     }
     ui.ctx().request_repaint_after_secs(left as f32);
     let (rect, window) = (response.rect, ui.ctx().content_rect());
-    let beside = window.width() >= COMPACT_BELOW && window.right() - rect.right() > REFUSAL_WIDTH + 40.0;
+    let beside = window.width() >= NARROW_BELOW && window.right() - rect.right() > REFUSAL_WIDTH + 40.0;
     let at = if beside {
         pos2(rect.right() + 10.0, rect.top())
     } else {

@@ -24,13 +24,8 @@ pub fn projector_zoom(size: egui::Vec2) -> f32 {
     (size.y / PROJECTED_HEIGHT).min(size.x / PROJECTED_WIDTH).max(1.0)
 }
 
-/// Width in points below which the window is laid out for a projector: two controls in a row, two views.
-pub const COMPACT_BELOW: f32 = 1000.0;
-/// Width in points below which a window is narrow, such as on a phone.
-pub const NARROW_BELOW: f32 = 560.0;
-
-/// Size in points of a window above which there is room for one more tile.
-pub const LARGE_FROM: egui::Vec2 = egui::Vec2::new(1600.0, 880.0);
+/// Width in points below which a window is narrow: the controls open by a button.
+pub const NARROW_BELOW: f32 = 1000.0;
 
 /// The three text sizes in points: labels of pictures and notes, text and controls, the headline.
 pub const SMALL: f32 = 12.0;
@@ -179,8 +174,8 @@ methods! {
     action(style) -> Color32 = style.pick(hex(0x17689f), hex(0x2272a8));
     on_action(style) -> Color32 = style.pick(hex(0xffffff), hex(0xffffff));
     mass(_style) -> Color32 = ORANGE;
-    /// A pinned motion.
-    pin(style) -> Color32 = style.colour(Role::Pin(0));
+    /// The reference.
+    compared(style) -> Color32 = style.colour(Role::Compared);
     /// Text about the proof mass.
     mass_ink(style) -> Color32 = style.pick(rgb(140, 92, 0), ORANGE);
     mass_edge(style) -> Color32 = style.pick(rgb(122, 84, 0), rgb(255, 214, 128));
@@ -199,8 +194,6 @@ methods! {
     tray_stroke(style) -> Stroke = style.stroke(Role::Curve);
     /// The potential without the push.
     ghost_stroke(style) -> Stroke = style.stroke(Role::Reference);
-    /// The outline of a pinned motion's mass.
-    ghost_mass_stroke(style) -> Stroke = Stroke::new(style.width(1.8), style.pin());
     /// The height of the barrier where energies are compared with it.
     barrier_stroke(style) -> Stroke = Stroke::new(style.width(2.0), style.ink());
     /// Frame of the widget with the keyboard focus.

@@ -9,7 +9,7 @@ use eframe::egui::{
 use crate::app::words::kind::Kind;
 use crate::app::words::numbers::unbroken;
 
-use super::style::{BODY, COMPACT_BELOW, CONTROL, LEAST, STATUS, Style};
+use super::style::{BODY, CONTROL, LEAST, NARROW_BELOW, STATUS, Style};
 
 /// A dialog at most `width` points wide, with its contents below a heading. Returns the value of the
 /// contents, and whether the dialog was closed by a key or by a click beside it.
@@ -53,7 +53,7 @@ pub fn bare(panel: egui::Panel, x: i8, y: i8) -> egui::Panel {
 }
 
 /// A text in parts: code between backticks has letters of one width.
-fn prose(text: &str) -> Vec<(&str, FontFamily)> {
+pub fn prose(text: &str) -> Vec<(&str, FontFamily)> {
     let family =
         |i: usize| if i.is_multiple_of(2) { FontFamily::Proportional } else { FontFamily::Monospace };
     text.split('`').enumerate().map(|(i, part)| (part, family(i))).collect()
@@ -129,7 +129,7 @@ pub fn hover_beside(response: Response, text: &str) -> Response {
     if is_hidden() {
         return response;
     }
-    if response.ctx.content_rect().width() < COMPACT_BELOW {
+    if response.ctx.content_rect().width() < NARROW_BELOW {
         return response.on_hover_text(text);
     }
     let mut tooltip = egui::Tooltip::for_enabled(&response);

@@ -1,18 +1,13 @@
 //! Context passed to every view, and the placeholder of a view that is too small.
 
-use std::sync::Arc;
-
 use eframe::egui::{
     Align, Align2, FontId, Frame, Label, Layout, Rect, RichText, Role, ScrollArea, Sense, Shape, Ui,
     UiBuilder, Vec2, pos2, vec2,
 };
 
 use crate::app::session::Session;
-use crate::app::session::pins::Pin;
 use crate::app::ui::style::{CONTROL, CORNER, Style, strong_family};
 use crate::app::ui::widgets::tell;
-use crate::dynamics::{Model, Sample};
-use crate::scene::Excitation;
 
 use super::memory::Memory;
 use super::span::Span;
@@ -29,44 +24,6 @@ pub enum Cover {
     All,
 }
 
-/// Which motion a drawing shows.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Drawn {
-    /// The present motion, with the pinned ones as ghosts.
-    WithGhosts,
-    /// The present motion alone.
-    Alone,
-    /// The pinned motion at this index, which cannot be moved by hand.
-    Pinned(usize),
-}
-
-impl Drawn {
-    /// The pinned motion that is drawn, if any.
-    pub(super) fn pin(self, session: &Session) -> Option<&Pin> {
-        match self {
-            Self::Pinned(place) => session.pins.all().get(place),
-            Self::WithGhosts | Self::Alone => None,
-        }
-    }
-
-    /// The state of the motion that is drawn, at the time that is shown.
-    pub(super) fn state(self, session: &Session) -> Sample {
-        self.pin(session)
-            .map_or_else(|| session.player.state(), |pin| pin.watch.state_at(session.player.time()))
-    }
-
-    /// Its model at that time.
-    pub(super) fn model(self, session: &Session) -> &Arc<Model> {
-        self.pin(session).map_or(session.shown(), |pin| pin.watch.model_at(session.player.time()))
-    }
-
-    /// Whether a force on the mass drives it, while the base stands still.
-    pub(super) fn is_pushed(self, session: &Session) -> bool {
-        let scene = self.pin(session).map_or(session.scene(), |pin| &pin.scene);
-        matches!(scene.excitation, Excitation::Force { .. })
-    }
-}
-
 pub struct ViewContext<'a> {
     /// The open scene: document, model, motion, results.
     pub session: &'a mut Session,
@@ -81,7 +38,6 @@ pub struct ViewContext<'a> {
     pub cover: Cover,
     /// Whether the view fills the window, so that it shares its axes with no other.
     pub filled: bool,
-    pub drawn: Drawn,
 }
 
 /// Greatest width in points of a sentence in place of a view.

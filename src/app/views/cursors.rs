@@ -1,9 +1,6 @@
 //! Two time cursors shared by all views over time, with a readout of the values at them.
 
-use eframe::egui::{
-    Align2, CursorIcon, Key, Label, PointerButton, Rect, Response, RichText, Sense, Shape, Ui, UiBuilder,
-    WidgetInfo, pos2, vec2,
-};
+use eframe::egui::{Align2, Frame, Key, Label, Margin, RichText, Shape, Ui, WidgetInfo, pos2, vec2};
 
 use crate::app::session::Session;
 use crate::app::ui::style::GRAB;
@@ -12,6 +9,7 @@ use crate::app::words::numbers::{below, decimals_for, three, with_minus};
 
 use super::ViewContext;
 use super::labels::plated;
+use super::plot::Plotted;
 use super::view::Axis;
 use super::zoom::Ends;
 
@@ -24,22 +22,12 @@ const STEPS: f64 = 500.0;
 /// Decimals of a cursor's time beyond the three significant digits of the range shown.
 const EXTRA_DECIMALS: usize = 2;
 
-/// Distance in points from the numbers of the cursors to the frame below them.
-const ABOVE_FRAME: f32 = 3.0;
-
-/// The key of the height of these numbers, which is kept from frame to frame.
-const READOUT: &str = "height of the cursors' numbers";
-
 /// The two time cursors.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Cursors {
     pub on: bool,
     /// Their times in s.
     pub at: [f64; 2],
-    /// Index of the cursor that a drag moves.
-    moved: usize,
-    /// Their times before the last click, restored if a double click follows.
-    before: [f64; 2],
     /// Whether the first cursor takes the keyboard focus in the next view that shows it.
     focus: bool,
 }
@@ -48,23 +36,6 @@ impl Cursors {
     fn put(&mut self, which: usize, t: f64, session: &Session) {
         let (begin, end) = recorded_range(session);
         self.at[which] = t.clamp(begin, end);
-    }
-
-    /// Moves the nearer cursor by a click or a drag beside the cursors.
-    fn move_by_pointer(&mut self, session: &Session, response: &Response, time: impl Fn(f32) -> f64) {
-        let Some(pointer) = response.interact_pointer_pos() else { return };
-        if response.double_clicked() {
-            self.at = self.before;
-            return;
-        }
-        let t = time(pointer.x);
-        if response.drag_started_by(PointerButton::Primary) || response.clicked() {
-            self.before = self.at;
-            self.moved = usize::from((self.at[1] - t).abs() < (self.at[0] - t).abs());
-        }
-        if response.dragged_by(PointerButton::Primary) || response.clicked() {
-            self.put(self.moved, t, session);
-        }
     }
 }
 
@@ -90,17 +61,12 @@ fn event(session: &Session, t: f64, later: Option<bool>) -> Option<f64> {
     }
 }
 
-/// Height in points of the text of [`readout_ui`] when this view last drew it.
-pub(super) fn readout_height(ui: &Ui, context: &ViewContext<'_>) -> f32 {
-    let height = ui.data(|data| data.get_temp(ui.scope_id().with(READOUT)));
-    height.filter(|_| context.memory.cursors.on).unwrap_or(0.0)
-}
-
-/// Writes time, phase and value `at_each` cursor, and the differences `between` the two, above `frame`.
+/// Writes time, phase and value `at_each` cursor, and the differences `between` the two, where times of this
+/// `length` in s are shown.
 pub(super) fn readout_ui(
     ui: &mut Ui,
     context: &ViewContext<'_>,
-    (frame, window): (Rect, f64),
+    length: f64,
     at_each: impl Fn(f64) -> String,
     between: impl Fn(f64, f64) -> String,
 ) {
@@ -109,7 +75,7 @@ pub(super) fn readout_ui(
     }
     let (session, at, style) = (&context.session, context.memory.cursors.at, context.style);
     let (begin, end) = recorded_range(session);
-    let decimals = decimals_for(window) + EXTRA_DECIMALS;
+    let decimals = decimals_for(length) + EXTRA_DECIMALS;
     let model_at = |t: f64| session.player.watch().model_at(t);
     let is_known = |t: f64| (begin..=end).contains(&t);
     let each = |i: usize| {
@@ -127,62 +93,43 @@ pub(super) fn readout_ui(
     if at.into_iter().all(is_known) {
         last += &format!(", {}", between(at[0], at[1]));
     }
-    let known = readout_height(ui, context);
-    let area = ui.max_rect().with_min_y(frame.top() - known - ABOVE_FRAME).with_max_y(frame.top());
-    let place = area.shrink2(vec2(8.0, 0.0));
-    let inner = ui.scope_builder(UiBuilder::new().max_rect(place), |ui| {
+    Frame::new().inner_margin(Margin::symmetric(8, 0)).show(ui, |ui| {
+        (ui.spacing_mut().item_spacing, ui.spacing_mut().interact_size.y) = (vec2(14.0, 0.0), 0.0);
         ui.horizontal_wrapped(|ui| {
-            (ui.spacing_mut().item_spacing, ui.spacing_mut().interact_size.y) = (vec2(14.0, 0.0), 0.0);
             for part in [each(0), each(1), last] {
                 let text = RichText::new(with_minus(&part)).font(style.small()).color(style.ink());
                 ui.add(Label::new(text).extend());
             }
         });
     });
-    let height = inner.response.rect.height();
-    if height != known {
-        ui.data_mut(|data| data.insert_temp(ui.scope_id().with(READOUT), height));
-        ui.ctx().request_discard("the cursors' numbers have another height");
-    }
 }
 
-/// Draws the cursors over `frame`, which shows the times `ends`. A click or a drag moves the nearer one, with
-/// Ctrl to the nearest event; focused, it moves by the left and right keys, with up and down to events.
+/// Draws the cursors over a plot of times of this `length` in s. A drag moves one, with Ctrl to the nearest
+/// event; focused, it moves by the left and right keys, with up and down to events.
 pub(super) fn cursors_ui(
     ui: &mut Ui,
     context: &mut ViewContext<'_>,
-    response: &Response,
-    (frame, ends): (Rect, Ends),
+    plotted: &Plotted,
+    length: f64,
     name: &str,
 ) {
     if !context.memory.cursors.on {
         return;
     }
-    let length = ends.1 - ends.0;
-    let screen = |t: f64| frame.left() + ((t - ends.0) / length * f64::from(frame.width())) as f32;
-    let time = |x: f32| ends.0 + f64::from((x - frame.left()) / frame.width()) * length;
-    let (snaps, shift) = ui.input(|input| (input.modifiers.command, input.modifiers.shift));
-    let session = &*context.session;
+    let (frame, session) = (plotted.frame(), &*context.session);
+    let snaps = ui.input(|input| input.modifiers.command);
     let snapped = |t: f64| event(session, t, None).filter(|_| snaps).unwrap_or(t);
     let cursors = &mut context.memory.cursors;
-    if !shift {
-        cursors.move_by_pointer(session, response, |x| snapped(time(x)));
-    }
     for which in 0..2 {
-        let x = screen(cursors.at[which]);
-        let seen = frame.x_range().contains(x);
-        let at = x.clamp(frame.left(), frame.right());
-        let strip = Rect::from_x_y_ranges(at - 0.5 * GRAB..=at + 0.5 * GRAB, frame.y_range());
-        let id = ui.scope_id().with(("cursor", which));
-        let grip = ui.interact(strip.intersect(frame), id, Sense::drag());
-        let grip = grip.on_hover_and_drag_cursor(CursorIcon::ResizeHorizontal);
-        let (spoken, t) = (format!("cursor {}, {name}", which + 1), cursors.at[which]);
+        let t = cursors.at[which];
+        let grip = plotted.handle(ui, ("cursor", which), t);
+        let spoken = format!("cursor {}, {name}", which + 1);
         grip.widget_info(|| WidgetInfo::slider(true, t, &spoken));
         if which == 0 && std::mem::take(&mut cursors.focus) {
             grip.request_focus();
         }
-        if let Some(pointer) = grip.interact_pointer_pos().filter(|_| grip.dragged() && !shift) {
-            cursors.put(which, snapped(time(pointer.x)), session);
+        if let Some(pointer) = grip.interact_pointer_pos().filter(|_| grip.dragged()) {
+            cursors.put(which, snapped(plotted.values(pointer).0), session);
         } else if grip.has_focus() {
             let step = below(length / STEPS);
             let moved = arrows(ui, grip.id);
@@ -198,6 +145,8 @@ pub(super) fn cursors_ui(
                 }
             }
         }
+        let x = plotted.place((cursors.at[which], 0.0)).x;
+        let (seen, at) = (frame.x_range().contains(x), x.clamp(frame.left(), frame.right()));
         let (style, painter) = (context.style, ui.painter().with_clip_rect(frame));
         let stroke = if grip.has_focus() { style.focus_stroke() } else { style.cursor_stroke() };
         let line = [pos2(at, frame.top()), pos2(at, frame.bottom())];

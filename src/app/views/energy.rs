@@ -71,7 +71,7 @@ pub fn energy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let (model, watch, now) = (session.shown(), session.player.watch(), session.player.time());
     let (unit, name) = unit_of(model.mass() * model.scales().speed.powi(2));
     let ledgers = |watch: &Watch| [watch.ledger_at(now).map(|at| at.1), watch.last_period(now)];
-    let pins: Vec<_> = session.pins.all().iter().map(|pin| (pin.place(), ledgers(&pin.watch))).collect();
+    let compared = session.reference.apart().map(|apart| ledgers(&apart.watch));
     let count = COUNT + if model.has_transducer() { 1.0 } else { 0.0 };
     let row = (area.height() / count).clamp(ROWS.0, ROWS.1);
     let shaken = model.forcing_period().is_some();
@@ -94,7 +94,7 @@ pub fn energy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let is_shown = |term: &LedgerTerm| term.name != LedgerTerm::TRANSDUCER.name || model.has_transducer();
     let terms: Vec<(LedgerTerm, &str)> = terms.into_iter().filter(|(term, _)| is_shown(term)).collect();
     // the columns share a scale
-    let ghosts = pins.iter().flat_map(|pin| &pin.1[..heads.len()]);
+    let ghosts = compared.iter().flat_map(|ledgers| &ledgers[..heads.len()]);
     let all = heads.iter().map(|head| &head.0).chain(ghosts).flatten();
     let energies = all.flat_map(|ledger| LedgerTerm::ALL.map(|term| (term.energy)(ledger).abs()));
     let largest = energies.fold(0.0, f64::max);
@@ -126,8 +126,8 @@ pub fn energy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
             }
             continue;
         };
-        let others: Vec<_> = pins.iter().filter_map(|pin| Some((pin.0, pin.1[i]?))).collect();
-        ledger_ui(ui, &style, rect, &terms, (ledger, &others), (unit, largest));
+        let other = compared.as_ref().and_then(|ledgers| ledgers[i].as_ref());
+        ledger_ui(ui, &style, rect, &terms, (ledger, other), (unit, largest));
     }
     y += height;
     if let Some((upto, whole)) = watch.ledger_at(now) {
@@ -146,14 +146,14 @@ pub fn energy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     present_ui(ui, context, area.with_min_y(y), (unit, name));
 }
 
-/// Draws the bars of a ledger with those of the pinned motions, and beside them the numbers in a unit in J,
+/// Draws the bars of a ledger with those of the reference, and beside them the numbers in a unit in J,
 /// with the shares of the work where these have room. The bar of the `largest` value is longest.
 fn ledger_ui(
     ui: &mut Ui,
     style: &Style,
     rect: Rect,
     terms: &[(LedgerTerm, &str)],
-    (ledger, others): (&LiveLedger, &[(usize, LiveLedger)]),
+    (ledger, other): (&LiveLedger, Option<&LiveLedger>),
     (unit, largest): (f64, f64),
 ) {
     let decimals = ledger_decimals(ledger, unit);
@@ -162,7 +162,7 @@ fn ledger_ui(
     let bars = Rect::from_min_max(rect.min + vec2(GAP, 0.0), pos2(right - 4.0, rect.bottom()));
     if bars.width() > 12.0 {
         let shown: Vec<LedgerTerm> = terms.iter().map(|(term, _)| *term).collect();
-        bare_panel(ui.painter(), style, bars, &ledger_bars(&shown, ledger, others, (unit, largest)));
+        bare_panel(ui.painter(), style, bars, &ledger_bars(&shown, ledger, other, (unit, largest)));
     }
     let row = rect.height() / terms.len() as f32;
     for (i, (term, about)) in terms.iter().enumerate() {

@@ -1,6 +1,6 @@
 //! Input on the axes of a view: wheel, drag, box and keys.
 
-use eframe::egui::{PointerButton, Pos2, Rect, Response, Shape, Stroke, StrokeKind, Ui};
+use eframe::egui::{PointerButton, Pos2, Rect, Response, Ui};
 
 use super::memory::Memory;
 use super::view::{Axis, View};
@@ -10,9 +10,6 @@ use super::zoom::{Ends, LONGEST, SHORTEST};
 const KEY: f64 = 1.25;
 /// Wheel travel in points that zooms by a factor of e.
 const WHEEL: f64 = 200.0;
-/// Smallest side in points of a zoom box.
-const BOX: f32 = 6.0;
-
 impl Memory {
     /// Multiplies the length of an axis by `by`, with the point at the share `about` fixed. The time axis
     /// ends at the present unless its ends were chosen by hand.
@@ -58,63 +55,40 @@ impl Memory {
     }
 }
 
-/// Zooms and pans the axes of a view, which span `frame`, anywhere in `area`. The wheel zooms the horizontal
-/// axis, with Shift or left of the frame the vertical one, with Ctrl both. A drag with Shift pans, one with
-/// the secondary button draws a box to zoom to. A double click restores the automatic ends.
-pub(super) fn axes_input(
+/// Zooms the axes of a view, which span `frame`, anywhere in `area`: the wheel both, over an axis that one,
+/// with Shift the vertical one, and in a view over time the time. A double click restores the automatic ends.
+pub(super) fn zoom_input(
     ui: &Ui,
     memory: &mut Memory,
-    view: View,
+    (view, [across, up]): (View, [Option<Axis>; 2]),
     response: &Response,
     (area, frame): (Rect, Rect),
 ) {
-    let Some([across, up]) = view.axes() else { return };
     let double_clicked = ui.input(|input| input.pointer.button_double_clicked(PointerButton::Primary));
     let pointer = ui.input(|input| input.pointer.hover_pos()).filter(|at| area.contains(*at));
     let Some(at) = pointer.filter(|_| ui.rect_contains_pointer(area)) else { return };
     if double_clicked && response.contains_pointer() {
         return memory.free_axes(view);
     }
-    let share = |at: Pos2| {
-        let across = f64::from((at.x - frame.left()) / frame.width());
-        (across.clamp(0.0, 1.0), f64::from((frame.bottom() - at.y) / frame.height()).clamp(0.0, 1.0))
-    };
     let (turned, pinched, shift) =
         ui.input(|input| (input.smooth_scroll_delta(), f64::from(input.zoom_delta()), input.modifiers.shift));
-    let ((x, y), upwards) = (share(at), shift || at.x < frame.left());
+    let (x, y) = share(frame, at);
     // with Shift the wheel scrolls sideways
-    let turned = if upwards { turned.x + turned.y } else { turned.y };
-    let by = (-f64::from(turned) / WHEEL).exp();
-    if pinched != 1.0 {
-        memory.zoom(across, 1.0 / pinched, x);
-        memory.zoom(up, 1.0 / pinched, y);
-    } else if by != 1.0 {
-        let (axis, about) = if upwards { (up, y) } else { (across, x) };
-        memory.zoom(axis, by, about);
+    let turned = f64::from(if shift { turned.x + turned.y } else { turned.y });
+    let by = if pinched == 1.0 { (-turned / WHEEL).exp() } else { 1.0 / pinched };
+    let (besides, below) = (at.x < frame.left(), at.y > frame.bottom());
+    let is_both = pinched != 1.0 || !shift && !besides && !below && across != Some(Axis::Time);
+    let upwards = shift || besides;
+    if let Some(across) = across.filter(|_| by != 1.0 && (is_both || !upwards)) {
+        memory.zoom(across, by, x);
     }
-    if shift && response.dragged_by(PointerButton::Primary) {
-        let moved = response.drag_delta();
-        memory.axes.pan(across, -f64::from(moved.x / frame.width()));
-        memory.axes.pan(up, f64::from(moved.y / frame.height()));
+    if let Some(up) = up.filter(|_| by != 1.0 && (is_both || upwards)) {
+        memory.zoom(up, by, y);
     }
-    let origin = ui.input(|input| input.pointer.press_origin());
-    if let Some(corner) = origin.filter(|_| response.dragged_by(PointerButton::Secondary)) {
-        let drawn = Rect::from_two_pos(corner, at).intersect(frame);
-        let stroke = Stroke::new(1.0, ui.visuals().text_color());
-        ui.painter().add(Shape::rect_stroke(drawn, 0.0, stroke, StrokeKind::Inside));
-        memory.corner = Some((corner, at));
-        return;
-    }
-    let ended = response.drag_stopped_by(PointerButton::Secondary);
-    let Some((corner, at)) = memory.corner.take_if(|_| ended) else { return };
-    let drawn = Rect::from_two_pos(corner, at);
-    if drawn.width() < BOX || drawn.height() < BOX {
-        return;
-    }
-    let ((left, top), (right, bottom)) = (share(drawn.min), share(drawn.max));
-    for (axis, from, to) in [(across, left, right), (up, bottom, top)] {
-        if let Some((low, high)) = memory.axes.shown(axis) {
-            memory.axes.choose(axis, (low + from * (high - low), low + to * (high - low)));
-        }
-    }
+}
+
+/// The shares of the axes at a place, those at the edges for places outside.
+fn share(frame: Rect, at: Pos2) -> (f64, f64) {
+    let across = f64::from((at.x - frame.left()) / frame.width());
+    (across.clamp(0.0, 1.0), f64::from((frame.bottom() - at.y) / frame.height()).clamp(0.0, 1.0))
 }

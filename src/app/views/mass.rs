@@ -6,7 +6,6 @@ use crate::app::ui::style::{BALL, GRAB};
 use crate::app::ui::widgets::arrows;
 
 use super::ViewContext;
-use super::context::Drawn;
 use super::stops::key_step;
 
 /// Distance that an arrow key moves the mass, in steps of a stop's slider; ten times as far with Shift.
@@ -26,9 +25,6 @@ pub fn mass_ui(ui: &mut Ui, context: &mut ViewContext<'_>, at: Pos2, rect: Rect)
 
 /// Like [`mass_ui`], for a mass at `at` that fills `grab`. Returns whether the pointer is over or drags it.
 pub fn body_ui(ui: &mut Ui, context: &mut ViewContext<'_>, (at, grab): (Pos2, Rect), rect: Rect) -> bool {
-    if matches!(context.drawn, Drawn::Pinned(_)) {
-        return false;
-    }
     let response = ui
         .interact(grab.intersect(rect.expand(GRAB)), ui.scope_id().with("mass"), Sense::drag())
         .on_hover_and_drag_cursor(CursorIcon::Grab);
@@ -36,10 +32,10 @@ pub fn body_ui(ui: &mut Ui, context: &mut ViewContext<'_>, (at, grab): (Pos2, Re
     response.widget_info(|| egui::WidgetInfo::slider(true, mm, "proof mass"));
     if std::mem::take(&mut context.memory.grab) {
         response.request_focus();
-        context.session.player.hold(mm / 1e3);
+        context.session.hold(mm / 1e3);
     }
     if let Some(pointer) = response.interact_pointer_pos().filter(|_| response.dragged()) {
-        context.session.player.hold(context.span.world_from_screen(pointer.x, rect));
+        context.session.hold(context.span.world_from_screen(pointer.x, rect));
     }
     if response.drag_started() {
         ui.data_mut(|data| data.insert_temp(dragged(), true));
@@ -55,7 +51,7 @@ pub fn body_ui(ui: &mut Ui, context: &mut ViewContext<'_>, (at, grab): (Pos2, Re
             // rounded to multiples of the step
             let step = KEY_STEPS * key_step(context.session);
             let place = (mm / step).round() + moved;
-            context.session.player.hold(place * step / 1e3);
+            context.session.hold(place * step / 1e3);
         }
         if ui.input(|input| input.key_pressed(egui::Key::Enter)) {
             response.surrender_focus();

@@ -1,7 +1,7 @@
 //! View of the mechanism as a drawing in the frame of the base, on the x axis of the well.
 //!
 //! The geometry is that of the pictures on paper ([`Assembly`]), with what is alive over it: the mass and the
-//! stops, which a hand moves, the pinned motions, and a ring at an impact, whose size shows the energy that
+//! stops, which a hand moves, the reference, and a ring at an impact, whose size shows the energy that
 //! it takes. The base stands still, and its push on the mass is an arrow; the motion of the base is far
 //! larger than the travel and is drawn in an inset at another scale.
 
@@ -9,21 +9,24 @@ use std::sync::Arc;
 
 use eframe::egui::{self, Align2, Color32, Painter, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
 
+use crate::app::session::Session;
 use crate::app::ui::style::{RING_SECONDS, Style};
+use crate::app::words::capital;
 use crate::app::words::meanings::explained;
 use crate::app::words::numbers::{decimals_for, three};
 use crate::app::words::parts::{part_words, schematic_words};
-use crate::dynamics::{EventKind, STANDARD_GRAVITY, Side};
+use crate::dynamics::{EventKind, Model, STANDARD_GRAVITY, Side};
 use crate::mechanics::flexure::State;
-use crate::output::{Area, Assembly, DrawnPart, Frame, PlotAxis, Role, Sketch};
+use crate::output::{Area, Assembly, Frame, PlotAxis, Role, Sketch};
+use crate::scene::Excitation;
 
-use super::ghosts::{dashed, edges, ghosts};
+use super::ghosts::{dashed, edges, ghost};
 use super::labels::ago;
 use super::mass::{OUTLINE, body_ui, was_dragged};
 use super::memory::Ring;
-use super::pane::{GUTTER, LEGEND_LEFT, RIGHT, UNIT, on_screen, paint};
+use super::pane::{LEGEND_LEFT, UNIT, on_screen, paint};
 use super::stops::{BEST_STOPS, asked_place, best_stops, stops_ui};
-use super::{Cover, Drawn, LegendRow, Span, ViewContext};
+use super::{Cover, LegendRow, Span, ViewContext};
 
 /// Height in points above and below the drawing.
 const AROUND: (f32, f32) = (20.0, 4.0);
@@ -35,22 +38,26 @@ const MIN_TRAVEL: f64 = 60.0;
 const SAMPLE: f32 = 22.0;
 
 /// Width in points that the inset with the motion of the base needs.
-const INSET: f32 = 184.0;
+const INSET: f32 = 102.0;
 
 pub fn mechanism_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
-    let (rect, _) = ui.allocate_exact_size(ui.available_size(), Sense::hover());
+    let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::hover());
     // above the picture of the well; a true scale changes the x axis of this view only
     let shared = context.span;
-    context.span = shared.beside((GUTTER, RIGHT), rect);
-    drawing_ui(ui, context, rect);
+    context.span = shared.beside(context.memory.drawing.beside, rect);
+    let about = drawing_ui(ui, context, rect);
     context.span = shared;
+    if !about.is_empty() {
+        response.on_hover_text(about);
+    }
 }
 
-fn drawing_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect) {
-    let (style, state) = (context.style, context.drawn.state(context.session));
+/// Draws the mechanism. Returns the scale, the bulge and the motion of the base in words.
+fn drawing_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect) -> String {
+    let (style, state) = (context.style, context.session.player.state());
     let painter = ui.painter().with_clip_rect(rect);
     let bent = state_at(context, state.x);
-    let model = Arc::clone(context.drawn.model(context.session));
+    let model = Arc::clone(context.session.shown());
     let ends = (context.span.low, context.span.high);
     let mut assembly = Assembly::of(&model, state.x, bent.as_ref(), ends).pushed(&model, state.base_accel);
     assembly.outlined = best_stops(context).map(|mm| mm * 1e-3);
@@ -65,7 +72,7 @@ fn drawing_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect) {
     }
     let axis = |low: f64, high: f64| PlotAxis::given(low, high, Vec::new(), "");
     let x = axis(context.span.low * 1e3, context.span.high * 1e3);
-    let is_alone = context.drawn == Drawn::WithGhosts && context.session.pins.all().is_empty();
+    let is_alone = context.session.reference.apart().is_none();
     let is_new = !was_dragged(ui) && context.cover == Cover::None && is_alone;
     let asked = asked_place(context, state.x);
     let name = match (is_new, asked) {
@@ -74,35 +81,31 @@ fn drawing_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect) {
         // the stop that is asked about may stand there
         (false, Some(_)) => "",
     };
-    let sketch = assembly.sketch(&Frame { area, x, y: axis(0.0, 1.0) }, &style.theme(), name);
+    let sketch = assembly.sketch(&Frame { area, x, y: axis(0.0, 1.0) }, &style.theme(), name, None);
     let body = on_screen(rect.min, sketch.mass);
     let Sketch { behind, before, parts, stop_ends: (top, bottom), .. } = sketch;
     let heights = (rect.top() + top as f32 * UNIT, rect.top() + bottom as f32 * UNIT);
     paint(&painter, &style, rect.min, behind);
     for (part, area) in parts {
         let place = on_screen(rect.min, area);
-        match (part, assembly.bulge()) {
-            (DrawnPart::Bulge, Some(words)) => explain(ui, place, &words),
-            _ => {
-                let id = ui.scope_id().with(("part", part as usize));
-                let hovered = ui.interact(place.expand(2.0), id, Sense::hover());
-                hovered.on_hover_text(part_words(part, &assembly));
-            }
-        }
+        let id = ui.scope_id().with(("part", part as usize));
+        let hovered = ui.interact(place.expand(2.0), id, Sense::hover());
+        hovered.on_hover_text(part_words(part, &assembly));
     }
-    for ghost in ghosts(context) {
+    if let Some(ghost) = ghost(context) {
         let walls = rect.with_min_y(heights.0).with_max_y(heights.1);
         ghost.stops(&painter, context, walls, 0.5 * body.width());
         let x = context.span.screen_from_world(ghost.state.x, rect);
-        ghost.body(&painter, &style, Rect::from_center_size(pos2(x, body.center().y), body.size()));
+        let at = Rect::from_center_size(pos2(x, body.center().y), body.size());
+        ghost.outline(&painter, &style, &edges(at));
     }
-    // over the pinned ones
+    // over the reference
     let edge = Stroke::new(1.5, style.mass_edge());
     painter.rect(body, 3.0, style.mass(), edge, egui::StrokeKind::Inside);
     stops_ui(ui, context, rect, heights, (0.5 * body.width(), false));
     if let Some(x) = asked {
         let at = pos2(context.span.screen_from_world(x, rect), body.center().y);
-        painter.extend(dashed(&edges(Rect::from_center_size(at, body.size())), 0, edge));
+        painter.extend(dashed(&edges(Rect::from_center_size(at, body.size())), edge));
     }
     // dots, by which it can be dragged
     for (i, j) in (-1..=1).flat_map(|i| [(i, -1), (i, 1)]) {
@@ -115,19 +118,34 @@ fn drawing_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect) {
     }
     rings(ui, context, rect, body);
     paint(&painter, &style, rect.min, before);
-    let words = match along {
-        Some(along) => scale_words(context.span.scale(rect) / along),
-        None => schematic_words(model.mechanism(), &assembly),
-    };
+    let schematic = along.is_none().then(|| schematic_words(model.mechanism(), &assembly));
     let caption = Caption { painter, rect, style };
-    caption.caption_ui(ui, context, &words, state.base_accel);
+    caption.caption_ui(ui, context, schematic, state.base_accel);
+    let scale = along.map(|along| scale_words(context.span.scale(rect) / along));
+    let bulge = assembly.bulge().map(|words| format!("{}.", capital(&words)));
+    let base = swing(&model).filter(|_| !is_pushed(context.session)).map(|swing| {
+        let (size, unit) = if swing < 10.0 { (swing * 1e3, "mm") } else { (swing, "m") };
+        format!("The base moves by ±{} {unit}, drawn at another scale.", three(size))
+    });
+    [scale, bulge, base].into_iter().flatten().collect::<Vec<_>>().join("\n")
+}
+
+/// Whether a force on the mass drives it, while the base stands still.
+fn is_pushed(session: &Session) -> bool {
+    matches!(session.scene().excitation, Excitation::Force { .. })
+}
+
+/// The amplitude in m of a base that moves in a sine.
+fn swing(model: &Model) -> Option<f64> {
+    let (amplitude, rate) = model.single_sine()?;
+    Some(amplitude / (rate * rate)).filter(|swing| *swing > 0.0 && swing.is_finite())
 }
 
 /// Shape of the flexures with the mass at `x` in m, or the last known shape if the solver fails. The solver
 /// runs once per frame (less than a tenth of a millisecond), so that no shape is interpolated and the bulge
 /// vanishes where it should.
 fn state_at(context: &mut ViewContext<'_>, x: f64) -> Option<State> {
-    let mechanism = &context.drawn.model(context.session).mechanism();
+    let mechanism = &context.session.shown().mechanism();
     let flexures = mechanism.flexures.as_ref()?;
     let (low, high) = mechanism.curve.domain();
     if let Ok(state) = flexures.state(x.clamp(low, high)) {
@@ -146,9 +164,9 @@ fn true_span(along: f64, reach: f64, rect: Rect) -> Option<Span> {
 /// The ratio of the scales across and along the flexures, as text.
 fn scale_words(stretch: f64) -> String {
     match stretch {
-        s if (s - 1.0).abs() < 0.02 => "true scale".to_owned(),
-        s if s < 9.95 => format!("drawn {s:.1}× wider"),
-        s => format!("drawn {s:.0}× wider"),
+        s if (s - 1.0).abs() < 0.02 => "At true scale.".to_owned(),
+        s if s < 9.95 => format!("Stretched {s:.1}× across the flexures."),
+        s => format!("Stretched {s:.0}× across the flexures."),
     }
 }
 
@@ -163,12 +181,13 @@ struct Caption {
 }
 
 impl Caption {
-    /// Writes the row above the drawing: age, frame of reference, scale, push and motion of the base.
-    fn caption_ui(&self, ui: &Ui, context: &ViewContext<'_>, words: &str, base_accel: f64) {
+    /// Writes the row above the drawing: age, frame of reference, what is no drawing of the mechanism, push
+    /// and motion of the base.
+    fn caption_ui(&self, ui: &Ui, context: &ViewContext<'_>, schematic: Option<String>, base_accel: f64) {
         let Self { painter, rect, style, .. } = self;
-        let model = context.drawn.model(context.session);
-        let is_pushed = context.drawn.is_pushed(context.session);
-        let mut all = vec![(words.to_owned(), style.faint(), 1)];
+        let model = context.session.shown();
+        let is_pushed = is_pushed(context.session);
+        let mut all: Vec<Entry> = schematic.into_iter().map(|words| (words, style.faint(), 1)).collect();
         if !is_pushed {
             all.insert(0, ("seen from the base".to_owned(), style.faint(), 0));
         }
@@ -219,27 +238,22 @@ impl Caption {
             at.x += width(&text) + 14.0;
         }
         if has_inset {
-            self.inset(ui, context, rect.with_min_x(at.x).with_max_x(row.right), base_accel);
+            self.inset(model, rect.with_min_x(at.x).with_max_x(row.right), base_accel);
         }
     }
 
     /// Draws the motion of the base at another scale, for a sine, whose displacement is -a/(2 pi f)^2.
-    fn inset(&self, ui: &Ui, context: &ViewContext<'_>, rect: Rect, base_accel: f64) {
-        let Some((amplitude, rate)) = context.drawn.model(context.session).single_sine() else { return };
-        let (swing, place) = (amplitude / (rate * rate), -base_accel / (rate * rate));
-        if !(swing > 0.0 && swing.is_finite()) || rect.width() < INSET {
+    fn inset(&self, model: &Model, rect: Rect, base_accel: f64) {
+        let Some((swing, (_, rate))) = swing(model).zip(model.single_sine()) else { return };
+        if rect.width() < INSET {
             return;
         }
         let (painter, style, half) = (&self.painter, self.style, 34.0);
         let track = pos2(rect.right() - half - 20.0, rect.top() + 11.0);
         painter.line_segment([track - vec2(half, 0.0), track + vec2(half, 0.0)], style.ghost_stroke());
+        let place = -base_accel / (rate * rate);
         let at = track + vec2((place / swing) as f32 * half, 0.0);
         painter.rect_filled(Rect::from_center_size(at, vec2(14.0, 9.0)), 2.0, style.base());
-        let (size, unit) = if swing < 10.0 { (swing * 1e3, "mm") } else { (swing, "m") };
-        let text = format!("base: ±{} {unit}", three(size));
-        let left = track - vec2(half + 14.0, 0.0);
-        let place = painter.text(left, Align2::RIGHT_CENTER, &text, style.small(), style.base());
-        explain(ui, place, &text);
     }
 }
 
@@ -253,11 +267,10 @@ fn rings(ui: &Ui, context: &mut ViewContext<'_>, rect: Rect, body: Rect) {
     let now = ui.input(|input| input.time);
     let (from, to) = (context.memory.drawing.seen_to, context.session.player.time());
     context.memory.drawing.seen_to = to;
-    let model = context.drawn.model(context.session);
+    let model = context.session.shown();
     let (left, right) = model.stop_positions();
     if to > from && !context.reduce_motion {
-        let pin = context.drawn.pin(context.session);
-        let watch = pin.map_or(context.session.player.watch(), |pin| &pin.watch);
+        let watch = context.session.player.watch();
         let first = watch.events().partition_point(|event| event.t <= from);
         let scale = model.scales().speed * model.scales().speed;
         for event in watch.events().range(first..).take_while(|event| event.t <= to) {

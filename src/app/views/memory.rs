@@ -1,10 +1,8 @@
 //! State that the views keep between frames.
 
-use eframe::egui::Pos2;
-
 use crate::app::session::Session;
-use crate::app::session::pins::PinKind;
 use crate::mechanics::flexure::State;
+use crate::scene::SweepAxis;
 
 use super::cursors::Cursors;
 use super::ranges::Ranges;
@@ -18,8 +16,8 @@ pub struct Memory {
     pub(super) drawing: Drawing,
     /// Whether the first view that shows the mass is to grab it.
     pub grab: bool,
-    /// The kind of pin that is to be made.
-    pub pin: Option<PinKind>,
+    /// Whether the motion is to be pinned.
+    pub pin: bool,
     /// The view of which a figure is to be saved.
     pub figure: Option<View>,
     /// Whether measured data are to be opened.
@@ -41,20 +39,13 @@ pub struct Memory {
     pub cursors: Cursors,
     /// Ends of axes chosen by hand.
     pub(super) axes: Axes,
-    /// Corners of the zoom box that is being drawn.
-    pub(super) corner: Option<(Pos2, Pos2)>,
-    /// Drawing of the pinned motion beside the present one.
-    pub(super) beside: Drawing,
-    /// Index of that pin.
-    pub(super) beside_place: usize,
     /// The row of the list of events that was marked last.
     pub(super) marked: Option<usize>,
     /// Ranges of the axes of velocity and power.
     pub(super) ranges: Ranges,
-    /// Whether the phase portrait shows one point per forcing period and no path.
-    pub points_only: bool,
     pub map_look: MapLook,
-    pub(super) map_pointer: PointerState,
+    /// The axes of the whole map that was shown last.
+    pub(super) map_axes: Option<[SweepAxis; 2]>,
     /// Whether the view Accuracy shows what a digit costs, where not both of its parts fit.
     pub(super) shows_digits: bool,
 }
@@ -62,24 +53,24 @@ pub struct Memory {
 impl Memory {
     /// The x axis that views share, with room for all displacements seen.
     pub fn span(&mut self, session: &Session) -> Span {
+        let Span { low, high } = self.place(session);
+        let (low, high) = self.axes.ends(Axis::Place, (low, high));
+        Span { low, high }
+    }
+
+    /// The same without what was chosen by hand.
+    pub(super) fn place(&mut self, session: &Session) -> Span {
         let seen = self.ranges.follow(session).reach(session);
-        let ends = self.frozen.span.keep_mass(Span::of(session, seen), session);
-        let (low, high) = self.axes.ends(Axis::Place, ends);
+        let (low, high) = self.frozen.span.keep_mass(Span::of(session, seen), session);
         Span { low, high }
     }
 
     /// The axis of displacements of the views that show where the mass goes.
-    pub(super) fn reach(&mut self, session: &Session, axis: Option<Axis>) -> Span {
+    pub(super) fn reach(&mut self, session: &Session) -> Span {
         let seen = self.ranges.follow(session).reach(session);
         let wanted = Span::of(session, seen).within_stops(session, seen);
-        let ends = self.frozen.reach.keep_mass(wanted, session);
-        let (low, high) = axis.map_or(ends, |axis| self.axes.ends(axis, ends));
+        let (low, high) = self.frozen.reach.keep_mass(wanted, session);
         Span { low, high }
-    }
-
-    /// The index of the pinned motion that is drawn beside the present one.
-    pub fn beside_place(&self, session: &Session) -> usize {
-        self.beside_place.min(session.pins.all().len().saturating_sub(1))
     }
 
     /// The state that remains from one step of a lesson to the next: axes that hold while they suit.
@@ -142,6 +133,8 @@ pub(super) struct FrozenAxes {
     pub energy: FrozenAxis,
     /// The push in m/s^2 that the axis of potential energy has room for.
     pub room: f64,
+    /// The units of potential energy in a J, and their name.
+    pub unit: Option<(f64, &'static str)>,
     pub force: FrozenAxis,
 }
 
@@ -178,24 +171,17 @@ pub(super) struct Drawing {
     pub bent: Option<State>,
     /// Time in s up to which impacts have been handled.
     pub seen_to: f64,
+    /// Widths in points to the left and to the right of the picture of the well, with which it is in line.
+    pub beside: (f32, f32),
 }
 
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) struct PointerState {
-    pub corner: Option<Pos2>,
-    /// The cell of a click that may become a double click, and its time in s.
-    pub clicked: Option<((usize, usize), f64)>,
-}
-
-/// Time range and pointer that the traces share.
+/// Time range that the traces share.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Timeline {
     /// The length of time in s that a person has chosen.
     pub window: Option<f64>,
     /// The length of time in s that is shown otherwise.
     pub(super) default_window: f64,
-    /// The time in s under the pointer, and the number of the pass in which it was there.
-    pub(super) cursor: Option<(f64, u64)>,
 }
 
 #[cfg(test)]

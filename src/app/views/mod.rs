@@ -10,7 +10,6 @@ mod basins;
 mod compare;
 mod context;
 mod cursors;
-mod distance;
 pub mod energy;
 mod events;
 mod force;
@@ -25,10 +24,10 @@ mod memory;
 mod overlay;
 mod pane;
 mod phase;
+mod plot;
 mod power;
 mod ranges;
 mod row;
-mod side_by_side;
 mod span;
 mod spectrum;
 mod stops;
@@ -41,7 +40,7 @@ mod zoom;
 
 use eframe::egui::{Ui, UiBuilder};
 
-pub use context::{Cover, Drawn, ViewContext};
+pub use context::{Cover, ViewContext};
 use context::{covered_ui, empty_ui, offer_ui, page_ui, too_small_ui};
 pub use cursors::Cursors;
 pub use memory::{MapLook, Memory, Timeline};

@@ -7,24 +7,22 @@
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-use eframe::egui::{self, Color32, Pos2, Sense, Stroke, Ui, vec2};
+use eframe::egui::{self, Color32, Pos2, Stroke, Ui, pos2, vec2};
 
 use crate::app::task::Identity;
 use crate::app::ui::widgets::{kind_shapes, tell};
 use crate::app::words::numbers::three;
 use crate::app::words::status::Kind;
 use crate::dynamics::{Model, Phase, Sample};
-use crate::output::{Chart, DISPLACEMENT, Layer, Marks, PlotAxis, Role, VELOCITY, axis_name, portrait_panel};
-use interwell_studies::study::{Table, between};
+use crate::output::{DISPLACEMENT, Marks, Panel, PlotAxis, Role, VELOCITY, axis_name, portrait_panel};
+use interwell_studies::study::between;
 
 use super::context::sized_ui;
-use super::ghosts::ghosts;
-use super::hand::axes_input;
+use super::ghosts::{REFERENCE, circle, ghost};
 use super::labels::pointer_rests;
-use super::pane::{Pane, Place, kept_pane_ui};
-use super::stops::stops_ui;
-use super::view::Axis;
-use super::{LegendRow, View, ViewContext};
+use super::plot::{Plotted, kept, plot_ui};
+use super::stops::{add_walls, stops_ui};
+use super::{View, ViewContext};
 
 /// Length of the trail in forcing periods.
 const TRAIL_PERIODS: f64 = 4.0;
@@ -49,8 +47,6 @@ const MAX_STROBES: f64 = 300.0;
 const STATE: f32 = 6.0;
 /// Radius in points of the dot of a start.
 const START: f32 = 3.0;
-/// Width in points of the button beside the legend.
-const BUTTON: f32 = 88.0;
 
 /// A point of the picture: displacement in mm, velocity in mm/s.
 type State = (f64, f64);
@@ -72,39 +68,45 @@ pub fn section_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
 
 pub fn states_ui(ui: &mut Ui, context: &mut ViewContext<'_>, is_section: bool) {
     let (area, style) = (ui.max_rect(), context.style);
-    let speed = context.memory.ranges.follow(context.session).speed();
     let view = if is_section { View::Section } else { View::PhasePortrait };
-    let (low, high) = context.memory.axes.ends(Axis::Up(view), (-speed, speed));
-    let shared = context.span;
-    context.span = context.memory.reach(context.session, Some(Axis::Reach));
-    let (span, model) = (context.span, Arc::clone(context.session.shown()));
-    let is_periodic = model.forcing_period().is_some();
-    let points_only = is_section || context.memory.points_only && is_periodic;
-    let beside = if is_periodic && !is_section { BUTTON } else { 0.0 };
-    let place = Place::in_line(ui, area, Sense::click() | Sense::DRAG, (beside, 0.0));
-    let key = (Identity(Arc::clone(&model)), [span.low, span.high, low, high], points_only, style);
-    let pane = kept_pane_ui(ui, &style, place, key, || {
-        let axis = |low: f64, high: f64, name: &str| PlotAxis::between(low * 1e3, high * 1e3, name);
-        let axes = (axis(span.low, span.high, DISPLACEMENT), axis(low, high, &axis_name(VELOCITY, "mm/s")));
-        still(&model, axes, points_only)
+    let speed = 1e3 * context.memory.ranges.follow(context.session).speed();
+    let span = context.memory.reach(context.session);
+    let model = Arc::clone(context.session.shown());
+    let automatic = [(span.low * 1e3, span.high * 1e3), (-speed, speed)];
+    let ends = context.memory.ends(view, automatic);
+    let axes = |[across, up]: [(f64, f64); 2]| {
+        let up = PlotAxis::between(up.0, up.1, &axis_name(VELOCITY, "mm/s"));
+        (PlotAxis::between(across.0, across.1, DISPLACEMENT), up)
+    };
+    let mut panel = kept(ui, (Identity(Arc::clone(&model)), ends), || {
+        portrait_panel(&model, axes(ends), 1e3, (f64::NAN, f64::NAN), Vec::new())
     });
-    tell(&pane.response, egui::Role::Canvas, "states of the mass");
-    let Some(frame) = pane.frame(0) else { return };
+    (panel.x, panel.y) = axes(automatic);
+    add_walls(&mut panel, context.session);
+    if !is_section {
+        let [across, up] = ends.map(|(low, high)| high - low);
+        let scale = (f64::from(area.width()) / across, f64::from(area.height()) / up);
+        reference_trail(&mut panel, context, scale);
+        trail(&mut panel, context, scale);
+    }
+    if model.forcing_period().is_some() {
+        panel.layer(Role::Strobe, "once a period", Marks::Points(strobes(context)));
+    }
+    if model.stop_positions() != (None, None) {
+        panel.layer(Role::Resting, "at rest", Marks::Points(Vec::new()));
+    }
+    let plotted = plot_ui(ui, context.memory, view, &style, area, &panel);
+    tell(&plotted.response, egui::Role::Canvas, "states of the mass");
+    let frame = plotted.frame();
+    let shared = std::mem::replace(&mut context.span, plotted.span());
     stops_ui(ui, context, frame, (frame.top(), frame.bottom()), (0.0, false));
-    let mut layers = Vec::new();
-    if !points_only {
-        ghost_trails(&mut layers, context, &pane);
-        trail(&mut layers, context, &pane);
-    }
-    layers.push(Layer::new(Role::Strobe, "", Marks::Points(strobes(context))));
     let painter = ui.painter().with_clip_rect(frame.expand(STATE));
-    pane.draw(&painter, &style, 0, &layers);
-    let at = |sample: Sample| pane.place(0, state((sample.x, sample.v))).unwrap_or(frame.min);
-    for ghost in ghosts(context) {
+    let at = |sample: Sample| plotted.place(state((sample.x, sample.v)));
+    if let Some(ghost) = ghost(context) {
         ghost.stops(&painter, context, frame, 0.0);
-        ghost.ball(&painter, &style, at(ghost.state), STATE);
+        ghost.outline(&painter, &style, &circle(at(ghost.state), STATE));
     }
-    starts(&painter, context, &pane, 1e3);
+    starts(&painter, context, |start| Some(plotted.place(start)), 1e3);
     let present = context.session.player.state();
     if present.phase == Phase::Free {
         painter.circle(at(present), STATE, style.mass(), Stroke::new(1.5, style.mass_edge()));
@@ -112,36 +114,20 @@ pub fn states_ui(ui: &mut Ui, context: &mut ViewContext<'_>, is_section: bool) {
         painter.extend(kind_shapes(Kind::Resting, at(present), STATE + 2.5, style.mass_edge()));
         painter.extend(kind_shapes(Kind::Resting, at(present), STATE, style.mass()));
     }
-    if beside > 0.0 {
-        points_ui(ui, area, &mut context.memory.points_only);
-    }
-    axes_input(ui, context.memory, view, &pane.response, (area, frame));
-    start_ui(ui, context, &pane, beside);
+    start_ui(ui, context, &plotted);
     context.span = shared;
-}
-
-/// The parts that stay the same from frame to frame: axes, separatrix and equilibria, and the legend of the
-/// motion. The view draws the stops, which can be dragged.
-fn still(model: &Model, axes: (PlotAxis, PlotAxis), points_only: bool) -> Chart {
-    let mut named = Vec::new();
-    if model.forcing_period().is_some() {
-        named.push(Layer::new(Role::Strobe, "once a period", Marks::Points(Vec::new())));
-    }
-    if model.stop_positions() != (None, None) {
-        if !points_only {
-            named.push(Layer::new(Role::Jump(0.0), "impact", Marks::Path(Vec::new())));
-        }
-        named.push(Layer::new(Role::Resting, "at rest", Marks::Points(Vec::new())));
-    }
-    let panel = portrait_panel(model, axes, 1e3, (f64::NAN, f64::NAN), named);
-    Chart::stack(vec![panel], "", Table::new())
 }
 
 /// Marks of the starts of which a lesson speaks; the axis upward has a velocity in m/s times `per_speed`:
 /// rings or, where these would touch, a line from the first to the last.
-pub(super) fn starts(painter: &egui::Painter, context: &ViewContext<'_>, pane: &Pane, per_speed: f64) {
+pub(super) fn starts(
+    painter: &egui::Painter,
+    context: &ViewContext<'_>,
+    place: impl Fn(State) -> Option<Pos2>,
+    per_speed: f64,
+) {
     let starts = context.memory.starts.iter();
-    let places: Vec<Pos2> = starts.filter_map(|(x, v)| pane.place(0, (x * 1e3, v * per_speed))).collect();
+    let places: Vec<Pos2> = starts.filter_map(|(x, v)| place((x * 1e3, v * per_speed))).collect();
     let apart = places.windows(2).map(|pair| pair[0].distance(pair[1])).fold(f32::INFINITY, f32::min);
     if apart >= 2.5 * START {
         for at in places {
@@ -157,45 +143,23 @@ pub(super) fn starts(painter: &egui::Painter, context: &ViewContext<'_>, pane: &
     }
 }
 
-/// Button in the row of the legend that hides the path.
-fn points_ui(ui: &mut Ui, area: egui::Rect, points_only: &mut bool) {
-    let free = LegendRow::of(ui, area);
-    let right = free.right - 4.0;
-    // left out without room; over the whole window (Z) the view has some
-    if right - free.left < BUTTON {
-        return;
-    }
-    let row = area.with_max_y(area.top() + LegendRow::HEIGHT).with_max_x(right);
-    let layout = egui::Layout::right_to_left(egui::Align::Center);
-    let builder = egui::UiBuilder::new().max_rect(row).layout(layout);
-    ui.scope_builder(builder, |ui| {
-        ui.spacing_mut().interact_size.y = LegendRow::HEIGHT;
-        (ui.spacing_mut().icon_width, ui.spacing_mut().button_padding.y) = (11.0, 0.0);
-        let text = egui::RichText::new("points only").small();
-        let hover = "One point a forcing period, always at the same phase, and no path: motion that repeats \
-                     is a few points, chaos is many.";
-        ui.checkbox(points_only, text).on_hover_text(hover);
-    });
-}
-
 /// Shows the state under the pointer; a click continues the motion from there.
-fn start_ui(ui: &Ui, context: &mut ViewContext<'_>, pane: &Pane, beside: f32) {
-    let Some((mm, speed)) = pane.pointed() else { return };
-    if pane.response.clicked() {
+fn start_ui(ui: &Ui, context: &mut ViewContext<'_>, plotted: &Plotted) {
+    if let Some((mm, speed)) = plotted.clicked {
         let (x, model) = (mm / 1e3, context.session.shown());
         let ((left, right), (low, high)) = (model.stop_positions(), model.mechanism().curve.domain());
         let is_inside = x >= left.unwrap_or(low).max(low) && x <= right.unwrap_or(high).min(high);
-        context.session.player.place(x, if is_inside { speed / 1e3 } else { 0.0 });
-        context.session.moved_by_hand();
+        context.session.place(x, if is_inside { speed / 1e3 } else { 0.0 });
     }
-    pane.reading(ui, &context.style, beside, &format!("{} mm, {} mm/s", three(mm), three(speed)));
+    let Some((mm, speed)) = plotted.pointed() else { return };
+    plotted.write(ui, &context.style, &format!("{} mm, {} mm/s", three(mm), three(speed)));
     if pointer_rests(ui) {
-        pane.response.clone().on_hover_text_at_pointer("Click: the motion continues from here.");
+        plotted.response.clone().on_hover_text_at_pointer("Click: the motion continues from here.");
     }
 }
 
 /// The recent path, fading with age. An impact is a dashed jump; moving the mass by hand leaves a gap.
-fn trail(layers: &mut Vec<Layer>, context: &ViewContext<'_>, pane: &Pane) {
+fn trail(panel: &mut Panel, context: &ViewContext<'_>, scale: State) {
     let session = &context.session;
     let model = session.shown();
     let length =
@@ -209,7 +173,7 @@ fn trail(layers: &mut Vec<Layer>, context: &ViewContext<'_>, pane: &Pane) {
         ((age * FADES as f64) as usize).min(FADES - 1)
     };
     let mut parts: [Vec<State>; FADES] = Default::default();
-    let mut jumps: [Vec<State>; FADES] = Default::default();
+    let mut jumps = Vec::new();
     const GAP: State = (f64::NAN, f64::NAN);
     for pair in path.windows(2) {
         let (a, b) = (pair[0], pair[1]);
@@ -217,54 +181,55 @@ fn trail(layers: &mut Vec<Layer>, context: &ViewContext<'_>, pane: &Pane) {
         if a.t == b.t {
             parts[now].push(GAP);
             if a.x == b.x && a.v != b.v {
-                jumps[now].extend([from, to, GAP]);
+                jumps.extend([from, to, GAP]);
             }
             continue;
         }
         if parts[now].last() != Some(&from) {
             parts[now].extend([GAP, from]);
         }
-        let count = pieces(pane, watch.model_at(a.t), (&a, &b)).min(pieces_left);
+        let count = pieces(scale, watch.model_at(a.t), (&a, &b)).min(pieces_left);
         pieces_left -= count;
         parts[now].extend(between(watch.model_at(a.t), &a, &b, count).into_iter().map(state));
         parts[now].push(to);
     }
     // the oldest lies below
-    for (level, (part, jumps)) in parts.into_iter().zip(jumps).enumerate().rev() {
-        let age = level as f64 / (FADES - 1) as f64;
-        layers.push(Layer::new(Role::Past(age), "", Marks::Path(part)));
-        layers.push(Layer::new(Role::Jump(age), "", Marks::Path(jumps)));
+    for (level, part) in parts.into_iter().enumerate().rev() {
+        panel.layer(Role::Past(level as f64 / (FADES - 1) as f64), "", Marks::Path(part));
     }
+    panel.layer_if_any(Role::Jump(0.0), "impact", Marks::Path(jumps));
 }
 
-/// The last period of the paths of the pinned motions; longer paths could not be told apart.
-fn ghost_trails(layers: &mut Vec<Layer>, context: &ViewContext<'_>, pane: &Pane) {
+/// The last period of the path of the reference; a longer one could not be told apart.
+fn reference_trail(panel: &mut Panel, context: &ViewContext<'_>, scale: State) {
     let session = &context.session;
     let model = session.shown();
     let length = model.forcing_period().unwrap_or(TRAIL_SWINGS / TRAIL_PERIODS * model.natural_time());
     let now = session.player.time();
-    for pin in session.pins.all() {
-        let watch = &pin.watch;
-        let path = recent(watch.samples(), pin.watch.state_at(now), length.min(now - pin.since));
-        let mut pieces_left = MAX_TOTAL_PIECES;
-        let mut points: Vec<State> = Vec::with_capacity(2 * path.len());
-        for pair in path.windows(2) {
-            let (a, b) = (pair[0], pair[1]);
-            let count = pieces(pane, watch.model_at(a.t), (&a, &b)).min(pieces_left);
-            pieces_left -= count;
-            points.push(state((a.x, a.v)));
-            points.extend(between(watch.model_at(a.t), &a, &b, count).into_iter().map(state));
-        }
-        points.extend(path.last().map(|last| state((last.x, last.v))));
-        layers.push(Layer::new(Role::Pin(pin.place()), "", Marks::Path(points)));
+    let Some(apart) = session.reference.apart() else { return };
+    let watch = &apart.watch;
+    let path = recent(watch.samples(), watch.state_at(now), length.min(now - apart.since));
+    let mut pieces_left = MAX_TOTAL_PIECES;
+    let mut points: Vec<State> = Vec::with_capacity(2 * path.len());
+    for pair in path.windows(2) {
+        let (a, b) = (pair[0], pair[1]);
+        let count = pieces(scale, watch.model_at(a.t), (&a, &b)).min(pieces_left);
+        pieces_left -= count;
+        points.push(state((a.x, a.v)));
+        points.extend(between(watch.model_at(a.t), &a, &b, count).into_iter().map(state));
     }
+    points.extend(path.last().map(|last| state((last.x, last.v))));
+    panel.layer(Role::Compared, REFERENCE, Marks::Path(points));
 }
 
 /// Number of pieces that make the path between two samples look smooth, from how far the control points of
-/// its cubic are off the chord.
-fn pieces(pane: &Pane, model: &Model, (a, b): (&Sample, &Sample)) -> usize {
+/// its cubic are off the chord, in points of the screen by this scale.
+fn pieces(scale: State, model: &Model, (a, b): (&Sample, &Sample)) -> usize {
     let third = (b.t - a.t) / 3.0;
-    let place = |at: (f64, f64)| pane.place(0, state(at)).unwrap_or_default();
+    let place = |at: (f64, f64)| {
+        let (mm, speed) = state(at);
+        pos2((mm * scale.0) as f32, (speed * scale.1) as f32)
+    };
     let control = |sample: &Sample, third: f64| {
         let acceleration = model.acceleration(sample.x, sample.v, sample.base_accel);
         place((sample.x + third * sample.v, sample.v + third * acceleration))

@@ -1,6 +1,6 @@
 //! View of the power into the load of a transducer, or of the base on the mass without a transducer.
 
-use eframe::egui::{self, Label, RichText, Ui, UiBuilder, vec2};
+use eframe::egui::{Frame, Label, Margin, RichText, Ui};
 
 use crate::app::session::Session;
 use crate::app::words::numbers::{power, three};
@@ -12,10 +12,8 @@ use super::ViewContext;
 use super::ranges::axis_end;
 use super::trace::{TraceQuantity, trace_ui};
 
-/// Smallest height in points of the trace below the whole text.
-const TRACE: f32 = 110.0;
-/// Smallest height in points of the trace below the first line of text; a lower view has no text.
-const LOW_TRACE: f32 = 28.0;
+/// Greatest share of the height that the whole text takes, in place of its first line.
+const WORDS: f32 = 0.3;
 
 /// Text for a scene without a transducer.
 const HINT: &str = "The work of the base. This scene has no transducer: add one to its file, such as \
@@ -23,43 +21,26 @@ const HINT: &str = "The work of the base. This scene has no transducer: add one 
                     the scene harvester.";
 
 pub fn power_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
-    let (style, area) = (context.style, ui.max_rect());
+    let style = context.style;
     let has_transducer = context.session.shown().has_transducer();
     let words = if has_transducer { harvested(context.session) } else { vec![HINT.to_owned()] };
-    let place = area.shrink2(vec2(10.0, 4.0));
-    let wrapped = |text: &str| {
-        let galley = ui.painter().layout(text.to_owned(), style.body(), style.ink(), place.width());
-        galley.size().y + ui.spacing().item_spacing.y
-    };
-    let height = words.iter().map(|line| wrapped(line)).sum::<f32>() + 6.0;
-    let first = ui.text_style_height(&egui::TextStyle::Body) + 8.0;
-    let coloured = |i: usize, line: &str| {
-        let colour = if i == 0 && has_transducer { style.ink() } else { style.faint() };
-        RichText::new(line).font(style.body()).color(colour)
-    };
-    let card = |height: f32| UiBuilder::new().max_rect(place.with_max_y(area.top() + height));
-    let mut top = area.top();
-    if area.height() - height >= TRACE {
-        top += height;
-        ui.scope_builder(card(height), |ui| {
-            for (i, line) in words.iter().enumerate() {
-                ui.add(Label::new(coloured(i, line)).wrap());
-            }
-        });
-    } else if area.height() - first >= LOW_TRACE {
-        top += first;
-        ui.scope_builder(card(first), |ui| {
-            ui.add(Label::new(coloured(0, &words[0])).truncate()).on_hover_text(words.join("\n"));
-        });
-    }
+    let whole = words.join("\n");
+    Frame::new().inner_margin(Margin::symmetric(10, 4)).show(ui, |ui| {
+        let galley = ui.painter().layout(whole.clone(), style.body(), style.ink(), ui.available_width());
+        let text = |words: &str| Label::new(RichText::new(words).font(style.body()));
+        if galley.size().y > WORDS * ui.available_height() {
+            ui.add(text(&words[0]).truncate()).on_hover_text(whole);
+        } else {
+            words.iter().for_each(|line| _ = ui.add(text(line).wrap()));
+        }
+    });
     let mut quantity = TraceQuantity::Power;
     if has_transducer {
         let end = axis_end(context.memory.ranges.follow(context.session).load_power());
         let (per_watt, unit) = suited_unit("W", std::iter::once(end));
         quantity = TraceQuantity::LoadPower { per_watt: per_watt as u32, unit };
     }
-    let below = UiBuilder::new().max_rect(area.with_min_y(top));
-    ui.scope_builder(below, |ui| trace_ui(ui, quantity, context));
+    trace_ui(ui, quantity, context);
 }
 
 /// Sentences on the harvested power: means, and the window over which they were taken.

@@ -114,7 +114,7 @@ impl Ranges {
             self.previous = Extremes::default();
         }
         let model = session.model();
-        for watch in session.pins.all().iter().map(|pin| &pin.watch).chain([watch]) {
+        for watch in session.reference.apart().map(|apart| &apart.watch).into_iter().chain([watch]) {
             let first = watch.samples().partition_point(|sample| sample.t < self.looked_to);
             for sample in watch.samples().range(first..) {
                 self.seen = self.seen.or(Extremes {

@@ -6,7 +6,7 @@ use crate::app::ui::widgets::{segment_ui, tell};
 use crate::output::{Ranges, SpectrumQuantity, spectrum_chart};
 use interwell_studies::study::Signal;
 
-use super::pane::pane_ui;
+use super::plot::plot_ui;
 use super::{View, ViewContext, empty_ui};
 
 /// Height in points of the row of choices.
@@ -44,6 +44,8 @@ pub fn spectrum_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     if !current {
         child.set_opacity(0.4);
     }
-    let pane = pane_ui(&mut child, context.memory, View::Spectrum, &style, below, chart);
-    tell(&pane.response, egui::Role::Canvas, &format!("spectrum of {}", name.to_lowercase()));
+    let Some(panel) = chart.panels().next() else { return };
+    let plotted = plot_ui(&mut child, context.memory, View::Spectrum, &style, below, panel);
+    plotted.read(ui, &style, panel);
+    tell(&plotted.response, egui::Role::Canvas, &format!("spectrum of {}", name.to_lowercase()));
 }

@@ -1,20 +1,19 @@
 //! Stops as walls that can be dragged, in every view with the shared x axis.
 
-use eframe::egui::{self, Align2, CursorIcon, Painter, Pos2, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
+use eframe::egui::{self, Align2, CursorIcon, Painter, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
 
 use crate::app::session::Session;
 use crate::app::session::sliders::reach;
-use crate::app::ui::style::{BALL, GRAB, Style, colour};
+use crate::app::ui::style::GRAB;
 use crate::app::ui::widgets::arrows;
 use crate::app::words::fields::info;
 use crate::app::words::numbers::{decimal, decimals, shown, with_minus};
 use crate::dynamics::Model;
-use crate::output::Role;
+use crate::output::{Marks, Panel, Role, Side};
 use crate::scene::Stops;
 
 use super::ViewContext;
-use super::context::Drawn;
-use super::labels::Taken;
+use super::labels::plated;
 
 /// Resolution of a drag, in steps of the slider of a stop.
 const FINE: f64 = 0.2;
@@ -36,19 +35,10 @@ pub(super) fn sides(model: &Model) -> impl Iterator<Item = (f64, f32)> {
     [(left, -1.0), (right, 1.0)].into_iter().filter_map(|(x, side)| Some((x?, side)))
 }
 
-/// The wall of a stop on this side, with its face at `x`, over the height of `rect`.
-pub(super) fn wall(rect: Rect, x: f32, side: f32) -> Rect {
-    Rect::from_two_pos(pos2(x, rect.top()), pos2(x + side * WALL, rect.bottom()))
-}
-
-/// Displacements in mm of the stops of the motion shown, and whether they can be moved: not those of a pinned
-/// motion, nor those of the past if they differed then.
-fn shown_stops(session: &Session, drawn: Drawn) -> ([Option<f64>; 2], bool) {
-    // of a pinned motion, or of the past
-    let then = <[_; 2]>::from(drawn.model(session).stop_positions()).map(|stop| stop.map(|x| x * 1e3));
-    if drawn.pin(session).is_some() {
-        return (then, false);
-    }
+/// Displacements in mm of the stops of the motion shown, and whether they can be moved: not those of the past
+/// if they differed then.
+fn shown_stops(session: &Session) -> ([Option<f64>; 2], bool) {
+    let then = <[_; 2]>::from(session.shown().stop_positions()).map(|stop| stop.map(|x| x * 1e3));
     let present = session.scene().stops.positions_mm();
     if !session.player.is_past() {
         return (present, true);
@@ -65,51 +55,30 @@ fn limit_number(session: &Session, mm: f64) -> String {
     with_minus(&shown(mm, decimals(key_step(session))))
 }
 
-/// Writes the travel limits over `rect` beside the stops, and beside those that a question asks about, clear
-/// of `taken`, to which it adds them.
-pub(super) fn travel_limits(painter: &Painter, context: &ViewContext<'_>, rect: Rect, taken: &mut Taken) {
-    let screen = |mm: f64| context.span.screen_from_world(mm / 1e3, rect);
-    let best = best_stops(context).into_iter().flat_map(|mm| [(-mm, -1.0), (mm, 1.0)]);
-    taken.places.extend(best.map(|(mm, side)| wall(rect, screen(mm), side)));
-    for stops in [shown_stops(context.session, context.drawn).0, context.memory.asked_stops] {
-        let limit =
-            |(mm, side): (Option<f64>, f32)| Some((screen(mm?), side, limit_number(context.session, mm?)));
-        let limits: Vec<(f32, f32, String)> = stops.into_iter().zip([-1.0, 1.0]).filter_map(limit).collect();
-        limits_beside(painter, context.style, rect, taken, &limits);
+/// Writes the travel limits outside of the stops, and of those that a question asks about, in `rect`.
+pub(super) fn travel_limits(painter: &Painter, context: &ViewContext<'_>, rect: Rect) {
+    let style = context.style;
+    for stops in [shown_stops(context.session).0, context.memory.asked_stops] {
+        for (mm, side) in stops.into_iter().zip([-1.0, 1.0]) {
+            let Some(mm) = mm else { continue };
+            let x = context.span.screen_from_world(mm / 1e3, rect) + side * (WALL + 4.0);
+            let align = if side > 0.0 { Align2::LEFT_TOP } else { Align2::RIGHT_TOP };
+            let at = (pos2(x, rect.top() + 4.0), align);
+            let number = limit_number(context.session, mm);
+            let size = painter.layout_no_wrap(number.clone(), style.small(), style.ink()).size();
+            if !rect.x_range().contains(x + side * size.x) {
+                continue;
+            }
+            plated(painter, &style, at, &number, (style.small(), style.ink()));
+        }
     }
 }
 
-/// Writes the numbers of two stops, given their places on the screen and their sides: both or none.
-fn limits_beside(
-    painter: &Painter,
-    style: Style,
-    rect: Rect,
-    taken: &mut Taken,
-    limits: &[(f32, f32, String)],
-) {
-    let look = (style.small(), style.ink());
-    for (x, ..) in limits {
-        taken.lines.push(vec![pos2(*x, rect.top()), pos2(*x, rect.bottom())]);
-    }
-    // outside of a wall it is clear of the mass there
-    let place = |((x, side, text), is_outside): (&(f32, f32, String), bool)| {
-        let (aside, towards) = if is_outside { (BALL + 5.0, -side) } else { (-4.0, *side) };
-        let align = if towards > 0.0 { Align2::RIGHT_TOP } else { Align2::LEFT_TOP };
-        (text.clone(), pos2(x + side * aside, rect.top() + 4.0), align)
-    };
-    let area = |(text, at, align): &(String, Pos2, Align2)| {
-        align.anchor_size(*at, painter.layout_no_wrap(text.clone(), look.0.clone(), look.1).size())
-    };
-    // both of them or none
-    for are_outside in [[true; 2], [false; 2], [true, false], [false, true]] {
-        let places: Vec<_> = limits.iter().zip(are_outside).map(place).collect();
-        let areas: Vec<Rect> = places.iter().map(area).collect();
-        let are_apart = areas.windows(2).all(|pair| !pair[0].expand(4.0).intersects(pair[1]));
-        if are_apart && areas.iter().all(|area| rect.contains_rect(*area) && taken.is_free(*area)) {
-            for (text, at, align) in &places {
-                taken.write(painter, rect, look.clone(), [(text.as_str(), *at, *align)]);
-            }
-            return;
+/// Adds the stops of the motion shown to a picture over displacements in mm.
+pub(super) fn add_walls(panel: &mut Panel, session: &Session) {
+    for (mm, side) in shown_stops(session).0.into_iter().zip([Side::Left, Side::Right]) {
+        if let Some(mm) = mm {
+            panel.layer(Role::Stop, "", Marks::Wall(mm, side));
         }
     }
 }
@@ -117,8 +86,7 @@ fn limits_beside(
 /// The best travel limit in mm while it is shown, unless the stops of the motion drawn are there already.
 pub fn best_stops(context: &ViewContext<'_>) -> Option<f64> {
     let session = &context.session;
-    let is_apart = context.drawn.pin(session).is_none() && !session.is_at_best_stops();
-    session.best.limit_mm().filter(|_| is_apart)
+    session.best.limit_mm().filter(|_| !session.is_at_best_stops())
 }
 
 /// The stops that are outlined: their displacements in mm, their sides, and the lines. A question asks about
@@ -139,8 +107,8 @@ pub(super) fn asked_place(context: &ViewContext<'_>, x: f64) -> Option<f64> {
     (place != x).then_some(place)
 }
 
-/// Draws the stops over `rect` between the heights `top` and `bottom`, and lets them be dragged. The face of
-/// a stop is drawn `radius` points, the half width of the mass, outside its travel limit. A stop that is
+/// Lets the stops over `rect` between the heights `top` and `bottom` be dragged. In a drawing the face of a
+/// stop is drawn `radius` points, the half width of the mass, outside its travel limit. A stop that is
 /// dragged has its number, unless the view writes travel limits itself.
 pub fn stops_ui(
     ui: &mut Ui,
@@ -166,7 +134,7 @@ fn walls_ui(
     (top, bottom): (f32, f32),
     (radius, has_limits): (f32, bool),
 ) {
-    let (stops, movable) = shown_stops(context.session, context.drawn);
+    let (stops, movable) = shown_stops(context.session);
     let step = key_step(context.session);
     let fine = FINE * step;
     // the nearest to x = 0 that a stop may come; unequal ones may pass it up to the other stop
@@ -187,21 +155,14 @@ fn walls_ui(
         let id = ui.scope_id().with(name);
         let style = context.style;
         let painter = ui.painter().with_clip_rect(rect);
+        // in a chart it is a layer
         if radius > 0.0 {
             painter.rect_filled(wall, 0.0, style.stop());
             painter.extend(hatching(wall, side, Stroke::new(1.0, style.ground())));
-        } else {
-            // as in a chart
-            painter.rect_filled(wall, 0.0, colour(style.theme().wall_fill()));
-            painter.extend(hatching(wall, side, Stroke::new(1.0, style.stop())));
-            painter.line_segment([pos2(x, top), pos2(x, bottom)], style.stop_stroke());
         }
         if !movable {
             let at = limit_number(context.session, mm);
-            let then = match context.drawn {
-                Drawn::Pinned(_) => format!("The stop of the pinned motion, at {at} mm."),
-                _ => format!("At that time the stop was at {at} mm. The controls change the present stop."),
-            };
+            let then = format!("At that time the stop was at {at} mm. The controls change the present stop.");
             ui.interact(grab, id, Sense::hover()).on_hover_text(then);
             continue;
         }

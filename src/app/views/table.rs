@@ -1,4 +1,4 @@
-//! Table of scenes and of what their motions settle to, a column each: for Before / now and for Compare.
+//! Table of scenes and of what their motions settle to, a column each.
 
 use std::cmp::Ordering;
 
@@ -40,29 +40,13 @@ const WIDE_COLUMN: f32 = 96.0;
 const RMS: &str = "RMS velocity";
 const CROSSES: &str = "crosses from";
 
-/// A column of the table.
-pub(super) struct Column {
-    /// `None` if there is no such scene, as before the first change.
-    pub card: Option<Card>,
-    /// Live time in s at which its motion ended.
-    pub ended: Option<f64>,
-    /// Whether its numbers have their difference from the present ones in brackets.
-    pub differs: bool,
-}
-
-impl Column {
-    fn settled(&self) -> Option<&Summary> {
-        self.card.as_ref()?.settled.as_ref()
-    }
-}
-
 #[derive(Debug, Clone, PartialEq)]
 struct Row {
     name: String,
     unit: &'static str,
     /// The values of the columns, without the unit.
     texts: Vec<String>,
-    /// Their differences from the present value, where known.
+    /// Their differences from that of the first column, where known.
     apart: Vec<Option<String>>,
 }
 
@@ -72,7 +56,7 @@ impl Row {
     }
 
     fn known(&self) -> impl Iterator<Item = &String> {
-        self.texts.iter().filter(|text| *text != UNKNOWN && !text.is_empty())
+        self.texts.iter().filter(|text| *text != UNKNOWN)
     }
 
     fn differs(&self) -> bool {
@@ -80,13 +64,13 @@ impl Row {
     }
 }
 
-/// Draws the table. The column `now` is that of the present motion; `heading` draws the heading of a column,
-/// or of the column of names, with its width in points.
+/// Draws the table. The last column is that of the present motion, whose numbers have their differences from
+/// those of the first one in brackets; `heading` draws the heading of a column, or of the column of names.
 pub(super) fn table_ui(
     ui: &mut Ui,
     context: &ViewContext<'_>,
-    (columns, now): (&[Column], usize),
-    heading: &mut dyn FnMut(&mut Ui, Option<usize>, f32),
+    columns: &[Card],
+    heading: &mut dyn FnMut(&mut Ui, Option<usize>),
 ) {
     let style = context.style;
     let ((share, least, most), room) = (NAMES, ui.available_width());
@@ -107,10 +91,9 @@ pub(super) fn table_ui(
         styles.insert(TextStyle::Heading, FontId::new(SMALL, strong_family()));
         (ui.spacing_mut().button_padding.x, ui.spacing_mut().interact_size.y) = (2.0, 0.0);
     }
-    let scenes: Vec<Option<&Scene>> =
-        columns.iter().map(|column| column.card.as_ref().map(|card| &card.scene)).collect();
-    let before = scene_rows(&scenes);
-    let after = number_rows(columns, now, !context.session.keeps_remedy);
+    let now = columns.len() - 1;
+    let before = scene_rows(&columns.iter().map(|card| &card.scene).collect::<Vec<_>>());
+    let after = number_rows(columns, !context.session.keeps_remedy);
     // the headings and the row of the motion
     let count = (before.len() + after.len() + 2) as f32;
     // where not all rows fit, the last one that is seen is whole
@@ -118,7 +101,7 @@ pub(super) fn table_ui(
     let seen = (room / (ROW + ROW_GAP.1)).floor().clamp(1.0, count);
     let gaps = if seen < count { seen } else { count - 1.0 };
     let gap = ((room - seen * ROW) / gaps).clamp(ROW_GAP.1, ROW_GAP.0);
-    let settled = columns[now].settled();
+    let settled = columns[now].settled.as_ref();
     let faint = |text: &str| RichText::new(text).color(style.faint());
     let row_ui = |ui: &mut Ui, row: &Row| {
         words_ui(ui, names, 4.0, |ui| {
@@ -133,7 +116,7 @@ pub(super) fn table_ui(
         });
         for (i, (text, apart)) in row.texts.iter().zip(&row.apart).enumerate() {
             let written = RichText::new(unbroken(text));
-            let written = match columns[i].differs && *text == row.texts[now] {
+            let written = match *text == row.texts[now] {
                 _ if i == now => written.heading(),
                 true => written.color(style.faint()),
                 false => written,
@@ -148,15 +131,16 @@ pub(super) fn table_ui(
         ui.end_row();
     };
     Grid::new("table").num_columns(1 + columns.len()).spacing([COLUMN_GAP, gap]).show(ui, |ui| {
-        cell_ui(ui, names, |ui| heading(ui, None, names));
+        cell_ui(ui, names, |ui| heading(ui, None));
         for i in 0..columns.len() {
-            cell_ui(ui, width, |ui| heading(ui, Some(i), width));
+            cell_ui(ui, width, |ui| heading(ui, Some(i)));
         }
         ui.end_row();
         before.iter().for_each(|row| row_ui(ui, row));
         words_ui(ui, names, 4.0, |ui| {
             ui.label(faint("motion"));
-            ui.label(faint(SETTLED).font(style.small())).on_hover_text(SETTLED_HOVER);
+            let (when, about) = window_words(columns);
+            ui.label(faint(&when).font(style.small())).on_hover_text(about);
         });
         for column in columns {
             cell_ui(ui, width, |ui| match column.ended {
@@ -164,10 +148,10 @@ pub(super) fn table_ui(
                     let text = format!("ended at {}, stays there", seconds(at));
                     ui.add(Label::new(RichText::new(text).font(style.small())).wrap());
                 }
-                None if column.card.is_some() && column.settled().is_none() => {
-                    ui.label(faint("not yet known").font(style.small()));
-                }
-                None => regime_ui(ui, context, column.settled(), width),
+                None => match &column.settled {
+                    None => _ = ui.label(faint("not yet known").font(style.small())),
+                    Some(settled) => regime_ui(ui, context, settled, width),
+                },
             });
         }
         ui.end_row();
@@ -175,9 +159,26 @@ pub(super) fn table_ui(
     });
 }
 
-/// Note on the row of the motion and the rows below it.
-const SETTLED: &str = "once settled";
-const SETTLED_HOVER: &str = "What the motion settles to, whether or not it has been played so far.";
+/// Note on the row of the motion and the rows below it: of which time they are, and what that means.
+fn window_words(columns: &[Card]) -> (String, &'static str) {
+    let known: Vec<&Summary> = columns.iter().filter_map(|card| card.settled.as_ref()).collect();
+    let has_settled = |run: &&Summary| run.settled.is_some() && !run.is_transient();
+    if known.iter().all(has_settled) {
+        let about = "What the motion settles to, whether or not it has been played so far.";
+        return ("once settled".to_owned(), about);
+    }
+    let about = "This motion is not known to settle: the numbers are those of this time after the start or \
+                 the last change, whether or not it has been played so far.";
+    let (from, to) = known[0].window;
+    match known.iter().all(|run| run.window == (from, to)) {
+        true => (format!("from {} to {}", seconds(from), seconds(to)), about),
+        false => ("each over its own time".to_owned(), SEVERAL),
+    }
+}
+
+/// Meaning of the numbers of motions of which one is not known to settle.
+const SEVERAL: &str =
+    "Of a motion that settles, what it settles to; of any other, numbers of a part of its run.";
 
 fn cell_ui(ui: &mut Ui, width: f32, contents: impl FnOnce(&mut Ui)) {
     ui.vertical(|ui| {
@@ -204,14 +205,13 @@ fn rms_words(settled: &Summary) -> String {
 }
 
 /// Rows of the scenes: shaking and stops, and whatever else differs between two of them.
-fn scene_rows(scenes: &[Option<&Scene>]) -> Vec<Row> {
+fn scene_rows(scenes: &[&Scene]) -> Vec<Row> {
     let row = |name: &str, unit: &'static str, text: fn(&Scene) -> String| {
         let bare = |scene: &Scene| match unit {
             "" => text(scene),
             unit => text(scene).replace(&format!(" {unit}"), ""),
         };
-        let texts = scenes.iter().map(|scene| scene.map_or_else(String::new, bare));
-        Row::new(name, unit, texts.collect())
+        Row::new(name, unit, scenes.iter().map(|scene| bare(scene)).collect())
     };
     let mut rows = vec![row("shaking", "", |scene| shaking(scene).0), row("stops", "mm", stops)];
     // the value of the damping has another row
@@ -229,21 +229,20 @@ fn scene_rows(scenes: &[Option<&Scene>]) -> Vec<Row> {
     let differs = |name: &str| rows.iter().any(|row| row.name == name && row.differs());
     let [shaking_differs, stops_differ, start_differs] = ["shaking", "stops", "start"].map(differs);
     let mut paths: Vec<String> = Vec::new();
-    for path in scenes.iter().flatten().flat_map(|scene| numeric_fields(scene)) {
+    for path in scenes.iter().flat_map(|scene| numeric_fields(scene)) {
         if !paths.contains(&path) {
             paths.push(path);
         }
     }
     for path in paths {
         let ((name, unit), field) = (name_and_unit(&path), FieldPath::new(&path));
-        let values: Vec<Option<f64>> =
-            scenes.iter().map(|scene| scene.and_then(|scene| field.get(scene))).collect();
+        let values: Vec<Option<f64>> = scenes.iter().map(|scene| field.get(scene)).collect();
         let known = || values.iter().flatten();
         // numbers that a row above contains already
         let in_row_above = match path.split_once('.') {
             Some(("excitation", number)) => {
                 let is_in = |scene: &&Scene| field.get(scene).is_none() || shaking(scene).1.contains(&number);
-                shaking_differs && scenes.iter().flatten().all(is_in)
+                shaking_differs && scenes.iter().all(is_in)
             }
             Some(("stops", number)) => stops_differ && number.ends_with("_mm") && number != "radius_mm",
             Some(("start", _)) => start_differs,
@@ -256,35 +255,29 @@ fn scene_rows(scenes: &[Option<&Scene>]) -> Vec<Row> {
         // all digits if two rounded numbers are equal
         let hidden = known().any(|a| known().any(|b| a != b && shown(*a, 0) == shown(*b, 0)));
         let text = |value: &f64| if hidden { exact(*value, 0) } else { shown(*value, 0) };
-        let texts = scenes.iter().zip(&values).map(|(scene, value)| match (scene, value) {
-            (None, _) => String::new(),
-            (_, value) => value.as_ref().map_or_else(|| UNKNOWN.to_owned(), text),
-        });
+        let texts = values.iter().map(|value| value.as_ref().map_or_else(|| UNKNOWN.to_owned(), text));
         rows.push(Row::new(&name, unit, texts.collect()));
     }
     rows
 }
 
 /// Rows of numbers of the settled motions.
-fn number_rows(columns: &[Column], now: usize, with_threshold: bool) -> Vec<Row> {
+fn number_rows(columns: &[Card], with_threshold: bool) -> Vec<Row> {
     let row = |name: &str,
                unit: &'static str,
                text: &dyn Fn(&Card, &Summary) -> Option<String>,
                value: &dyn Fn(&Summary) -> Option<f64>,
                decimals: &dyn Fn(f64) -> usize| {
-        let written = |column: &Column| text(column.card.as_ref()?, column.settled()?);
-        let texts = columns.iter().map(|column| written(column).unwrap_or_else(|| unknown(column)));
-        let present = columns[now].settled().and_then(value);
-        let apart = |column: &Column| {
-            let number = column.settled().filter(|_| column.differs).and_then(value)?;
-            Some(difference(number, present?, decimals))
-        };
-        Row { apart: columns.iter().map(apart).collect(), ..Row::new(name, unit, texts.collect()) }
+        let written = |card: &Card| text(card, card.settled.as_ref()?);
+        let texts = columns.iter().map(|card| written(card).unwrap_or_else(|| UNKNOWN.to_owned()));
+        let number = |i: usize| columns[i].settled.as_ref().and_then(value);
+        let apart = |i: usize| Some(difference(number(i)?, number(0).filter(|_| i > 0)?, decimals));
+        Row { apart: (0..columns.len()).map(apart).collect(), ..Row::new(name, unit, texts.collect()) }
     };
     let tenths = |below: f64| move |size: f64| usize::from(size < below);
     let velocity = |run: &Summary| run.rms_velocity;
     let in_mm = |run: &Summary| velocity(run).map(|v| v * 1e3);
-    let reaches = columns.iter().filter_map(|column| column.settled()?.max_abs_x);
+    let reaches = columns.iter().filter_map(|card| card.settled.as_ref()?.max_abs_x);
     let (per_metre, length) = length_unit(reaches.fold(0.0, f64::max));
     let reach_in = |run: &Summary| run.max_abs_x.map(|x| x * per_metre);
     let reach = |card: &Card, run: &Summary| match length {
@@ -306,23 +299,16 @@ fn number_rows(columns: &[Column], now: usize, with_threshold: bool) -> Vec<Row>
         row("reach", length, &reach, &reach_in, &of_reach),
     ];
     rows.extend(Some(row("impacts take", "%", &|_, run| whole(run), &share, &|_| 0)).filter(Row::differs));
-    let has_load =
-        |column: &Column| column.card.as_ref().is_some_and(|card| card.scene.transducer != Transducer::None);
-    if columns.iter().any(has_load) {
+    if columns.iter().any(|card| card.scene.transducer != Transducer::None) {
         let watt = |run: &Summary| run.harvest?.mean_load_power;
-        let all = columns.iter().filter_map(|column| watt(column.settled()?));
+        let all = columns.iter().filter_map(|card| watt(card.settled.as_ref()?));
         let (factor, unit) = suited_unit("W", all);
         let text = |_: &Card, run: &Summary| watt(run).map(|watt| three(watt * factor));
         rows.push(row("load power", unit, &text, &|run| Some(watt(run)? * factor), &decimals_for));
     }
     // other drives have no amplitude
-    let has_amplitude =
-        |column: &Column| column.card.as_ref().is_some_and(|card| card.scene.harmonic().is_some());
-    if with_threshold && columns.iter().any(has_amplitude) {
-        let found = |column: &Column| {
-            let card = column.card.as_ref()?;
-            threshold(&card.scene, &card.thresholds?.crossing)
-        };
+    if with_threshold && columns.iter().any(|card| card.scene.harmonic().is_some()) {
+        let found = |card: &Card| threshold(&card.scene, &card.thresholds?.crossing);
         let all: Vec<_> = columns.iter().map(found).collect();
         let unit = all.iter().flatten().next().map_or("g", |first| first.1);
         // an amplitude of another unit has it beside its number
@@ -330,16 +316,15 @@ fn number_rows(columns: &[Column], now: usize, with_threshold: bool) -> Vec<Row>
             true => number.clone(),
             false => format!("{number} {its}"),
         };
-        let texts = columns.iter().zip(&all);
-        let texts = texts.map(|(column, found)| found.as_ref().map_or_else(|| unknown(column), text));
+        let texts = all.iter().map(|found| found.as_ref().map_or_else(|| UNKNOWN.to_owned(), text));
         let mut row = Row::new(CROSSES, unit, texts.collect());
         // where both are known in this unit, with the digits of the one that has fewer
         let numbers: Vec<&str> = row.texts.iter().map(|text| text.trim_start_matches("about ")).collect();
         let decimals = |text: &str| text.split_once('.').map_or(0, |(_, decimals)| decimals.len());
         let apart = |i: usize| {
-            let (there, here) = (numbers[i].parse().ok()?, numbers[now].parse().ok()?);
-            let decimals = decimals(numbers[i]).min(decimals(numbers[now]));
-            columns[i].differs.then(|| difference(there, here, &|_| decimals))
+            let (now, first) = (numbers[i].parse().ok()?, numbers[0].parse().ok()?);
+            let decimals = decimals(numbers[i]).min(decimals(numbers[0]));
+            (i > 0).then(|| difference(now, first, &|_| decimals))
         };
         row.apart = (0..columns.len()).map(apart).collect();
         rows.push(row);
@@ -347,23 +332,18 @@ fn number_rows(columns: &[Column], now: usize, with_threshold: bool) -> Vec<Row>
     rows
 }
 
-/// What stands for a number that is missing; nothing if there is no such scene.
-fn unknown(column: &Column) -> String {
-    column.card.as_ref().map_or_else(String::new, |_| UNKNOWN.to_owned())
-}
-
-fn difference(value: f64, present: f64, decimals: &dyn Fn(f64) -> usize) -> String {
-    let decimals = decimals(value.abs().max(present.abs()));
+fn difference(value: f64, first: f64, decimals: &dyn Fn(f64) -> usize) -> String {
+    let decimals = decimals(value.abs().max(first.abs()));
     // of the numbers as they are written
     let written = |value: f64| format!("{value:.decimals$}").parse().unwrap_or(value);
-    let text = with_minus(&format!("{:+.decimals$}", written(value) - written(present)));
+    let text = with_minus(&format!("{:+.decimals$}", written(value) - written(first)));
     // a difference that rounds to zero has no sign
     let is_zero = text.trim_start_matches(['+', '\u{2212}', '0', '.']).is_empty();
     if is_zero { "same".to_owned() } else { text }
 }
 
 /// The shaking in words, and the fields whose numbers these contain.
-pub(super) fn shaking(scene: &Scene) -> (String, &'static [&'static str]) {
+fn shaking(scene: &Scene) -> (String, &'static [&'static str]) {
     // a difference that this rounding hides has another row, see `scene_rows`
     let g = |value: &f64| shown(rounded(*value, 4), 2);
     let hz = |value: &f64| shown(rounded(*value, 4), 1);
@@ -393,7 +373,7 @@ pub(super) fn shaking(scene: &Scene) -> (String, &'static [&'static str]) {
     }
 }
 
-pub(super) fn stops(scene: &Scene) -> String {
+fn stops(scene: &Scene) -> String {
     let (stops, mm) = (&scene.stops, |value: f64| format!("{} mm", shown(value, decimals_for(value).min(2))));
     let side = |stop: Option<f64>| {
         stop.map_or("open".to_owned(), |at| match at.total_cmp(&0.0) {
@@ -420,8 +400,7 @@ fn start(scene: &Scene) -> String {
 }
 
 /// Symbol and name of the regime, one below the other in a narrow column.
-fn regime_ui(ui: &mut Ui, context: &ViewContext<'_>, settled: Option<&Summary>, width: f32) {
-    let Some(settled) = settled else { return };
+fn regime_ui(ui: &mut Ui, context: &ViewContext<'_>, settled: &Summary, width: f32) {
     if settled.outcome != Outcome::Done {
         return drop(ui.add(Label::new("the run ended early").wrap()));
     }
@@ -449,7 +428,7 @@ mod tests {
     use crate::scene::{Document, PRESETS};
 
     fn changes(scenes: [&Scene; 2]) -> Vec<Row> {
-        scene_rows(&scenes.map(Some)).into_iter().filter(Row::differs).collect()
+        scene_rows(&scenes).into_iter().filter(Row::differs).collect()
     }
 
     /// Every difference has one row, whose two sides differ.

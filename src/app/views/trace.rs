@@ -4,22 +4,20 @@
 //! under the pointer, so that they can be read below each other. Their vertical ranges come from the scene
 //! and from [`Ranges`](super::ranges::Ranges), not from what is visible.
 
-use eframe::egui::{Align2, Sense, Shape, Ui, pos2, vec2};
+use eframe::egui::Ui;
 
 use crate::app::session::Session;
-use crate::app::session::pins::Pin;
 use crate::app::words::numbers::decimals_for;
 use crate::dynamics::{EventKind, Model, Phase, STANDARD_GRAVITY, Sample, Side};
-use crate::output::{Chart, Layer, Marks, OverTime, PlotAxis, Role, RunPanel, TIME};
+use crate::output::{Layer, Marks, OverTime, Panel, PlotAxis, Role, RunPanel, TIME};
 use crate::scene::Quantity;
-use interwell_studies::study::{Table, Watch};
+use interwell_studies::study::Watch;
 
-use super::cursors::{cursors_ui, readout_height, readout_ui};
-use super::hand::axes_input;
+use super::cursors::{cursors_ui, readout_ui};
+use super::ghosts::REFERENCE;
 use super::overlay::{Measurable, measured_trace, with_room};
-use super::pane::{Place, fresh_pane_ui};
+use super::plot::plot_ui;
 use super::ranges::room_for_push;
-use super::view::Axis;
 use super::{View, ViewContext};
 
 /// Number of forcing periods shown.
@@ -32,15 +30,6 @@ const MAX_SWINGS: f64 = 200.0;
 
 /// Position of the present in the range of time, as a share of it.
 const PRESENT: f64 = 0.94;
-
-/// Width in points of a pin's letter at the end of its line.
-const LETTER: f32 = 9.0;
-
-/// Largest number of points of a line; a longer path is thinned.
-const MAX_POINTS: usize = 20_000;
-
-/// Largest number of points of a pinned motion's line, whose dashes cost more.
-const MAX_GHOST_POINTS: usize = 4000;
 
 /// A point of the picture: time in s and value.
 type Point = (f64, f64);
@@ -109,7 +98,7 @@ impl TraceQuantity {
         let both = |end: f64| (-end, end);
         match self {
             Self::Displacement => {
-                let span = context.memory.reach(context.session, None);
+                let span = context.memory.reach(context.session);
                 (span.low * 1e3, span.high * 1e3)
             }
             Self::Velocity => both(context.memory.ranges.follow(context.session).speed() * 1e3),
@@ -128,63 +117,62 @@ impl TraceQuantity {
 pub fn trace_ui(ui: &mut Ui, quantity: TraceQuantity, context: &mut ViewContext<'_>) {
     let (style, (name, unit, view, _)) = (context.style, quantity.shown());
     let ends = quantity.ends(context);
-    let ends = with_room(context.session, quantity.measured(), ends);
-    let (low, high) = context.memory.axes.ends(Axis::Up(view), ends);
+    let upward = with_room(context.session, quantity.measured(), ends);
     let now = context.session.player.time();
     let timeline = &mut context.memory.timeline;
     timeline.default_window = stretch(context.session.shown());
     let window = timeline.window.unwrap_or(timeline.default_window);
     // the present is near the end of the time axis
     let from = (now - PRESENT * window).max(-0.02 * window);
-    let (from, to) = context.memory.axes.ends(Axis::Time, (from, from + window));
-    let (window, end) = (to - from, now.min(to));
-    let (area, digits) = (ui.max_rect(), 1 + decimals_for(high - low));
+    let automatic = [(from, from + window), upward];
+    let [(from, to), (low, high)] = context.memory.ends(view, automatic);
+    let digits = 1 + decimals_for(high - low);
     let watch = context.session.player.watch();
     let read = |t: f64| quantity.value_in(watch, &watch.state_at(t));
     let at_each = |t: f64| format!("{:.digits$} {unit}", read(t));
     let between = |a: f64, b: f64| format!("{:+.digits$} {unit}", read(b) - read(a));
-    let readout = readout_height(ui, context);
-    let chart = chart(context.session, quantity, (from, to), (low, high));
-    let place = Place::in_line(ui, area, Sense::click_and_drag(), (0.0, readout));
-    let pane = fresh_pane_ui(ui, &style, place, chart);
-    let Some(frame) = pane.frame(0) else { return };
-    readout_ui(ui, context, (frame, window), at_each, between);
-    axes_input(ui, context.memory, view, &pane.response, (area, frame));
-    let painter = ui.painter().with_clip_rect(area);
-    // each pin has its letter at the end of its line, beside those of the others
-    for (i, pin) in pinned(context.session, quantity).iter().enumerate() {
-        let value = quantity.value_in(&pin.watch, &pin.watch.state_at(end));
-        if let Some(at) = pane.place(0, (end, value.clamp(low, high))).filter(|_| value.is_finite()) {
-            let at = at + vec2(LETTER * (i as f32 + 0.5), 0.0);
-            painter.text(at, Align2::CENTER_CENTER, pin.letter, style.small(), style.pin());
-        }
-    }
-    let pass = ui.ctx().cumulative_pass_nr();
-    let pointer = pane.hovered().and_then(|at| pane.values_at(0, at));
-    if let Some((t, _)) = pointer {
-        let watch = context.session.player.watch();
+    readout_ui(ui, context, to - from, at_each, between);
+    let mut panel = panel(context.session, quantity, (from, to), (low, high));
+    [(panel.x.low, panel.x.high), (panel.y.low, panel.y.high)] = automatic;
+    let area = ui.available_rect_before_wrap();
+    let plotted = plot_ui(ui, context.memory, view, &style, area, &panel);
+    if let Some((t, y)) = plotted.pointed().filter(|_| !plotted.response.dragged()) {
         let t = t.clamp(watch.begin().min(now), now);
-        let value = quantity.value_in(watch, &watch.state_at(t));
-        pane.reading(ui, &style, 0.0, &format!("{value:.digits$} {unit} at {t:.3} s"));
-        context.memory.timeline.cursor = Some((t, pass));
+        let (curve, value) = nearest(context.session, quantity, &panel, (t, y));
+        plotted.write(ui, &style, &format!("{curve}{value:.digits$} {unit} at {t:.3} s"));
     }
-    let cursor = context.memory.timeline.cursor.filter(|cursor| cursor.1 + 1 >= pass);
-    if let Some(at) = cursor.and_then(|cursor| pane.place(0, (cursor.0, low))) {
-        let line = [pos2(at.x, frame.top()), pos2(at.x, frame.bottom())];
-        painter.with_clip_rect(frame).extend(Shape::dashed_line(&line, style.ghost_stroke(), 4.0, 3.0));
+    if let Some((t, _)) = plotted.clicked {
+        context.session.player.set_playing(false);
+        context.session.player.seek(t);
     }
-    cursors_ui(ui, context, &pane.response, (frame, (from, to)), name);
+    cursors_ui(ui, context, &plotted, to - from, name);
+}
+
+/// The name and the value of the curve nearest to `y` at a time.
+fn nearest(session: &Session, quantity: TraceQuantity, panel: &Panel, (t, y): Point) -> (String, f64) {
+    let at = |watch: &Watch| quantity.value_in(watch, &watch.state_at(t));
+    let value = |layer: &Layer| match (&layer.marks, layer.role) {
+        (_, Role::Compared) => session.reference.apart().map(|apart| at(&apart.watch)),
+        (Marks::Cloud(points) | Marks::Trace(points), Role::Measured) => {
+            let by_time = |a: &&Point, b: &&Point| (a.0 - t).abs().total_cmp(&(b.0 - t).abs());
+            points.iter().min_by(by_time).map(|point| point.1)
+        }
+        _ => None,
+    };
+    let others = panel.layers.iter().filter_map(|layer| Some((format!("{}: ", layer.name), value(layer)?)));
+    let motion = (String::new(), at(session.player.watch()));
+    let away = |curve: &(String, f64)| (curve.1 - y).abs();
+    others.fold(motion, |best, other| if away(&other) < away(&best) { other } else { best })
 }
 
 /// The picture from `from` to `to` in s over this vertical axis.
-fn chart(session: &Session, quantity: TraceQuantity, (from, to): Point, (low, high): Point) -> Chart {
+fn panel(session: &Session, quantity: TraceQuantity, (from, to): Point, (low, high): Point) -> Panel {
     let (watch, now) = (session.player.watch(), session.player.time());
     // up to the present, or to what is known at the end
     let state = if now <= to { session.player.state() } else { watch.state_at(to) };
-    let samples: Vec<Sample> = thinned(watch, (from, now.min(to)), MAX_POINTS, state).collect();
+    let samples = within(watch, (from, now.min(to)), state);
     let line = |watch: &Watch, samples: &mut dyn Iterator<Item = Sample>| {
-        let points = samples.map(|sample| (sample.t, quantity.value_in(watch, &sample)));
-        Marks::Trace(points.filter(|point| !point.1.is_nan()).collect())
+        Marks::Trace(samples.map(|sample| (sample.t, quantity.value_in(watch, &sample))).collect())
     };
     let measured = measured_trace(session, quantity.measured(), (from, to));
     let (_, unit, _, panel) = quantity.shown();
@@ -199,39 +187,32 @@ fn chart(session: &Session, quantity: TraceQuantity, (from, to): Point, (low, hi
         lines.extend(moved.map(|points| Layer::new(Role::Stop, "stop", Marks::Path(points))));
     }
     lines.extend(measured);
-    for pin in pinned(session, quantity) {
-        let (from, to) = (from.max(pin.since), now.min(to));
-        let samples = &mut thinned(&pin.watch, (from, to), MAX_GHOST_POINTS, pin.watch.state_at(to));
-        let path = line(&pin.watch, samples);
-        lines.push(Layer::new(Role::Pin(pin.place()), &pin.letter.to_string(), path));
+    let has_reference = matches!(quantity, TraceQuantity::Displacement | TraceQuantity::Velocity);
+    if let Some(apart) = session.reference.apart().filter(|_| has_reference) {
+        let (from, to) = (from.max(apart.since), now.min(to));
+        let path = line(&apart.watch, &mut within(&apart.watch, (from, to), apart.watch.state_at(to)));
+        lines.push(Layer::new(Role::Compared, REFERENCE, path));
     }
-    lines.push(Layer::new(role, "", line(watch, &mut samples.iter().copied())));
+    lines.push(Layer::new(role, "", line(watch, &mut samples.clone())));
     let stable = session.shown().mechanism().landscape.equilibria.iter().filter(|point| point.stable);
     let beside = OverTime {
         time: PlotAxis::between(from, to, TIME),
-        rests: (rest_spans(&samples), "at rest on a stop"),
+        rests: (rest_spans(samples), "at rest on a stop"),
         impacts: [Side::Left, Side::Right].map(|side| impact_times(watch, side, (from, now.min(to)))),
         stops,
         wells: stable.map(|well| well.x * 1e3).collect(),
     };
     let up = PlotAxis::between(low, high, &panel.label(unit, has_load));
-    Chart::stack(vec![panel.over_time(up, lines, &beside)], "", Table::new())
+    panel.over_time(up, lines, &beside)
 }
 
-/// The pinned motions whose paths are drawn: of displacement and velocity.
-fn pinned(session: &Session, quantity: TraceQuantity) -> &[Pin] {
-    let is_drawn = matches!(quantity, TraceQuantity::Displacement | TraceQuantity::Velocity);
-    if is_drawn { session.pins.all() } else { &[] }
-}
-
-/// The samples of a motion from before `from` to `to` in s, thinned to about `count` samples, and its `state`
-/// at the end.
-fn thinned(watch: &Watch, (from, to): Point, count: usize, state: Sample) -> impl Iterator<Item = Sample> {
+/// The samples of a motion from before `from` to `to` in s, and its `state` at the end. All of them: what a
+/// line of so many points cannot show is left out where its pixels are known.
+fn within(watch: &Watch, (from, to): Point, state: Sample) -> impl Iterator<Item = Sample> + Clone {
     let samples = watch.samples();
     let first = samples.partition_point(|sample| sample.t < from).saturating_sub(1);
     let last = samples.partition_point(|sample| sample.t <= to).max(first);
-    let stride = ((last - first) / count).max(1);
-    samples.range(first..last).step_by(stride).copied().chain([state])
+    samples.range(first..last).copied().chain([state])
 }
 
 /// Times of the impacts on a stop from `from` to `to` in s.
@@ -273,16 +254,46 @@ fn stop_lines(watch: &Watch, from: f64, to: f64) -> (Point, Option<Vec<Point>>) 
 }
 
 /// Times between which the mass rests on a stop.
-fn rest_spans(samples: &[Sample]) -> Vec<(f64, f64)> {
+fn rest_spans(samples: impl Iterator<Item = Sample> + Clone) -> Vec<(f64, f64)> {
     let mut spans: Vec<(f64, f64)> = Vec::new();
-    for pair in samples.windows(2) {
-        if pair[0].phase == Phase::Free {
-            continue;
-        }
+    for (a, b) in samples.clone().zip(samples.skip(1)).filter(|pair| pair.0.phase != Phase::Free) {
         match spans.last_mut() {
-            Some(last) if last.1 == pair[0].t => last.1 = pair[1].t,
-            _ => spans.push((pair[0].t, pair[1].t)),
+            Some(last) if last.1 == a.t => last.1 = b.t,
+            _ => spans.push((a.t, b.t)),
         }
     }
     spans
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::session::editor::Editor;
+
+    /// The peaks of the power are those of single samples before impacts.
+    #[test]
+    fn a_trace_of_many_samples_leaves_none_out() {
+        let mut session =
+            Session::new(Editor::open("harvester").unwrap(), std::sync::Arc::new(|| ())).unwrap();
+        session.player.speed = 100.0;
+        while session.player.watch().samples().len() < 60_000 {
+            session.player.tick(0.1);
+        }
+        let now = session.player.time();
+        let watch = session.player.watch();
+        for quantity in [TraceQuantity::Velocity, TraceQuantity::LoadPower { per_watt: 1000, unit: "mW" }] {
+            let panel = panel(&session, quantity, (0.0, now), (-10.0, 10.0));
+            let layers = panel.layers.iter();
+            let lines: Vec<&Vec<Point>> = layers
+                .filter_map(|layer| match &layer.marks {
+                    Marks::Trace(points) => Some(points),
+                    _ => None,
+                })
+                .collect();
+            let [line] = lines[..] else { panic!("{}", lines.len()) };
+            let all = watch.samples().iter().map(|sample| (sample.t, quantity.value_in(watch, sample)));
+            assert!(line[..line.len() - 1].iter().copied().eq(all));
+            assert!(line.iter().all(|point| point.1.is_finite()));
+        }
+    }
 }

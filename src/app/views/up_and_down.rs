@@ -1,22 +1,20 @@
 //! View of a walk over one field, up and down: states or means of the motion, and hysteresis.
 
-use eframe::egui::{self, Align2, Rect, RichText, Ui, UiBuilder, vec2};
+use eframe::egui::{self, Align2, Rect, Response, RichText, Ui, UiBuilder, vec2};
 
-use crate::app::session::Session;
 use crate::app::session::explore::WalkQuantity;
 use crate::app::session::map::label;
 use crate::app::ui::widgets::{choices_ui, segment_ui, tell};
 use crate::app::words::fields::name_and_unit;
 use crate::app::words::numbers::{power, three};
-use crate::dynamics::Regime;
 use crate::numeric::short;
-use crate::output::{Chart, Marks, Panel, PlotAxis, Role, suited_unit};
+use crate::output::{Marks, NOT_SETTLED, Panel, PlotAxis, Role, Walk, WalkedRun, suited_unit};
 use crate::scene::{FieldPath, SweepAxis, column_names};
-use interwell_studies::study::{Direction, Table, Visit};
+use interwell_studies::study::{Direction, Visit};
 
 use super::axes::{field_name, field_ui, range_row_ui};
-use super::labels::{haloed, plated};
-use super::pane::pane_ui;
+use super::labels::haloed;
+use super::plot::plot_ui;
 use super::{Span, View, ViewContext};
 
 /// Height in points of the row of choices.
@@ -24,9 +22,6 @@ const TOOLS: f32 = 30.0;
 
 /// Size in points of the sign that runs are still to come.
 const SPINNER: f32 = 14.0;
-
-/// Relative difference up to which two RMS velocities are the same.
-const SAME: f64 = 0.02;
 
 /// The runs of each direction by rising value, coarse ones where the fine ones are still to come.
 type Branches<'a> = [Vec<&'a Visit>; 2];
@@ -165,17 +160,14 @@ fn fine<'a>(parts: &[(usize, Visit)], branches: &Branches<'a>) -> Branches<'a> {
 
 /// The runs of both directions over the field: stroboscopic displacements as points, any other quantity as a
 /// line between fine runs, and the intervals in which the two directions differ.
-fn chart(
-    (branches, fine): (&Branches<'_>, &Branches<'_>),
+fn panel(
+    (branches, walk): (&Branches<'_>, &Walk),
     shown: Shown,
     axes: (PlotAxis, PlotAxis),
     here: Option<f64>,
-) -> Chart {
+) -> Panel {
     let mut panel = Panel::new(axes.0, axes.1);
-    let spans = differing(&compared(fine, panel.y.high - panel.y.low));
-    if !spans.is_empty() {
-        panel.layer(Role::Closer, "hysteresis", Marks::Spans(spans));
-    }
+    panel.layer_if_any(Role::Hysteresis, "hysteresis", Marks::Spans(walk.differing.clone()));
     panel.draw(Role::Drive, Marks::Verticals(here.into_iter().collect()));
     // the dots of the way up lie in the rings of the way down
     for (i, role, name) in [(1, Role::Down, "turned down"), (0, Role::Motion, "turned up")] {
@@ -187,24 +179,24 @@ fn chart(
         };
         let marks = match shown.0 {
             WalkQuantity::Strobes => Marks::Cloud(branch.iter().flat_map(strobed).collect()),
-            // a jump to another kind of motion is a gap
-            _ => {
-                let runs = fine[i].chunk_by(|a, b| (a.summary.crossings > 0) == (b.summary.crossings > 0));
-                let lines = runs.map(|run| run.iter().map(of_visit).chain([(f64::NAN, f64::NAN)]));
-                Marks::Path(lines.flatten().collect())
-            }
+            _ => Marks::Path(walk.line(i)),
         };
         panel.layer(role, name, marks);
         if shown.0 != WalkQuantity::Strobes {
-            panel.draw(role, Marks::Cloud(branch.iter().map(of_visit).collect()));
+            panel.layer(role, name, Marks::Cloud(branch.iter().map(of_visit).collect()));
         }
     }
-    Chart::stack(vec![panel], "", Table::new())
+    if shown.0 != WalkQuantity::Strobes {
+        let transients = branches.iter().flatten().filter(|visit| visit.summary.is_transient());
+        let transients = transients.map(|visit| (visit.value, number(visit, shown))).collect();
+        panel.layer_if_any(Role::Transient, NOT_SETTLED, Marks::Cloud(transients));
+    }
+    panel
 }
 
 fn picture_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axis: &SweepAxis, area: Rect) {
     let style = context.style;
-    let span = context.memory.reach(context.session, None);
+    let span = context.memory.reach(context.session);
     let session = &mut *context.session;
     let walks = &session.explore.walks;
     let quantity = match walks.quantity {
@@ -220,6 +212,8 @@ fn picture_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axis: &SweepAxis, area
     let powers = branches.iter().flatten().map(|visit| load_power(visit));
     let (per_watt, unit) = suited_unit("W", powers);
     let shown = (quantity, per_watt);
+    let run = |visit: &&Visit| WalkedRun::of(visit, number(visit, shown));
+    let walk = Walk::new([0, 1].map(|way| fine[way].iter().map(run).collect()));
     let vertical = match quantity {
         WalkQuantity::Strobes => "displacement once a period (mm)".to_owned(),
         WalkQuantity::RmsVelocity => "RMS velocity (mm/s)".to_owned(),
@@ -236,105 +230,50 @@ fn picture_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axis: &SweepAxis, area
     if !current {
         child.set_opacity(0.4);
     }
-    let chart = chart((&branches, &fine), shown, axes, here);
-    let pane = pane_ui(&mut child, context.memory, View::UpAndDown, &style, area, chart);
-    let ball = here.zip(live).and_then(|point| pane.place(0, point));
-    let frame = pane.frame(0).unwrap_or(area);
+    let panel = panel((&branches, &walk), shown, axes, here);
+    let plotted = plot_ui(&mut child, context.memory, View::UpAndDown, &style, area, &panel);
+    let ball = here.zip(live).map(|point| plotted.place(point));
+    let frame = plotted.frame();
     if let Some(at) = ball.filter(|at| frame.contains(*at)) {
         child.painter().circle(at, 4.5, style.mass(), egui::Stroke::new(1.5, style.mass_edge()));
     }
     let name = format!("{vertical} over {}, turned up and down", field_name(&axis.field));
-    tell(&pane.response, egui::Role::Canvas, &name);
-    let write = |at: egui::Pos2, align: Align2, text: &str, colour: egui::Color32| {
-        haloed(ui.painter(), &style, (at, align), text, (style.small(), colour));
-    };
-    let pointed = pane.hovered().and_then(|at| pane.values_at(0, at));
-    let differs_nowhere = || compared(&fine, high - low).iter().all(|(_, differs)| !differs);
-    let is_same = is_whole && current && !fine[0].is_empty() && differs_nowhere();
+    tell(&plotted.response, egui::Role::Canvas, &name);
+    let is_same = is_whole && current && !fine[0].is_empty() && walk.is_same;
     // at the run that is read
     let nearest = |value: f64| {
         let distance = |visit: &&&Visit| (visit.value - value).abs();
         let visit = branches[0].iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
         visit.map_or(value.clamp(axis.from, axis.to), |visit| visit.value)
     };
-    let pointed = pointed.map(|values| nearest(values.0));
-    if let Some(at) = pointed.and_then(|value| pane.place(0, (value, low))) {
-        child.painter().vline(at.x, frame.y_range(), egui::Stroke::new(1.0, style.faint()));
+    let pointed = plotted.pointed().map(|values| nearest(values.0));
+    if let Some(value) = pointed {
+        let x = plotted.place((value, low)).x;
+        child.painter().vline(x, frame.y_range(), egui::Stroke::new(1.0, style.faint()));
     }
     let text = match pointed {
         Some(value) => Some(reading(&branches, value, quantity, name_and_unit(&axis.field).1)),
         None => is_same.then(|| "the same motion both ways".to_owned()),
     };
     if let Some(text) = text {
-        let size = ui.painter().layout_no_wrap(text.clone(), style.small(), style.ink()).size();
-        let corners = [
-            (frame.right_top() + vec2(-4.0, 4.0), Align2::RIGHT_TOP),
-            (frame.right_bottom() + vec2(-4.0, -4.0), Align2::RIGHT_BOTTOM),
-            (frame.left_top() + vec2(4.0, 4.0), Align2::LEFT_TOP),
-            (frame.left_bottom() + vec2(4.0, -4.0), Align2::LEFT_BOTTOM),
-        ];
-        let shown = branches.iter().flatten().flat_map(|visit| match quantity {
-            WalkQuantity::Strobes => strobes(visit).iter().map(|x| (visit.value, x * 1e3)).collect(),
-            _ => vec![(visit.value, number(visit, shown))],
-        });
-        let shown: Vec<egui::Pos2> = shown.filter_map(|point| pane.place(0, point)).collect();
-        let hidden = |corner: &&(egui::Pos2, Align2)| {
-            let place = corner.1.anchor_size(corner.0, size).expand(4.0);
-            shown.iter().filter(|at| place.contains(**at)).count()
-        };
-        if let Some(corner) = corners.iter().min_by_key(hidden) {
-            plated(ui.painter(), &style, *corner, &text, (style.small(), style.ink()));
-        }
+        plotted.write(ui, &style, &text);
     }
     if !is_whole && area.height() > 220.0 {
         let is_coarse = [0, 1].iter().any(|i| fine[*i].len() < branches[*i].len());
         let text = if is_coarse { "in coarse steps so far" } else { "not complete yet" };
-        write(area.right_bottom() - vec2(8.0, 3.0), Align2::RIGHT_BOTTOM, text, style.faint());
+        let at = (area.right_bottom() - vec2(8.0, 3.0), Align2::RIGHT_BOTTOM);
+        haloed(ui.painter(), &style, at, text, (style.small(), style.faint()));
     }
-    if !ui.input(|input| input.modifiers.shift) {
-        drag(session, &pane.response, |at| pane.values_at(0, at).map_or(axis.from, |values| values.0));
+    // to the value that is clicked, or to which the line at the scene is dragged
+    let session = &mut *context.session;
+    let handle = here.map(|value| plotted.handle(ui, "scene", value));
+    let held = handle.as_ref().filter(|handle| handle.dragged()).and_then(Response::interact_pointer_pos);
+    if let Some((value, _)) = held.map(|at| plotted.values(at)).or(plotted.clicked) {
+        session.drag_along_walk(value);
     }
-}
-
-/// Takes the scene to the value under the pointer, by a click or a drag.
-fn drag(session: &mut Session, response: &egui::Response, value: impl Fn(egui::Pos2) -> f64) {
-    let is_pressed = response.dragged_by(egui::PointerButton::Primary) || response.clicked();
-    if let Some(at) = response.interact_pointer_pos().filter(|_| is_pressed) {
-        session.drag_along_walk(value(at));
-    }
-    if response.drag_stopped() || response.clicked() {
+    if plotted.clicked.is_some() || handle.is_some_and(|handle| handle.drag_stopped()) {
         session.end_gesture();
     }
-}
-
-/// The values that both directions have, and whether the two motions there differ.
-fn compared([up, down]: &Branches<'_>, height: f64) -> Vec<(f64, bool)> {
-    let of_value = |visit: &&Visit| {
-        let other = down.iter().find(|other| other.value == visit.value)?;
-        Some((visit.value, differ(visit, other, height)))
-    };
-    up.iter().filter_map(of_value).collect()
-}
-
-/// Intervals of the axis over which the two directions differ: from the first to the last of several values
-/// in a row. At a single value irregular motions may differ by chance.
-fn differing(compared: &[(f64, bool)]) -> Vec<(f64, f64)> {
-    let rows = compared.chunk_by(|a, b| a.1 && b.1);
-    rows.filter(|row| row.len() > 1).map(|row| (row[0].0, row[row.len() - 1].0)).collect()
-}
-
-/// Whether two runs at one value are different motions: one is interwell and the other never crosses the
-/// barrier, one is periodic and the other irregular with steady averages, or both are periodic and their RMS
-/// velocities differ. Mirror images count as the same motion.
-fn differ(a: &Visit, b: &Visit, height: f64) -> bool {
-    let (x, y) = (rms(a), rms(b));
-    let rms_differs = (x - y).abs() > SAME * x.max(y).max(1e-6 * height);
-    let repeats = |visit: &Visit| visit.summary.period.is_some();
-    let crosses = |visit: &Visit| visit.summary.regime == Regime::Interwell;
-    let stays = |visit: &Visit| visit.summary.crossings == 0;
-    let is_irregular = |visit: &Visit| visit.summary.settled == Some(false) && !visit.summary.is_transient();
-    let are_of_two_kinds = |a: &Visit, b: &Visit| crosses(a) && stays(b) || repeats(a) && is_irregular(b);
-    are_of_two_kinds(a, b) || are_of_two_kinds(b, a) || repeats(a) && repeats(b) && rms_differs
 }
 
 /// The stroboscopic displacements of a run that are drawn: those of one period if it repeats.
@@ -369,19 +308,6 @@ mod tests {
     use crate::Simulation;
     use crate::dynamics::Request;
 
-    fn visit(preset: &str) -> Visit {
-        let summary = Simulation::preset(preset).unwrap().run(&Request::default()).summary;
-        Visit { direction: Direction::Up, value: 1.0, summary, strobes: Vec::new() }
-    }
-
-    #[test]
-    fn ways_that_differ_at_a_single_value_are_not_hysteresis() {
-        let flags = [false, true, false, true, true, true, false, true];
-        let compared: Vec<(f64, bool)> = (0_u8..).map(f64::from).zip(flags).collect();
-        assert_eq!(differing(&compared), [(3.0, 5.0)]);
-        assert_eq!(differing(&compared[..3]), []);
-    }
-
     #[test]
     fn a_jump_is_a_gap_in_the_line() {
         let simulation = |amplitude: f64| {
@@ -394,24 +320,15 @@ mod tests {
         let branches: Branches<'_> = [visits.iter().collect(), Vec::new()];
         let axis = || PlotAxis::between(0.0, 1.0, "");
         let shown = (WalkQuantity::RmsVelocity, 1.0);
-        let chart = chart((&branches, &branches), shown, (axis(), axis()), None);
-        let layers = chart.panels().flat_map(|panel| &panel.layers);
-        let paths = layers.filter_map(|layer| match &layer.marks {
+        let run = |visit: &Visit| WalkedRun::of(visit, number(visit, shown));
+        let walk = Walk::new([visits.iter().map(run).collect(), Vec::new()]);
+        let panel = panel((&branches, &walk), shown, (axis(), axis()), None);
+        let paths = panel.layers.iter().filter_map(|layer| match &layer.marks {
             Marks::Path(points) if !points.is_empty() => Some(points.iter().map(|at| at.0).collect()),
             _ => None,
         });
         let [line]: [Vec<f64>; 1] = paths.collect::<Vec<_>>().try_into().unwrap();
         assert_eq!([&line[..2], &line[3..5]], [&[0.5, 0.6], &[0.9, 1.0]]);
         assert!(line[2].is_nan() && line[5].is_nan() && line.len() == 6);
-    }
-
-    #[test]
-    fn a_chaotic_motion_differs_from_a_periodic_one() {
-        let (periodic, chaotic) = (visit("paper"), visit("duffing-chaos"));
-        assert!(periodic.summary.period.is_some(), "{:?}", periodic.summary);
-        assert!(chaotic.summary.settled == Some(false), "{:?}", chaotic.summary);
-        assert!(!chaotic.summary.is_transient(), "{:?}", chaotic.summary);
-        assert!(differ(&periodic, &chaotic, 1.0) && differ(&chaotic, &periodic, 1.0));
-        assert!(!differ(&periodic, &periodic, 1.0) && !differ(&chaotic, &chaotic, 1.0));
     }
 }

@@ -11,11 +11,14 @@ use super::trace::{TraceQuantity, trace_ui};
 /// The views in the order of the menu: variant, name, least width and height in points, the function that
 /// draws it, and description of content and input.
 macro_rules! views {
-    ($($variant:ident $name:literal ($width:literal, $height:literal) $draw:expr, $about:literal;)*) => {
+    ($(
+        $(#[$attribute:meta])*
+        $variant:ident $name:literal ($width:literal, $height:literal) $draw:expr, $about:literal;
+    )*) => {
         /// A view of the window.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
         pub enum View {
-            $(#[doc = $about] $variant,)*
+            $($(#[$attribute])* #[doc = $about] $variant,)*
         }
 
         impl View {
@@ -54,22 +57,15 @@ views! {
         "The mass rides on the potential like a ball on a tray that the push tips. Drag the ball or a \
          stop.";
     Displacement "Displacement" (0.0, 0.0) |ui, context| trace_ui(ui, TraceQuantity::Displacement, context),
-        "Where the mass is, seen from the base, over time. The wheel zooms in time; with Shift, or over \
-         the numbers of the axis, in displacement. A double click resets it.";
-    BeforeNow "Before / now" (0.0, 0.0) super::compare::before_now_ui,
-        "What your last change did: the state before it, and the one after it.";
+        "Where the mass is, seen from the base, over time. A click goes to a time. The wheel zooms in time; \
+         with Shift, or over the numbers of the axis, in displacement. A double click resets both.";
+    #[serde(alias = "BeforeNow", alias = "SideBySide", alias = "Distance")]
     Compare "Compare" (0.0, 0.0) super::compare::compare_ui,
-        "The present motion beside those that are pinned: what each settles to, and by how much it differs. \
-         A pinned motion continues in step with the drive; a click takes its scene back.";
+        "The scene as it was opened, or pinned (K), and as it is now: what each settles to, and by how much \
+         they differ. The former goes on, dashed, in step with the drive; a click takes its scene back.";
     Measured "Measured" (0.0, 0.0) super::measured::measured_ui,
         "Measured data over the computed motion or force: shift and stretch them in time, and read by how \
          much the two differ.";
-    SideBySide "Side by side" (240.0, 180.0) super::side_by_side::side_by_side_ui,
-        "The present motion beside a pinned one, each in a drawing with its well, at the same time \
-         of the same shaking. The pinned one is not moved by hand.";
-    Distance "Distance" (160.0, 100.0) super::distance::distance_ui,
-        "How far each pinned motion is from the present one, over time. A twin begins a micrometre beside \
-         the mass: chaos drives the two apart exponentially, a motion that is stable brings them together.";
     PhasePortrait "Phase portrait" (60.0, 80.0) |ui, context| states_ui(ui, context, false),
         "Velocity over displacement: a moving mass runs clockwise. An impact is a jump of the velocity. \
          The separatrix needs just the energy to stand on the barrier. Click to let the motion go on from \
@@ -86,25 +82,25 @@ views! {
         "Where the energy came from, where it went, and how the present energy compares with the barrier.";
     Velocity "Velocity" (0.0, 0.0) |ui, context| trace_ui(ui, TraceQuantity::Velocity, context),
         "Velocity of the mass, seen from the base, over time. An impact reverses it and reduces \
-         it. The wheel zooms in time, a double click resets it.";
+         it. A click goes to a time; the wheel zooms in time, a double click resets that.";
     BaseAcceleration "Base acceleration" (0.0, 0.0)
         |ui, context| trace_ui(ui, TraceQuantity::BaseAcceleration, context),
         "Acceleration of the base over time. The mass feels the opposite of it, as one does in a bus that \
-         brakes. The wheel zooms in time, a double click resets it.";
+         brakes. A click goes to a time; the wheel zooms in time, a double click resets that.";
     Power "Power" (0.0, 0.0) super::power::power_ui,
         "The power into the load of a transducer over time. Without a transducer the work of the base on the \
-         mass; below zero the mass gives energy back to the base. The wheel zooms in time, a double click \
-         resets it.";
+         mass; below zero the mass gives energy back to the base. A click goes to a time; the wheel zooms \
+         in time, a double click resets that.";
     Events "Events" (160.0, 90.0) super::events::events_ui,
         "What happened when: impacts, rests, releases and crossings, with phase of the shaking, velocity \
          before and after, and energy lost. Click a row to look at that instant.";
     Map "Map" (0.0, 0.0) super::map::map_ui,
         "The result of every combination of two settings, each from one run. Click to take the \
-         scene there.";
+         scene there; a part that is zoomed in becomes a map of its own.";
     UpAndDown "Up and down" (200.0, 140.0) super::up_and_down::up_and_down_ui,
         "One setting, turned up and then down slowly: each run starts in the last state of the one before. \
-         Where the two directions differ, the motion depends on its history: hysteresis. Drag along it to \
-         take the scene there.";
+         Where the two directions differ, the motion depends on its history: hysteresis. Click to take \
+         the scene there, or drag the line at it.";
     Basins "Basins" (100.0, 100.0) super::basins::basins_ui,
         "The motion that every start leads to, by colour. Each start is a \
          displacement and a velocity at time 0 of the shaking. Click to begin there.";
@@ -128,6 +124,16 @@ pub(super) enum Axis {
     Across(View),
     /// The vertical axis of one view.
     Up(View),
+    /// The axes of what a digit costs.
+    CostAcross,
+    CostUp,
+}
+
+impl Axis {
+    /// The units of its pictures in one of its own: mm in m.
+    pub(super) fn per_own(self) -> f64 {
+        if matches!(self, Self::Place | Self::Reach) { 1e3 } else { 1.0 }
+    }
 }
 
 impl From<LessonView> for View {
@@ -136,7 +142,7 @@ impl From<LessonView> for View {
             LessonView::Mechanism => Self::Mechanism,
             LessonView::Well => Self::Well,
             LessonView::Displacement => Self::Displacement,
-            LessonView::BeforeNow => Self::BeforeNow,
+            LessonView::Compare => Self::Compare,
             LessonView::PhasePortrait => Self::PhasePortrait,
             LessonView::ForceCurve => Self::ForceCurve,
             LessonView::Energy => Self::Energy,
@@ -169,15 +175,18 @@ impl View {
         matches!(self, Self::Map | Self::UpAndDown | Self::Basins)
     }
 
-    /// Whether its upper row is a legend, for which the row of its card may have room.
-    pub fn has_legend(self) -> bool {
-        self.is_along_x() || self.is_over_time() && self != Self::Power
-    }
-
     /// Whether its horizontal axis is time, so that it shows the cursors.
     pub fn is_over_time(self) -> bool {
-        use View::{BaseAcceleration, Displacement, Distance, Power, Velocity};
-        matches!(self, Displacement | Velocity | BaseAcceleration | Power | Distance)
+        matches!(self, Self::Displacement | Self::Velocity | Self::BaseAcceleration | Self::Power)
+    }
+
+    /// What a click on its plot does, if anything.
+    pub(super) fn action(self) -> Option<&'static str> {
+        match self {
+            Self::UpAndDown | Self::Map => Some("Take the scene here"),
+            Self::PhasePortrait | Self::Section | Self::Basins => Some("Start here"),
+            _ => self.is_over_time().then_some("Go to this time"),
+        }
     }
 
     /// Whether its horizontal axis is the displacement.
@@ -191,8 +200,7 @@ impl View {
             Self::Displacement | Self::Velocity | Self::BaseAcceleration | Self::Power => Axis::Time,
             Self::Well | Self::ForceCurve => Axis::Place,
             Self::PhasePortrait | Self::Section | Self::Basins => Axis::Reach,
-            Self::Distance | Self::UpAndDown | Self::Spectrum | Self::Accuracy => Axis::Across(self),
-            Self::SideBySide => return Self::Well.axes(),
+            Self::Map | Self::UpAndDown | Self::Spectrum | Self::Accuracy => Axis::Across(self),
             _ => return None,
         };
         Some([across, Axis::Up(self)])

@@ -13,6 +13,9 @@ pub(super) const LONGEST: f64 = 10.0;
 /// Smallest length of a chosen axis, as a multiple of the automatic length.
 pub(super) const SHORTEST: f64 = 1e-3;
 
+/// Share of an axis that a choice of the whole may lack by rounding.
+const WHOLE: f64 = 1e-9;
+
 /// The ends of an axis in its unit: displacement in m, time in s.
 pub type Ends = (f64, f64);
 
@@ -66,6 +69,9 @@ impl Axes {
     /// Returns the axes of a view to their automatic ends.
     pub(super) fn free(&mut self, view: View) {
         view.axes().into_iter().flatten().for_each(|axis| _ = self.chosen.remove(&axis));
+        if view == View::Accuracy {
+            self.chosen.retain(|axis, _| !matches!(axis, Axis::CostAcross | Axis::CostUp));
+        }
     }
 
     /// The choices that remain when another scene is opened.
@@ -77,7 +83,8 @@ impl Axes {
     pub(super) fn choose(&mut self, axis: Axis, ends: Ends) {
         let Some((automatic, _)) = self.shown.get(&axis) else { return };
         let held = self.chosen.get(&axis).is_some_and(|chosen| chosen.held);
-        let whole = ends.0 <= automatic.0 && ends.1 >= automatic.1;
+        let spare = WHOLE * (automatic.1 - automatic.0);
+        let whole = ends.0 <= automatic.0 + spare && ends.1 >= automatic.1 - spare;
         let (length, shortest) = (ends.1 - ends.0, SHORTEST * (automatic.1 - automatic.0));
         if whole && !held && axis != Axis::Time {
             // the whole automatic range counts as no choice
@@ -92,14 +99,6 @@ impl Axes {
         let Some((low, high)) = self.shown(axis).filter(|_| by > 0.0 && by.is_finite()) else { return };
         let middle = low + about * (high - low);
         self.choose(axis, (middle - (middle - low) * by, middle + (high - middle) * by));
-    }
-
-    /// Moves both ends by a share of the axis.
-    pub(super) fn pan(&mut self, axis: Axis, share: f64) {
-        let Some((low, high)) = self.shown(axis) else { return };
-        let by = share * (high - low);
-        let held = self.chosen.get(&axis).is_some_and(|chosen| chosen.held);
-        self.chosen.insert(axis, Chosen { ends: (low + by, high + by), held });
     }
 }
 

@@ -3,7 +3,7 @@
 
 use eframe::egui::{self, Align2, FontId, Rect, Response, Sense, Ui, UiBuilder, pos2, vec2};
 
-use crate::app::ui::style::{BODY, COMPACT_BELOW, CONTROL, CORNER, LEAST, SMALL, strong_family};
+use crate::app::ui::style::{BODY, CONTROL, CORNER, LEAST, SMALL, strong_family};
 use crate::app::ui::widgets::{Icon, tool_ui};
 use crate::app::views::{LegendRow, View, ViewContext, view_ui};
 
@@ -17,10 +17,6 @@ const MOST_TOOLS: u8 = 3;
 /// Width in points that the caption of the mechanism needs beside the titles; with less room it is in a row
 /// below.
 const CAPTION_ROOM: f32 = 220.0;
-/// Width in points that the choices of a map need beside the titles, and the width of a card below which they
-/// would need more than two rows.
-const CHOICES_ROOM: f32 = 300.0;
-const FEW_ROWS: f32 = 520.0;
 /// Distance in points of a view from the edge of its card, so that the corners of the card stay round.
 const INSET: f32 = 2.0;
 
@@ -46,21 +42,13 @@ pub fn card_ui(ui: &mut Ui, titles: &[Title], view: View, context: &mut ViewCont
     ui.painter().rect_filled(rect, CORNER, style.ground());
     let row = rect.with_max_y(rect.top() + ROW);
     let has_axes = context.memory.are_axes_held(view).is_some();
-    let count = 1 + u8::from(has_figure(ui, context)) + u8::from(has_axes);
+    let count = 1 + u8::from(!context.filled) + u8::from(has_axes);
     let tools = f32::from(count) * TOOL + 4.0;
     // the letters stay whichever of the views is in front
     let font = title_font(ui, titles, row.width() - f32::from(MOST_TOOLS) * TOOL - 4.0 - MARGIN);
     let width: f32 = titles.iter().map(|title| width_of(ui, title, &font)).sum();
     let free = LegendRow { left: row.left() + MARGIN + width, right: row.right() - tools };
-    let is_compact = ui.ctx().content_rect().width() < COMPACT_BELOW;
-    let needed = match view {
-        View::Map if is_compact || rect.width() < FEW_ROWS => CHOICES_ROOM,
-        View::Mechanism => CAPTION_ROOM,
-        // a legend that is too wide has rows of its own
-        _ if view.has_legend() => f32::NEG_INFINITY,
-        _ => f32::INFINITY,
-    };
-    let shares = free.right - free.left >= needed;
+    let shares = view == View::Mechanism && free.right - free.left >= CAPTION_ROOM;
     let top = if shares { rect.top() + 0.5 * (ROW - LegendRow::HEIGHT) } else { row.bottom() };
     let inner = Rect::from_min_max(pos2(rect.left() + INSET, top), rect.max - vec2(INSET, INSET + 2.0));
     let mut info = egui::UiStackInfo::default();
@@ -109,12 +97,6 @@ fn width_of(ui: &Ui, title: &Title, font: &FontId) -> f32 {
     ui.painter().layout_no_wrap(name, font.clone(), egui::Color32::PLACEHOLDER).size().x + 1.5 * MARGIN
 }
 
-/// Whether the card has the tool for a figure, which a view over the whole window or in a compact window
-/// lacks.
-fn has_figure(ui: &Ui, context: &ViewContext<'_>) -> bool {
-    !context.filled && ui.ctx().content_rect().width() >= COMPACT_BELOW
-}
-
 /// The tools at the right of the row. Returns whether the tool that fills the window, or shows all views, was
 /// clicked.
 fn tools_ui(ui: &mut Ui, card: Rect, row: Rect, view: View, context: &mut ViewContext<'_>) -> bool {
@@ -132,7 +114,7 @@ fn tools_ui(ui: &mut Ui, card: Rect, row: Rect, view: View, context: &mut ViewCo
                     tool_ui(ui, Icon::Fill, TOOL, &name, "This view over the whole window (Z)", shown)
                 }
             };
-            if has_figure(ui, context) {
+            if !context.filled {
                 let name = format!("figure of {}", view.name());
                 let hover = "Save a figure of this view (Ctrl+E)";
                 if tool_ui(ui, Icon::Figure, TOOL, &name, hover, shown).clicked() {

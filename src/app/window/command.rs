@@ -2,7 +2,6 @@
 
 use eframe::egui::{Key, KeyboardShortcut, Modifiers};
 
-use crate::app::session::pins::PinKind;
 use crate::app::ui::settings::Setting;
 use crate::app::views::View;
 use crate::dynamics::EventKind;
@@ -58,8 +57,7 @@ pub enum Command {
     Magnify(i8),
     Toggle(Setting),
     Grab,
-    Pin(PinKind),
-    Unpin(char),
+    Pin,
     Ways,
     BestStops,
     OpenLesson(&'static str),
@@ -232,8 +230,8 @@ pub(super) static MENUS: [(&str, &[Part]); 6] = [
         Hidden(plain(Key::O), C::Zoom { upwards: false, closer: false }, Joined),
         Hidden(shift(Key::I), C::Zoom { upwards: true, closer: true }, No),
         Hidden(shift(Key::O), C::Zoom { upwards: true, closer: false }, No),
-        Row("Views", "wheel, drag", "zoom the horizontal axis, with Shift the vertical one, with Ctrl both"),
-        Row("Views", "Shift and drag", "move the axes; with the right button, zoom into a box"),
+        Row("Views", "wheel", "zoom; over an axis or with Shift one axis, over time the time"),
+        Row("Views", "drag", "move the axes; with the right button, zoom into a box"),
         Line,
         Item("Cover the results", plain(Key::C), C::Cover,
             As("Views", "cover all results until C again: predict first")),
@@ -262,15 +260,8 @@ pub(super) static MENUS: [(&str, &[Part]); 6] = [
         Item("To the next crossing", plain(Key::X), C::GoTo(EventKind::Crossing), Joined),
         Item("To the end of the run", plain(Key::End), C::RunToEnd, As("Time", "to the end of the run")),
         Line,
-        Item("Pin this motion", plain(Key::K), C::Pin(PinKind::Motion),
-            As("Time", "pin this motion: it continues, dashed, beside the present one")),
-        Item("Compare with the stops switched", None, C::Pin(PinKind::OtherStops), No),
-        Item("Compare with a twin, from the start", None, C::Pin(PinKind::Twin), No),
-        Part::Menu("Unpin", &[
-            Item("Unpin A", None, C::Unpin('A'), No),
-            Item("Unpin B", None, C::Unpin('B'), No),
-            Item("Unpin C", None, C::Unpin('C'), No),
-        ]),
+        Item("Pin this motion", plain(Key::K), C::Pin,
+            As("Time", "compare with this motion: it continues, dashed, beside the present one")),
         Line,
         Part::Speeds,
         Row("Time", "1 to 7", "speed, from 1/1000 of real time to 100 times"),

@@ -40,12 +40,10 @@ pub struct Figures {
     before: [String; 2],
     /// Why the last figure was not saved.
     pub problem: Option<String>,
-    /// Where the mass was when the dialog was opened, in m, and that of the pinned motion beside it.
-    x: [f64; 2],
+    /// Where the mass was when the dialog was opened, in m.
+    x: f64,
     /// The base's acceleration then, in m/s^2.
     base_accel: f64,
-    /// The times in s that the view of distances showed then.
-    seen: Option<(f64, f64)>,
     had_focus: bool,
     job: Background<FigureOrder, WriteResult>,
 }
@@ -85,12 +83,8 @@ impl Figures {
         if !self.is_open() {
             self.before = [self.width.clone(), self.font.clone()];
         }
-        let since = session.pins.all().iter().map(|pin| pin.since).fold(f64::INFINITY, f64::min);
-        self.seen = round_times((since, session.player.time())).filter(|times| times.0 < times.1);
-        let pin = session.pins.all().get(memory.beside_place(session));
-        let there = pin.map(|pin| pin.watch.state_at(session.player.time()).x);
         let state = session.player.state();
-        (self.x, self.base_accel) = ([state.x, there.unwrap_or_default()], state.base_accel);
+        (self.x, self.base_accel) = (state.x, state.base_accel);
         (self.view, self.problem, self.had_focus) = (Some(view), None, false);
     }
 
@@ -122,18 +116,16 @@ impl Figures {
                 Ok(Subject::Run(self.typed_times()?, shown))
             }
             View::Section => Ok(Subject::Section),
-            View::Mechanism => Ok(Subject::mechanism(self.x[0])),
-            View::SideBySide => Subject::side_by_side(session, memory.beside_place(session), self.x),
+            View::Mechanism => Ok(Subject::mechanism(self.x)),
             View::Measured => Subject::measured(session),
-            View::Well => Ok(Subject::well(self.x[0], self.base_accel)),
+            View::Well => Ok(Subject::well(self.x, self.base_accel)),
             View::ForceCurve => Ok(Subject::Curve),
             View::Map => Subject::map(session, memory.map_look.surface, memory.map_look.cuts),
             View::UpAndDown => Subject::walks(session),
             View::Basins => Subject::basins(session),
             View::Spectrum => Ok(Subject::spectrum(session)),
             View::Accuracy => Ok(Subject::accuracy(session)),
-            View::Distance => Subject::distance(session, self.seen),
-            View::Compare | View::BeforeNow => Subject::compare(session, view == View::BeforeNow),
+            View::Compare => Subject::compare(session),
             _ => {
                 Err("There is no figure of a table: the button Copy as CSV in the view has its rows."
                     .to_owned())
@@ -171,20 +163,18 @@ impl Figures {
             View::Section => "The states of the run of the scene from its start.",
             View::Well => "The potential with the mass and the push as they were when this dialog opened.",
             View::ForceCurve => "Force and potential over displacement.",
-            View::SideBySide => "Both mechanisms with the mass where it was when this dialog opened.",
             View::Mechanism => "The mechanism with the mass where it was when this dialog opened.",
             View::Accuracy => "All runs are computed again; times of the processor differ from run to run.",
             View::Measured => "The record over the run of the scene from its start, or over its force.",
-            View::Distance => "The runs of the scenes, each from its start.",
-            View::Compare | View::BeforeNow => {
+            View::Compare => {
                 "The scenes from rest, all under the shaking of the present one. This takes a while."
             }
             View::Map | View::UpAndDown | View::Basins => "All runs are computed again. This takes a while.",
             _ => "",
         }
         .to_owned();
-        if !panels(view).is_empty() && !session.pins.all().is_empty() {
-            words += " Pinned motions are not drawn.";
+        if !panels(view).is_empty() && session.reference.apart().is_some() {
+            words += " The reference is not drawn.";
         }
         let data = path.with_extension("csv");
         if files::exists(path) || self.data && files::exists(&data) {

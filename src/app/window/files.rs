@@ -286,7 +286,7 @@ impl Window {
         self.columns = Some(MeasuredDialog::new(path, &self.wake));
     }
 
-    /// Draws a record over the view of its quantity, with a card beside Before / now.
+    /// Draws a record over the view of its quantity, with a card beside Compare.
     pub fn overlay(&mut self, record: MeasuredRecord) {
         let view = match record.values.quantity {
             Quantity::Velocity => View::Velocity,
@@ -296,7 +296,7 @@ impl Window {
         };
         self.session.measured.lay(record);
         self.filled = None;
-        self.tiling.show_beside(View::Measured, View::BeforeNow);
+        self.tiling.show_beside(View::Measured, View::Compare);
         // the view is in front if it shares tabs with the card
         self.tiling.show(view, true);
     }

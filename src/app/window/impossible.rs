@@ -6,6 +6,7 @@ use crate::dynamics::EventKind;
 
 use super::Window;
 use super::command::Command;
+use super::layouts::Room;
 use super::wanted::Wanted;
 
 impl Window {
@@ -16,7 +17,7 @@ impl Window {
             return Some("First choose what you expect");
         }
         let (session, in_lesson) = (&self.session, self.lesson().is_some());
-        let is_compact = self.tiling.room().is_compact();
+        let is_narrow = self.tiling.room() == Room::Narrow;
         let has_whole_map = session.map.map().is_some_and(Map::is_whole);
         let has_stops = session.model().stop_positions() != (None, None);
         let has_barrier = session.model().mechanism().landscape.barrier.is_some();
@@ -25,17 +26,17 @@ impl Window {
                 (true, "A lesson has its own views: leave the lesson first")
             }
             // a pinned motion may be the answer to a lesson's question, as the ways to cross may
-            C::Pin(_) => (in_lesson, "In a lesson no motion is pinned: leave the lesson first"),
+            C::Pin => (in_lesson, "In a lesson no motion is pinned: leave the lesson first"),
             C::Ways => (in_lesson, "There is no hint here: a task has one, until it is done"),
             C::Choose(Wanted::Measured) => (in_lesson, "Leave the lesson first"),
             C::BestStops if in_lesson => (true, "The search for the best stops is off in a lesson"),
             C::BestStops => (!session.model().is_shaken(), "Nothing shakes the mass: shake it first."),
             C::LeaveLesson | C::LessonAnew | C::LecturerNotes => (!in_lesson, "No lesson is open"),
             C::ArrangeOwn => (
-                is_compact && self.custom.is_none(),
+                is_narrow && self.custom.is_none(),
                 "You have no arrangement yet: a wider window can keep one",
             ),
-            C::KeepOwn => (is_compact, "A window of this size shows its views as tabs: widen it first"),
+            C::KeepOwn => (is_narrow, "A window of this size shows its views as tabs: widen it first"),
             C::NextTab if self.filled.is_some() => (true, "One view fills the window: Z shows all of them"),
             C::NextTab => (!self.tiling.has_tabs(), "No two views share a place"),
             C::HoldAxes | C::FreeAxes | C::Zoom { .. } => {
@@ -48,7 +49,6 @@ impl Window {
             }
             C::RemoveMeasured => (session.measured.over.is_none(), "No measured data is shown"),
             C::Choose(Wanted::Map) => (!has_whole_map, "There is no whole map yet: show the Map first"),
-            C::Unpin(letter) => (session.pins.get(*letter).is_none(), "No motion is pinned as this letter"),
             C::CopyMapCommand => (session.map.map().is_none(), "There is no map yet: show the Map first"),
             C::PasteScene => (cfg!(target_arch = "wasm32"), "A page cannot paste by itself: press Ctrl+V"),
             C::Undo => (!session.editor.can_undo(), "There is nothing to undo"),

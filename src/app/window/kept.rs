@@ -6,8 +6,10 @@
 
 use eframe::egui::{Context, Vec2, ViewportCommand, vec2};
 use eframe::{Storage, get_value, set_value};
+use egui_tiles::{Tile, TileId, Tree};
 
 use crate::app::ui::style::{FILLED_ZOOM, PROJECTOR_ZOOM, projector_zoom};
+use crate::app::views::View;
 
 use super::Window;
 
@@ -27,7 +29,7 @@ impl Window {
             self.recent = get_value(storage, RECENT).unwrap_or_default();
             self.restore_size(get_value(storage, SIZE));
         }
-        self.custom = get_value(storage, CUSTOM);
+        self.custom = get_value(storage, CUSTOM).map(compared_once);
         self.set_records(get_value(storage, LESSONS).unwrap_or_default());
         self.restore_notes_place(get_value(storage, NOTES));
     }
@@ -58,6 +60,17 @@ impl Window {
     pub fn size(&self) -> Option<[f32; 2]> {
         self.window_size.size.map(|size| [size.x, size.y])
     }
+}
+
+/// Leaves *Compare* one tile: in an arrangement of an earlier version it has those of views that are gone.
+fn compared_once(mut tree: Tree<View>) -> Tree<View> {
+    let is_compare = |(id, tile): (&TileId, &Tile<View>)| (*tile == Tile::Pane(View::Compare)).then_some(*id);
+    let mut tiles: Vec<TileId> = tree.tiles.iter().filter_map(is_compare).collect();
+    tiles.sort_by_key(|id| (!tree.is_visible(*id), id.0));
+    for id in tiles.into_iter().skip(1) {
+        tree.remove_recursively(id);
+    }
+    tree
 }
 
 /// Number of frames after a change of the zoom from which on reported sizes are those at the new zoom.

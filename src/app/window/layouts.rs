@@ -2,49 +2,32 @@
 
 use std::collections::HashMap;
 
-use eframe::egui::{self, Stroke, Ui, Vec2, WidgetText};
+use eframe::egui::{self, Stroke, Ui, WidgetText};
 use egui_tiles::{Container, ResizeState, SimplificationOptions, Tabs, Tile, TileId, Tree, UiResponse};
 
-use crate::app::ui::style::{COMPACT_BELOW, GAP, LARGE_FROM, NARROW_BELOW};
+use crate::app::ui::style::{GAP, NARROW_BELOW};
 use crate::app::views::{View, ViewContext};
 use crate::scene::Layout;
 
 use super::card::{Answer, Title, card_ui};
 
-use trees::{compact_lesson_tree, compact_tree, lesson_tree, tabs_tree, views_of, wide_tree};
+use trees::{lesson_tree, narrow_tree, views_of, wide_tree};
 
 mod trees;
 
 /// Size class of the window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Room {
-    /// As on a phone: two groups of tabs, one above the other.
+    /// The views are two groups of tabs, and the controls open by a button.
     Narrow,
-    /// As on a projector: two groups of tabs.
-    Compact,
-    /// Four tiles, or six.
+    /// The views have tiles beside the controls.
     Wide,
-    /// One more tile than a wide window.
-    Large,
 }
 
 impl Room {
-    /// The size class of a window of `size` in points.
-    pub fn of(size: Vec2) -> Self {
-        if size.x < NARROW_BELOW {
-            Self::Narrow
-        } else if size.x < COMPACT_BELOW {
-            Self::Compact
-        } else if size.x > LARGE_FROM.x && size.y > LARGE_FROM.y {
-            Self::Large
-        } else {
-            Self::Wide
-        }
-    }
-
-    /// Whether views share their places as tabs, and the controls are a row.
-    pub fn is_compact(self) -> bool {
-        matches!(self, Self::Narrow | Self::Compact)
+    /// The size class of a window of this width in points.
+    pub fn of(width: f32) -> Self {
+        if width < NARROW_BELOW { Self::Narrow } else { Self::Wide }
     }
 }
 
@@ -67,17 +50,14 @@ pub struct Tiling {
 impl Tiling {
     pub fn new(layout: Layout, room: Room) -> Self {
         let tree = match room {
-            Room::Narrow | Room::Compact if matches!(layout, Layout::Map | Layout::Explore) => {
-                tabs_tree(&views_of(layout))
-            }
-            Room::Narrow | Room::Compact => compact_tree(&views_of(layout), room),
-            Room::Wide | Room::Large => wide_tree(layout, room == Room::Large),
+            Room::Narrow => narrow_tree(&views_of(layout)),
+            Room::Wide => wide_tree(layout),
         };
         Self { tree, room, hides_surveys: false }
     }
 
     pub fn of_lesson(views: &[View], room: Room) -> Self {
-        let tree = if room.is_compact() { compact_lesson_tree(views, room) } else { lesson_tree(views) };
+        let tree = if room == Room::Narrow { narrow_tree(views) } else { lesson_tree(views) };
         Self { tree, room, hides_surveys: false }
     }
 
@@ -98,21 +78,21 @@ impl Tiling {
         }
     }
 
-    /// The tiles of the custom arrangement as they were saved; in a compact window, the same views as tabs.
+    /// The tiles of the custom arrangement as they were saved; in a narrow window, the same views as tabs.
     pub fn custom(saved: &Tree<View>, room: Room) -> Self {
-        let tree = if room.is_compact() {
+        let tree = if room == Room::Narrow {
             let is_shown = |view: &View| saved.tiles.find_pane(view).is_some_and(|id| saved.is_visible(id));
             let views: Vec<View> = View::ALL.into_iter().filter(is_shown).collect();
-            compact_tree(&views, room)
+            narrow_tree(&views)
         } else {
             saved.clone()
         };
         Self { tree, room, hides_surveys: false }
     }
 
-    /// The present tiles, to be saved; `None` in a compact window.
+    /// The present tiles, to be saved; `None` in a narrow window.
     pub fn tree_to_save(&self) -> Option<&Tree<View>> {
-        (!self.room.is_compact()).then_some(&self.tree)
+        (self.room == Room::Wide).then_some(&self.tree)
     }
 
     /// The size class of the window that it was made for.
@@ -138,7 +118,7 @@ impl Tiling {
         self.tree.tiles.find_pane(&view).is_some_and(|id| self.tree.is_visible(id))
     }
 
-    /// Shows or hides a view. A view without a tile joins those of its kind, in a compact window as a tab.
+    /// Shows or hides a view. A view without a tile joins those of its kind, in a narrow window as a tab.
     pub fn show(&mut self, view: View, shown: bool) {
         match self.tree.tiles.find_pane(&view) {
             Some(id) => self.tree.set_visible(id, shown),
@@ -151,7 +131,7 @@ impl Tiling {
             }
             None => return,
         }
-        if shown && self.room.is_compact() {
+        if shown && self.room == Room::Narrow {
             self.tree.make_active(|_, tile| matches!(tile, Tile::Pane(pane) if *pane == view));
         }
     }
@@ -210,16 +190,16 @@ impl Tiling {
         }
     }
 
-    /// The container of the views of the same kind, along the displacement or not. In a compact window the
+    /// The container of the views of the same kind, along the displacement or not. In a narrow window the
     /// mechanism is among the others.
     fn place_for(&self, view: View) -> Option<TileId> {
         let tiles = &self.tree.tiles;
-        let apart = |view: &View| self.room.is_compact() && *view == View::Mechanism;
+        let apart = |view: &View| self.room == Room::Narrow && *view == View::Mechanism;
         let is_along = |view: &View| view.is_along_x() && !apart(view);
         let alike = |other: &&View| is_along(other) == is_along(&view);
         let neighbour = View::ALL.iter().filter(alike).find_map(|other| tiles.find_pane(other))?;
         let mut place = tiles.parent_of(neighbour)?;
-        while !self.room.is_compact()
+        while self.room == Room::Wide
             && let Some(Container::Tabs(_)) = tiles.get_container(place)
         {
             place = tiles.parent_of(place)?;

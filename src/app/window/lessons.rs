@@ -40,8 +40,6 @@ pub(super) struct Lessons {
     pub urged: bool,
     /// The step that a key that goes on shall pass at its second press, while the notice about it is shown.
     asked: Option<usize>,
-    /// The action of the buttons beside the status line in this frame.
-    pub chosen: Option<LessonAction>,
     /// Rectangles of the controls in this frame.
     pub controls: Vec<(String, Rect)>,
 }
@@ -400,9 +398,7 @@ impl Window {
             Ok(mut session) => {
                 // what was computed of the same question is not computed again
                 session.keep_ranges_of(&self.session);
-                let chosen = session.explore.walks.chosen.take();
-                session.explore = std::mem::take(&mut self.session.explore);
-                session.explore.walks.chosen = chosen;
+                session.keep_studies_of(&mut self.session);
                 (self.session, self.memory) = (session, self.memory.for_another_step());
             }
             Err(error) => {

@@ -8,15 +8,15 @@ use eframe::CreationContext;
 use eframe::egui::{self, CentralPanel, Panel, RichText, Ui};
 
 use crate::app::panels::hint::guide_ui;
-use crate::app::panels::status_line::{self, Beside, covered_ui, has_column, status_ui};
+use crate::app::panels::status_line::{self, covered_ui, status_ui};
 use crate::app::panels::{controls, notes, transport};
 use crate::app::session::lesson::OpenLesson;
 use crate::app::session::lesson::Records;
 use crate::app::ui::settings::Settings;
 pub use crate::app::ui::style::install as prepare;
-use crate::app::ui::style::{CONTROL, GAP, Style};
+use crate::app::ui::style::{GAP, Style};
 use crate::app::ui::widgets::bare;
-use crate::app::views::{Drawn, ViewContext};
+use crate::app::views::ViewContext;
 use crate::app::words::Guide;
 use crate::app::words::lesson::numbered;
 use crate::questions::Error;
@@ -25,19 +25,16 @@ use crate::scene::lesson::LESSONS;
 use card::{Title, card_ui};
 use layouts::{Arrangement, Room};
 
-/// Width in points of the column of controls that opens beside the views.
-const MORE: f32 = 276.0;
-
-/// Height in points of the menu bar, and in a compact window.
-const MENU: (f32, f32) = (28.0, 26.0);
-/// Height in points of the bar with the time, and in a compact window.
-const TRANSPORT: (f32, f32) = (56.0, 36.0);
-/// Space in points above and below the bars with the time and the controls, and in a compact window.
-const AROUND_BAR: (i8, i8) = (4, 2);
+/// Height in points of the menu bar.
+const MENU: f32 = 26.0;
+/// Height in points of the bar with the time.
+const TRANSPORT: f32 = 48.0;
+/// Space in points above and below the bars with the time and the controls.
+const AROUND_BAR: i8 = 2;
 /// Space around the cards; the bars above and below them and the controls have margins themselves.
 const MARGIN: egui::Margin = egui::Margin { left: GAP as i8, right: GAP as i8, top: 0, bottom: 0 };
 /// Height in points of the guide line, for any text.
-const GUIDE: f32 = 29.0;
+const GUIDE: f32 = 20.0;
 
 mod card;
 mod choice;
@@ -101,9 +98,9 @@ impl Window {
         if let Some(reached) = reached.filter(|_| !self.motion_is_covered()) {
             self.messages.report_reached(reached, self.session.player.time());
         }
-        self.session.follow_pins();
+        self.session.follow_reference();
         let present = self.session.player.watch().time();
-        if self.session.player.is_playing() || self.session.pins.are_behind(present) {
+        if self.session.player.is_playing() || self.session.reference.is_behind(present) {
             self.pace.ask(ctx);
         }
     }
@@ -115,34 +112,30 @@ impl Window {
             self.keys(&ctx);
         }
         let style = Style::of(&ctx, self.settings.projector);
-        let room = Room::of(ctx.content_rect().size());
-        let compact = room.is_compact();
+        let room = Room::of(ctx.content_rect().width());
         if room != self.tiling.room() {
             self.arrange(room);
         }
-        let mut commands = self.bars_ui(ui, &style, compact);
+        let mut commands = self.bars_ui(ui, &style);
         self.follow_lesson(&ctx);
         if self.filled.is_some() {
             self.lesson_words_ui(ui, &style);
         } else if self.lessons.open.is_some() {
-            match compact {
-                true => self.lesson_strip_ui(ui, &style, !has_column(ui)),
-                false => self.lesson_column_ui(ui, &style),
-            }
+            self.lesson_column_ui(ui, &style);
         } else {
-            commands.extend(self.controls_ui(ui, compact));
-            self.session.follow_best();
-            if !compact || self.hint.has_line {
-                let panel = bare(Panel::top("guide"), 12, 0).exact_size(GUIDE);
-                let line = panel.show(ui, |ui| self.guide_line_ui(ui, &style));
-                commands.extend(line.inner);
+            if room == Room::Wide || self.column {
+                commands.extend(self.controls_ui(ui));
             }
+            self.session.follow_best();
+            let panel = bare(Panel::top("guide"), 12, 0).exact_size(GUIDE);
+            let line = panel.show(ui, |ui| self.guide_line_ui(ui, &style));
+            commands.extend(line.inner);
         }
         let cards = egui::Frame::new().inner_margin(MARGIN);
         CentralPanel::no_frame().frame(cards).show(ui, |ui| self.views_ui(ui, style));
         self.pointing_ui(&ctx, &style);
         self.memory.grab = false;
-        commands.extend(self.memory.pin.take().map(Command::Pin));
+        commands.extend(std::mem::take(&mut self.memory.pin).then_some(Command::Pin));
         commands.extend(self.memory.figure.take().map(|view| Command::Figure(Some(view))));
         commands.extend(
             std::mem::take(&mut self.memory.open_measured).then_some(Command::Choose(Wanted::Measured)),
@@ -177,17 +170,15 @@ impl Window {
 
     /// Menu bar, status line and transport bar; a view over the window leaves only the transport bar. Returns
     /// the commands that were chosen.
-    fn bars_ui(&mut self, ui: &mut Ui, style: &Style, compact: bool) -> Vec<Command> {
-        let around = if compact { AROUND_BAR.1 } else { AROUND_BAR.0 };
+    fn bars_ui(&mut self, ui: &mut Ui, style: &Style) -> Vec<Command> {
         let covered = self.motion_is_covered();
         let mut chosen = Vec::new();
         if self.filled.is_none() {
-            chosen = self.head_ui(ui, style, compact);
+            chosen = self.head_ui(ui, style);
         } else if !covered {
             self.announcer.say(ui, &self.session.sentence());
         }
-        let height = if compact { TRANSPORT.1 } else { TRANSPORT.0 };
-        bare(Panel::bottom("transport"), 12, around).exact_size(height).show(ui, |ui| {
+        bare(Panel::bottom("transport"), 12, AROUND_BAR).exact_size(TRANSPORT).show(ui, |ui| {
             if self.lesson_covers() {
                 ui.disable();
             }
@@ -198,71 +189,31 @@ impl Window {
         chosen
     }
 
-    /// Menu bar and status line, beside which a compact window has the buttons of an open lesson. Returns the
-    /// commands that were chosen.
-    fn head_ui(&mut self, ui: &mut Ui, style: &Style, compact: bool) -> Vec<Command> {
-        let (height, around) = if compact { (MENU.1, 1) } else { (MENU.0, 2) };
-        let bar = bare(Panel::top("menu"), 8, around).exact_size(height);
+    /// Menu bar and status line. Returns the commands that were chosen.
+    fn head_ui(&mut self, ui: &mut Ui, style: &Style) -> Vec<Command> {
+        let bar = bare(Panel::top("menu"), 8, 1).exact_size(MENU);
         let bar = bar.show(ui, |ui| menu::Menus { window: self, chosen: Vec::new() }.ui(ui));
         let covered = self.motion_is_covered();
         let status = bare(Panel::top("status"), 12, 2).exact_size(status_line::height(ui));
-        let leads = compact && has_column(ui) && self.lessons.open.is_some();
-        // a compact window has no guide line of the scene: what was asked for stands below the sentence
-        let asked = self.ways || self.session.best.is_shown();
-        let guides = asked && compact && !covered && !self.hint.has_line && self.lessons.open.is_none();
-        let chosen = status.show(ui, |ui| {
-            if guides {
-                ui.spacing_mut().item_spacing.y = 0.0;
-                let row = egui::vec2(ui.available_width(), 0.5 * ui.available_height());
-                let layout = egui::Layout::left_to_right(egui::Align::Center);
-                ui.allocate_ui_with_layout(row, layout, |ui| {
-                    status_ui(ui, &mut self.session, &mut self.announcer, style, Beside::Guide);
-                });
-                return ui.allocate_ui_with_layout(row, layout, |ui| self.guide_line_ui(ui, style)).inner;
-            }
+        status.show(ui, |ui| {
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                if leads {
-                    self.lesson_navigation_ui(ui, style);
+                if self.tiling.room() == Room::Narrow && self.lessons.open.is_none() {
+                    ui.toggle_value(&mut self.column, "Controls");
                 }
                 ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| match covered {
                     true => {
                         let lesson = self.lessons.open.as_ref().filter(|_| !self.covered);
                         covered_ui(ui, lesson.map(OpenLesson::votes));
                     }
-                    false => {
-                        let beside = if leads { Beside::Buttons } else { Beside::Accuracy };
-                        status_ui(ui, &mut self.session, &mut self.announcer, style, beside);
-                    }
+                    false => status_ui(ui, &mut self.session, &mut self.announcer, style),
                 });
             });
-            None
         });
-        bar.inner.into_iter().chain(chosen.inner).collect()
+        bar.inner
     }
 
-    /// The controls: in a compact window a row, else a column with the notes. Returns the chosen command.
-    fn controls_ui(&mut self, ui: &mut Ui, compact: bool) -> Option<Command> {
-        if compact {
-            let is_narrow = self.tiling.room() == Room::Narrow;
-            let row = Panel::top(if is_narrow { "controls rows" } else { "controls row" });
-            bare(row, 12, AROUND_BAR.1).show(ui, |ui| {
-                if is_narrow {
-                    return controls::rows_ui(ui, &mut self.session, &mut self.more);
-                }
-                ui.set_height(CONTROL);
-                controls::row_ui(ui, &mut self.session, &mut self.more);
-            });
-            if self.more {
-                let panel = if is_narrow { Panel::bottom("more") } else { Panel::right("more") };
-                let panel = bare(panel, 12, AROUND_BAR.1).resizable(false).exact_size(MORE);
-                panel.show(ui, |ui| {
-                    let width = if is_narrow { ui.available_width() - 100.0 } else { 150.0 };
-                    let session = &mut self.session;
-                    egui::ScrollArea::vertical().show(ui, |ui| controls::beside_ui(ui, session, width));
-                });
-            }
-            return None;
-        }
+    /// The column of controls with the notes. Returns the chosen command.
+    fn controls_ui(&mut self, ui: &mut Ui) -> Option<Command> {
         let width = if ui.ctx().content_rect().width() > 1600.0 { 300.0 } else { 250.0 };
         let column = bare(Panel::left("controls"), 12, 10).resizable(false).exact_size(width);
         let column = column.show(ui, |ui| {
@@ -326,7 +277,7 @@ impl Window {
 
     fn views_ui(&mut self, ui: &mut Ui, style: Style) {
         // a key may have advanced the motion
-        self.session.follow_pins();
+        self.session.follow_reference();
         self.pose_question();
         let (span, cover) = (self.memory.span(&self.session), self.cover());
         let mut context = ViewContext {
@@ -337,7 +288,6 @@ impl Window {
             reduce_motion: self.settings.reduce_motion,
             cover,
             filled: self.filled.is_some(),
-            drawn: Drawn::WithGhosts,
         };
         let Some(view) = self.filled else {
             self.tiling.ui(ui, &mut context, &mut self.filled);

@@ -7,7 +7,6 @@ use crate::app::panels::hint;
 use crate::app::panels::transport::EVENT_AHEAD;
 use crate::app::session::lesson::answers_text;
 use crate::app::session::measured::MeasuredData;
-use crate::app::session::pins::PinKind;
 use crate::app::session::player::{Goal, SPEEDS};
 use crate::app::views::{Memory, View};
 use crate::dynamics::EventKind;
@@ -17,7 +16,7 @@ use crate::system::page_address;
 use super::Window;
 use super::command::{Command, UNDO};
 use super::keys;
-use super::layouts::{Arrangement, Room};
+use super::layouts::Arrangement;
 use super::leave::Next;
 
 /// Number of characteristic times of the motion within which an event is searched.
@@ -103,15 +102,7 @@ impl Window {
                 self.custom = self.tiling.tree_to_save().cloned().or(self.custom.take());
                 self.arrangement = Arrangement::Custom;
             }
-            Command::Show(view, shown) => {
-                self.tiling.show(view, shown);
-                // two mechanisms and two wells need the room of all tiles
-                let others = View::ALL.into_iter().any(|other| other != view && self.tiling.shows(other));
-                let is_large = view == View::SideBySide && self.tiling.room() != Room::Large;
-                if shown && is_large && others {
-                    self.filled = Some(view);
-                }
-            }
+            Command::Show(view, shown) => self.tiling.show(view, shown),
             Command::NextTab => self.tiling.next_tab(self.memory.hovered),
             Command::Cursors => self.switch_cursors(),
             Command::HoldAxes => self.hold_axes(),
@@ -130,8 +121,7 @@ impl Window {
             }
             Command::Toggle(setting) => *self.settings.of(setting) ^= true,
             Command::Grab => self.memory.grab = true,
-            Command::Pin(kind) => self.pin(kind),
-            Command::Unpin(letter) => self.session.pins.unpin(letter),
+            Command::Pin => self.pin(),
             Command::Ways => self.ways = !self.ways,
             Command::BestStops => self.find_best_stops(),
             Command::OpenLesson(name) => self.open_lesson(name),
@@ -243,35 +233,9 @@ impl Window {
         }
     }
 
-    fn pin(&mut self, kind: PinKind) {
-        match self.session.pin(kind) {
-            Ok(letter) => {
-                let what = match kind {
-                    PinKind::Motion => "this motion. Now change something",
-                    PinKind::OtherStops => "this motion from here on with its stops switched",
-                    PinKind::Twin => "a twin that begins a micrometre beside the mass",
-                };
-                self.messages.notify(format!("Pinned as {letter}: {what}"));
-                self.show_pins();
-            }
-            Err(why) => self.messages.notify(why),
-        }
-    }
-
-    /// Shows the view of the newest pin; where views share their places, behind what is in front.
-    pub(super) fn show_pins(&mut self) {
-        let in_front = View::ALL.into_iter().filter(|view| self.tiling.place_of(*view).is_some());
-        let in_front: Vec<View> = in_front.filter(|_| self.tiling.room().is_compact()).collect();
-        self.tiling.show_beside(self.view_of_pins(), View::BeforeNow);
-        in_front.into_iter().for_each(|view| self.tiling.show_in_front(view));
-    }
-
-    /// The view that opens with the newest pin.
-    fn view_of_pins(&self) -> View {
-        match self.session.pins.all().last().map(|pin| pin.kind) {
-            Some(PinKind::Twin) => View::Distance,
-            _ => View::Compare,
-        }
+    fn pin(&mut self) {
+        let done = "Pinned: later changes are compared with this motion";
+        self.messages.notify(self.session.pin().map_or_else(|why| why, |()| done.to_owned()));
     }
 
     /// Goes to the next event of a kind, as far ahead as the run length or, if that is more, `TIMES_AHEAD`.

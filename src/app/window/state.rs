@@ -42,6 +42,8 @@ pub struct Window {
     pub custom: Option<Tree<View>>,
     pub memory: Memory,
     pub(super) more: bool,
+    /// Whether a narrow window shows the column of controls.
+    pub(super) column: bool,
     pub(super) filled: Option<View>,
     pub(super) covered: bool,
     pub(super) messages: Messages,
@@ -128,6 +130,7 @@ impl Window {
             custom: None,
             memory: Memory::default(),
             more: false,
+            column: false,
             filled: None,
             covered: false,
             messages: Messages::default(),
@@ -221,10 +224,5 @@ impl Window {
             (Arrangement::Custom, None) => Tiling::new(Layout::Look, room),
             (Arrangement::Layout(layout), _) => Tiling::new(layout, room),
         };
-        // pinned motions keep their view
-        let has_pins = !self.session.pins.all().is_empty();
-        if has_pins && self.arrangement != Arrangement::Custom && self.tiling.shows(View::BeforeNow) {
-            self.show_pins();
-        }
     }
 }

@@ -5,7 +5,7 @@ use crate::app::words::numbers::{power, three};
 use crate::app::words::status::speed;
 use crate::numeric::{decimals, short};
 use crate::questions::{BestDesign, Optimum};
-use interwell_studies::study::{Basins, SummaryField};
+use interwell_studies::study::{Basins, Seeds, SummaryField};
 
 /// A value of the maximised column, with its unit.
 fn value_of(column: &str, value: f64) -> String {
@@ -56,15 +56,16 @@ pub fn answer_guide(
     let from = inward.map_or(low, |margin| rounded(at - margin, f64::ceil));
     let to = outward.map_or(high, |margin| rounded(at + margin, f64::floor));
     let border = if design.at_border[0] { " It is an end of the range that was searched." } else { "" };
+    let seed = if design.seeds == Seeds::Alone { " With another seed of the noise both differ." } else { "" };
     let text = match design.later {
         // its margins say nothing then
         Some(later) => {
             let later = if later.is_nan() { "none".to_owned() } else { value_of(column, later) };
             let open = "of a motion that has not repeated; followed for twice as long it has";
-            format!("{name} {value}, {open} {later}.{border}")
+            format!("{name} {value}, {open} {later}.{border}{seed}")
         }
         None => format!(
-            "{name} {value}; at least nine tenths of it from ±{} to ±{} mm.{border}",
+            "{name} {value}; at least nine tenths of it from ±{} to ±{} mm.{border}{seed}",
             three(from),
             three(to)
         ),

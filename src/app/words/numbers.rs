@@ -114,16 +114,22 @@ pub fn grams(g: f64) -> String {
     significant(g, 3)
 }
 
-/// A threshold beside the present amplitude: three significant digits, or as many more as tell the two apart.
+/// A threshold beside the present amplitude, rounded up: three significant digits, or as many more as tell
+/// the two apart.
 pub fn grams_beside(g: f64, present: f64) -> String {
     let differs = |digits: &usize| g == present || significant(g, *digits) != significant(present, *digits);
-    significant(g, (3..7).find(differs).unwrap_or(3))
+    up(g, (3..7).find(differs).unwrap_or(3))
 }
 
-/// A threshold, rounded up to three significant digits, so that the amplitude in the text is enough.
+/// A threshold, rounded up to three significant digits.
 pub fn grams_up(g: f64) -> String {
-    let unit = elementary::powf(10.0, elementary::log10(g).floor() - 2.0);
-    grams(((g / unit - 1e-6).ceil() * unit).max(g))
+    up(g, 3)
+}
+
+/// A threshold, rounded up to so many significant digits, so that the amplitude in the text is enough.
+fn up(g: f64, digits: usize) -> String {
+    let unit = elementary::powf(10.0, elementary::log10(g).floor() - (digits as f64 - 1.0));
+    significant(((g / unit - 1e-6).ceil() * unit).max(g), digits)
 }
 
 /// A difference of two thresholds: two significant digits.

@@ -9,7 +9,6 @@ use crate::scene::{Moments, Transducer};
 /// What a part of a drawing is and does.
 pub fn part_words(part: DrawnPart, of: &Assembly) -> String {
     match part {
-        DrawnPart::Bulge => of.bulge().unwrap_or_default(),
         DrawnPart::Spring => {
             let away = of.stiffness < 0.0;
             let effect = if away { "pushes the mass away from there" } else { "draws the mass there" };

@@ -33,7 +33,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         job.shown = blocks.table(&sweep.empty_table().only(&prepared.columns))?;
         let lacking = prepared.lacking_columns().join(" and ");
         if !lacking.is_empty() {
-            let lost = "the picture has no dots where motions may be transients";
+            let lost = "the picture marks neither transients nor hysteresis";
             common.say(&format!("warning: {lost}: the rows that were there have no {lacking}"));
         }
     }
@@ -80,12 +80,12 @@ impl Prepared<'_> {
             file.put(&header)?;
             return Ok(Some((Rows::Compared(file), Tally::default())));
         }
-        if !is_regular(&self.out) {
+        let sink = if is_regular(&self.out) { outputs.take(Output::DATA) } else { None };
+        let Some(sink) = sink else {
             outputs.write(Output::DATA, &header)?;
             return Ok(Some((Rows::Stream, Tally::default())));
-        }
-        outputs.leave(Output::DATA);
-        Ok(self.open_blocks(&header)?.map(|(blocks, tally)| (Rows::Blocks(Box::new(blocks)), tally)))
+        };
+        Ok(self.open_blocks(&header, sink)?.map(|(blocks, tally)| (Rows::Blocks(Box::new(blocks)), tally)))
     }
 
     /// Says that nothing is left to do; an error if a picture was requested.

@@ -161,10 +161,10 @@ impl<'a> Prepared<'a> {
         Ok(Self { options, document, out, sweep, slice, mechanism, columns, plan, picture, quantity, view })
     }
 
-    /// The file with the rows of the manifest that is given as the scene.
+    /// The file with the rows of the manifest that is given as the scene: beside it, whatever it names.
     pub fn data(&self) -> PathBuf {
         let name = self.document.swept.as_ref().map_or("", |swept| &swept.data);
-        Path::new(&self.options.scene).with_file_name(name)
+        Path::new(&self.options.scene).with_file_name(Path::new(name).file_name().unwrap_or_default())
     }
 }
 

@@ -3,7 +3,7 @@
 use std::io::{BufReader, Read};
 use std::path::Path;
 
-use interwell::output::{csv_table, manifest_path, plan_differences, shown_columns};
+use interwell::output::{Sink, csv_table, manifest_path, plan_differences, shown_columns};
 use interwell::questions::Table;
 use interwell::system::checksum::file_checksum;
 use interwell::system::clock::WallClock;
@@ -74,12 +74,12 @@ pub struct Blocks {
 }
 
 impl Prepared<'_> {
-    /// Begins the file of the rows, whose first line is `header`, or continues it. Returns it with the tally
-    /// of its rows, or `None` if it is complete.
-    pub fn open_blocks(&self, header: &str) -> Result<Option<(Blocks, Tally)>, Failure> {
+    /// Begins the file of the rows, on which `sink` is open and whose first line is `header`, or continues
+    /// it. Returns it with the tally of its rows, or `None` if it is complete.
+    pub fn open_blocks(&self, header: &str, sink: Sink) -> Result<Option<(Blocks, Tally)>, Failure> {
         let Self { out, slice, .. } = self;
         let &Arguments { resume, force, .. } = self.options;
-        let opened = Opened::new(out).map_err(refused)?;
+        let opened = Opened::new(out, sink).map_err(refused)?;
         let part = opened.part().display().to_string();
         let head = json!({ "plan": self.plan, "shard": slice.shard().to_string() });
         let is_of_another = |file: String, existing: &Value, made: &str| {
@@ -166,7 +166,6 @@ fn plan_with_shard(head: &Value) -> Value {
 
 fn refused(error: PartError) -> Failure {
     let remedy = match &error {
-        PartError::Busy(_) => return Failure::Wrong(error.into()),
         PartError::Refused { .. } => return Failure::Failed(error.into()),
         PartError::Damaged { rows: 0, .. } => "--force starts anew".to_owned(),
         PartError::Damaged { rows, .. } => format!(
@@ -271,6 +270,10 @@ impl Compared {
         let same = pairs().take_while(|(found, expected)| found == expected).count();
         let (found, expected) = pairs().nth(same).unwrap_or_default();
         let line = self.line + same as u64;
+        if line == 1 {
+            // a manifest from elsewhere may name a file that is no table: it is not quoted
+            return Err(self.differs("its first line is not the header of these rows".to_owned()));
+        }
         Err(self.differs(format!("line {line} is `{expected}` there and `{found}` now")))
     }
 

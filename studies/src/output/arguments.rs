@@ -44,7 +44,9 @@ enum Recorded {
 fn recorded(option: &str) -> Recorded {
     match option {
         "out" | "jobs" | "quiet" | "plot-data" | "events" | "summary" | "landscape" | "shapes"
-        | "contact" | "attractors" | "comparison" | "strict" | "resume" | "force" => Recorded::Nowhere,
+        | "contact" | "attractors" | "comparison" | "strict" | "resume" | "force" | "runs-to" => {
+            Recorded::Nowhere
+        }
         "set" | "tolerance" | "shard" | "check" | "measured" | "shift-s" | "offset-mm" | "time-scale"
         | "inset" | "plot" | "shapes-plot" | "mechanism-plot" | "well-plot" | "base-accel-g"
         | "contact-plot" | "plot-size" | "plot-width-mm" | "plot-height-mm" | "font-pt" | "dpi"

@@ -7,7 +7,7 @@ use std::fmt::Write;
 use std::ops::Range;
 use std::str::FromStr;
 
-use crate::numeric::push_number;
+use crate::numeric::{one_line, push_number};
 use crate::study::{Cell, Direction, SUMMARY_FIELDS, Table, Values};
 
 /// The header row of `table`.
@@ -37,7 +37,7 @@ pub fn rows(table: &Table, range: Range<usize>) -> String {
                     }
                 }
                 Values::Words(values) => text.push_str(values[row]),
-                Values::Names(values) => text.push_str(&values[row]),
+                Values::Names(values) => text.push_str(&one_line(&values[row])),
             }
         }
         text.push('\n');

@@ -6,6 +6,7 @@ use serde_json::{Value, json};
 use super::manifest::{Provenance, scene_value, seed};
 use crate::dynamics::{Outcome, Summary};
 use crate::mechanics::{Landscape, Mechanism};
+use crate::numeric::is_obeyed;
 use crate::scene::{Scene, Timing};
 use crate::study::{Identified, InJson, Read, SUMMARY_FIELDS, SummaryField, small_amplitude_frequency};
 
@@ -129,7 +130,15 @@ fn without_negative_zeros(value: Value) -> Value {
 }
 
 /// Formats JSON. serde_json writes numbers in their shortest form, and stores those that are not finite as
-/// `null`.
+/// `null`. Each character that a terminal would obey is an escape.
 pub(super) fn pretty(value: &Value) -> String {
-    format!("{value:#}\n")
+    let mut text = String::new();
+    for c in format!("{value:#}\n").chars() {
+        match is_obeyed(c) && c != '\n' {
+            // such characters stand in strings alone, and each has four digits
+            true => text += &format!("\\u{:04x}", u32::from(c)),
+            false => text.push(c),
+        }
+    }
+    text
 }

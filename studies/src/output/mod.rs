@@ -95,4 +95,4 @@ pub use plot::*;
 pub use text::aligned;
 
 pub use crate::numeric::push_number;
-pub use crate::system::{OpenError, Sink, is_regular, same_target, write_file};
+pub use crate::system::{OpenError, Sink, is_regular, write_file};

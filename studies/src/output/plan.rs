@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value, json};
 
-use crate::numeric::push_number;
+use crate::numeric::{one_line, push_number};
 use crate::scene::{Axis, Document, PROGRAM};
 use crate::study::Sweep;
 use crate::system::checksum::checksum;
@@ -92,8 +92,8 @@ fn short(value: &Value) -> String {
         other => other.to_string(),
     };
     match text.char_indices().nth(MAX_LENGTH) {
-        Some((end, _)) => format!("{}..", &text[..end]),
-        None => text,
+        Some((end, _)) => one_line(&text[..end]) + "..",
+        None => one_line(&text),
     }
 }
 

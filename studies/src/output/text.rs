@@ -1,5 +1,6 @@
 //! Tables as text for a terminal, with aligned columns and short numbers.
 
+use crate::numeric::one_line;
 use crate::study::{Table, Values};
 
 /// A number with about three digits; a missing one is empty.
@@ -31,7 +32,7 @@ pub fn aligned(table: &Table) -> String {
                 (false, values.iter().map(text).collect())
             }
             Values::Words(values) => (true, values.iter().map(|word| (*word).to_owned()).collect()),
-            Values::Names(values) => (true, values.clone()),
+            Values::Names(values) => (true, values.iter().map(|name| one_line(name)).collect()),
         };
         let cells = [vec![column.label()], words].concat();
         let width = cells.iter().map(|cell| cell.chars().count()).max().unwrap_or(0);

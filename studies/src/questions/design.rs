@@ -1,11 +1,14 @@
 //! The question about the best design for an environment.
 
+use std::path::PathBuf;
+
 use super::grid::{check_until, drive_alone};
+use super::kept::Kept;
 use super::{Error, Progress, Simulation, sweep};
 use crate::scene::{Axis, Document, FieldPath, RunSettings, Transducer, find_name, is_whole, read_number};
 use crate::study::{
-    BestDesign, BestQuestion, Constraint, DesignRange, Environment, INTERVALS, MOST_FIELDS, NoBest, Optimum,
-    Read, SUMMARY_FIELDS, SummaryField, Table, Variation, best, names, place, quantity, scan_runs,
+    BestDesign, BestQuestion, Constraint, DesignRange, Environment, INTERVALS, MOST_FIELDS, Memory, NoBest,
+    Optimum, Read, SUMMARY_FIELDS, SummaryField, Table, Tolerance, best, names, place, quantity,
 };
 use crate::system::files::{canonical, is_file};
 
@@ -56,12 +59,16 @@ pub struct Best {
     /// Environments in place of the scene's own excitation: another scene, a record (CSV), or values of a
     /// field, `FIELD=a,b,c`. A suffix `*WEIGHT` sets the weight of one, which is 1 by default.
     pub environment: Vec<String>,
-    /// Fields with manufacturing tolerances, `FIELD=+-1%` or `FIELD=+-0.05`.
+    /// Fields with manufacturing tolerances, the least and the largest deviation from the value:
+    /// `FIELD=-1%:1%` or `FIELD=-0.05:0.02`. Every deviation between them is as likely.
     pub vary: Vec<String>,
     /// Seed of the random samples of these fields.
     pub seed: u64,
     /// Each run continues until its motion repeats, at most up to this time in s.
     pub until_settled: Option<f64>,
+    /// File (CSV) to which the results of each run are added as soon as it has ended. Those that it has of
+    /// the same question, from a search that was interrupted, are taken from there.
+    pub runs_to: Option<PathBuf>,
 }
 
 impl Default for Best {
@@ -74,6 +81,7 @@ impl Default for Best {
             vary: Vec::new(),
             seed: 1,
             until_settled: None,
+            runs_to: None,
         }
     }
 }
@@ -87,6 +95,8 @@ pub struct BestAnswer {
     pub question: BestQuestion,
     /// The best design.
     pub design: BestDesign,
+    /// Why results of runs could not be written to [`Best::runs_to`], if some could not.
+    pub unkept: Option<String>,
 }
 
 impl BestAnswer {
@@ -97,7 +107,8 @@ impl BestAnswer {
 
     /// The result in sentences.
     pub fn words(&self) -> Vec<String> {
-        self.design.words(&self.question)
+        let unkept = self.unkept.iter().map(|problem| format!("not all runs could be kept: {problem}"));
+        self.design.words(&self.question).into_iter().chain(unkept).collect()
     }
 }
 
@@ -124,14 +135,21 @@ impl Best {
         preview: &mut (dyn FnMut(&Optimum, String) + Send),
     ) -> Result<BestAnswer, Error> {
         let (fields, maximised) = (names(&question), question.maximise.name);
-        let found = progress.shared(scan_runs(&question), |pool, task| {
-            best(&question, pool, task, &mut |design| {
+        let wrong = |path: &PathBuf, problem| Error::argument("runs_to", path.display(), problem);
+        let open = |path: &PathBuf| Kept::open(path, &question).map_err(|problem| wrong(path, problem));
+        let kept = self.runs_to.as_ref().map(open).transpose()?;
+        let found = progress.planned(|pool, task, plan| {
+            let memory = kept.as_ref().map(|kept| kept as &dyn Memory);
+            best(&question, pool, task, memory, plan, &mut |design| {
                 let (at, value) = (place(&fields, &design.at), quantity(design.value, maximised));
                 preview(design, format!("{at}: {maximised} {value}"));
             })
         })?;
         match found {
-            Ok(design) => Ok(BestAnswer { question, design }),
+            Ok(design) => {
+                let unkept = kept.and_then(|kept| kept.unwritten());
+                Ok(BestAnswer { question, design, unkept })
+            }
             Err(why) => Err(self.no_best(why, &question, document)),
         }
     }
@@ -144,7 +162,7 @@ impl Best {
             maximise: number("maximise", &self.maximise, &self.maximise)?,
             subject_to: self.subject_to.iter().map(|text| constraint(text)).collect::<Result<_, _>>()?,
             environments: environments(&self.environment, document)?,
-            vary: self.vary.iter().map(|text| variation(text, document)).collect::<Result<_, _>>()?,
+            vary: self.vary.iter().map(|text| tolerance(text, document)).collect::<Result<_, _>>()?,
             seed: self.seed,
             until_settled: self.until_settled,
         };
@@ -206,7 +224,7 @@ impl Best {
 /// Checks that every changed field exists in every environment; a record, for example, has no amplitude.
 fn check_fields(question: &BestQuestion) -> Result<(), Error> {
     let over = question.over.iter().map(|range| ("over", &range.field));
-    let vary = question.vary.iter().map(|variation| ("vary", &variation.field));
+    let vary = question.vary.iter().map(|tolerance| ("vary", &tolerance.field));
     for (name, field) in over.chain(vary) {
         let missing = |environment: &&Environment| FieldPath::new(field).get(&environment.scene).is_none();
         if let Some(environment) = question.environments.iter().find(missing) {
@@ -283,15 +301,11 @@ const MAX_PLACES: f64 = 1e7;
 
 const TRANSDUCER_COLUMNS: [&str; 3] = ["mean_load_power_w", "mean_coil_power_w", "voltage_rms_v"];
 
-/// Alias for the column of the power into the load, and the name of that column.
-const POWER_ALIAS: (&str, &str) = ("mean_power_w", "mean_load_power_w");
-
 /// The numeric summary field called `name`. `argument` and `value` are those that an error names.
 fn number(argument: &str, value: &str, name: &str) -> Result<&'static SummaryField, Error> {
     let is_number = |field: &&SummaryField| matches!(field.read, Read::Number(_) | Read::Count(_));
     let known: Vec<&str> = SUMMARY_FIELDS.iter().filter(is_number).map(|field| field.name).collect();
-    let named = if name == POWER_ALIAS.0 { POWER_ALIAS.1 } else { name };
-    let found = find_name("number", named, &known);
+    let found = find_name("number", name, &known);
     found.and_then(SummaryField::named).map_err(|problem| {
         let which = if value == name { String::new() } else { format!("{name}: ") };
         Error::argument(argument, value, format!("{which}{problem}"))
@@ -312,18 +326,34 @@ fn constraint(text: &str) -> Result<Constraint, Error> {
     Ok(Constraint { of: number("subject_to", text, name.trim())?, at_most, limit })
 }
 
-fn variation(text: &str, document: &Document) -> Result<Variation, Error> {
+fn tolerance(text: &str, document: &Document) -> Result<Tolerance, Error> {
     let wrong = |problem: String| Error::argument("vary", text, problem);
-    let form = "write FIELD=+-1% or FIELD=+-0.05, such as stops.travel_limit_mm=+-1%";
-    let (field, by) = text.split_once('=').ok_or_else(|| wrong(form.to_owned()))?;
-    let by = by.trim();
-    let by =
-        by.strip_prefix("+-").or_else(|| by.strip_prefix('\u{b1}')).ok_or_else(|| wrong(form.to_owned()))?;
-    let found = sweep::variation(field.trim(), by, form, document).map_err(wrong)?;
-    if found.relative && FieldPath::new(&found.field).get(&document.scene) == Some(0.0) {
+    let form = "write FIELD=-1%:1% or FIELD=-0.05:0.05, the least and the largest deviation";
+    let (field, ends) = text.split_once('=').ok_or_else(|| wrong(form.to_owned()))?;
+    let (field, ends) = (field.trim(), ends.trim());
+    if let Some(by) = ends.strip_prefix("+-").or_else(|| ends.strip_prefix('\u{b1}')) {
+        let by = by.trim();
+        return Err(wrong(format!(
+            "+- is a standard deviation, as in --uncertain of sweep, and these are bounds: write \
+             {field}=-{by}:{by}"
+        )));
+    }
+    sweep::can_vary(field, document).map_err(wrong)?;
+    let (low, high) = ends.split_once(':').ok_or_else(|| wrong(form.to_owned()))?;
+    let [(low, of_low), (high, of_high)] =
+        [sweep::deviation(low, form).map_err(wrong)?, sweep::deviation(high, form).map_err(wrong)?];
+    // 0 is both a share and a length
+    let relative = if low == 0.0 { of_high } else { of_low };
+    if low != 0.0 && high != 0.0 && of_low != of_high {
+        return Err(wrong("give both ends in per cent, or both in the unit of the field".to_owned()));
+    }
+    if low > high {
+        return Err(wrong("give the least deviation first".to_owned()));
+    }
+    if relative && FieldPath::new(field).get(&document.scene) == Some(0.0) {
         return Err(wrong("a share of 0 is nothing; give the tolerance in the unit of the field".to_owned()));
     }
-    Ok(found)
+    Ok(Tolerance { field: field.to_owned(), low, high, relative })
 }
 
 /// Splits off the weight after the last `*` of a text; without one the weight is 1. `whole` is the argument

@@ -3,7 +3,8 @@
 use std::ops::RangeInclusive;
 
 use super::grid::{Over, even, over_fields};
-use super::{Error, Progress, Simulation, Threshold};
+use super::threshold::{not_swept, scan};
+use super::{Error, Progress, Simulation};
 use crate::scene::{Document, field_info};
 use crate::study::{
     Cells, Chance, EscapeOptions, Grid, NoThresholds, Scan, Table, Until, escape_table,
@@ -145,7 +146,8 @@ over_fields!(Escape);
 /// let noise = "Noise(rms_g: 0.3, low_hz: 1, high_hz: 20, seed: 1, lines: 64)";
 /// let simulation = Simulation::preset("nominal-cubic")?.with("excitation", noise)?;
 /// let field = "excitation.rms_g=0:4".to_owned();
-/// let question = ProbableThreshold { field, runs: 9, within: Some(2.0), ..ProbableThreshold::default() };
+/// let (field, within) = (Some(field), Some(2.0));
+/// let question = ProbableThreshold { field, runs: 9, within, ..ProbableThreshold::default() };
 /// let table = question.run(&simulation, &Progress::none())?;
 /// let number = |name: &str| table.numbers(name).unwrap()[0];
 /// assert!(number("low") <= number("value") && number("value") <= number("high"));
@@ -155,8 +157,9 @@ over_fields!(Escape);
 pub struct ProbableThreshold {
     /// The fields of the grid, the slowest first; if there are none, the table has one row.
     pub over: Over,
-    /// The field that is searched and its range: `FIELD=FROM:TO` or `FIELD=FROM:TO:STEP`.
-    pub field: String,
+    /// The field that is searched and its range: `FIELD=FROM:TO` or `FIELD=FROM:TO:STEP`; by default the root
+    /// mean square of the scene's noise, 0 to 2 g.
+    pub field: Option<String>,
     /// Share of the runs that cross, above 0 and below 1.
     pub probability: f64,
     /// Number of runs, 1 to 1000000.
@@ -169,8 +172,8 @@ pub struct ProbableThreshold {
 
 impl Default for ProbableThreshold {
     fn default() -> Self {
-        let field = "excitation.rms_g=0:2".to_owned();
-        Self { over: Vec::new(), field, probability: 0.5, runs: Escape::RUNS, within: None, resolution: None }
+        let (over, field, runs) = (Vec::new(), None, Escape::RUNS);
+        Self { over, field, probability: 0.5, runs, within: None, resolution: None }
     }
 }
 
@@ -183,7 +186,7 @@ impl ProbableThreshold {
     /// Like [`Escape::in_cells`].
     #[doc(hidden)]
     pub fn in_cells(&self, document: &Document, grid: &Grid, progress: &Progress) -> Result<Table, Error> {
-        let (scan, chance) = (self.scan(document, grid)?, self.chance(document, grid)?);
+        let (chance, scan) = (self.chance(document, grid)?, self.scan(document, grid)?);
         let cells = Cells::new(&document.scene, &document.files, grid.clone());
         let found = progress.shared(grid.cells() * chance.runs, |pool, task| {
             probable_threshold_table(&cells, &scan, &chance, pool, task)
@@ -194,8 +197,12 @@ impl ProbableThreshold {
     /// The range that is searched, and its resolution.
     #[doc(hidden)]
     pub fn scan(&self, document: &Document, grid: &Grid) -> Result<Scan, Error> {
-        let (field, resolution) = (self.field.clone(), self.resolution);
-        let scan = Threshold { field, resolution, ..Threshold::default() }.scan(document, grid)?;
+        let field = match &self.field {
+            Some(given) => given.trim().to_owned(),
+            None => default_field(document)?,
+        };
+        let scan = scan(&field, self.resolution, None, document)?;
+        not_swept(grid, &scan.field)?;
         let step = scan.values.windows(2).map(|pair| pair[1] - pair[0]).next().unwrap_or(scan.resolution);
         Ok(Scan { resolution: self.resolution.unwrap_or(step), ..scan })
     }
@@ -210,6 +217,20 @@ impl ProbableThreshold {
             return Err(Error::number("probability", self.probability, problem));
         }
         Ok(Chance { probability: self.probability, runs: self.runs, within })
+    }
+}
+
+/// The root mean square of the noise of a scene that has one, 0 to 2 g.
+fn default_field(document: &Document) -> Result<String, Error> {
+    let mut noises = document.scene.amplitudes();
+    noises.retain(|amplitude| amplitude.path.ends_with(".rms_g"));
+    match &noises[..] {
+        [noise] => Ok(format!("{}=0:2", noise.path)),
+        _ => {
+            let problem = "is missing, and the scene has no noise, or several: name a field with its range, \
+                           such as excitation.rms_g=0:2";
+            Err(Error::argument("field", "", problem))
+        }
     }
 }
 

@@ -1,22 +1,19 @@
-//! Questions that can be asked for every cell of a grid: sections, exponents and thresholds; and the fields
-//! of grids.
+//! Questions that can be asked for every cell of a grid: sections and exponents; and the fields of grids.
 
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 use super::error::check_until_settled;
-use super::escape::{grid_or_one, no_table};
 use super::motion::may_have_circuit;
 use super::orbits::phase;
 use super::{Error, Progress, Simulation, Sweep};
 use crate::dynamics::{Model, Summary};
 use crate::mechanics::{ForceCurve, Mechanism};
 use crate::scene::Mechanism::Linear;
-use crate::scene::{Axis, Damping, Document, Scene, Start, Stops, Transducer, is_whole};
+use crate::scene::{Damping, Document, Scene, Start, Stops, Transducer};
 use crate::study::{
-    Cells, ExponentCells, ExponentOptions, Exponents as ExponentsAnswer, Grid, GridStudy, IMPACTS,
-    MAX_SECTION, NoExponents, Onset, Question, Scan, SectionAt, SectionOptions, Sections, Table, drive_fault,
-    exponents, section, suits_melnikov, threshold_table, with_melnikov,
+    ExponentCells, ExponentOptions, Exponents as ExponentsAnswer, Grid, GridStudy, IMPACTS, MAX_SECTION,
+    NoExponents, Question, SectionAt, SectionOptions, Sections, Table, drive_fault, exponents, section,
 };
 
 /// Fields, each with its values.
@@ -65,7 +62,7 @@ macro_rules! over_fields {
     )*};
 }
 
-over_fields!(Sweep Section Exponents Threshold);
+over_fields!(Sweep Section Exponents);
 pub(super) use over_fields;
 
 /// Largest number of forcing periods that a section skips.
@@ -251,175 +248,6 @@ impl Exponents {
             true => Ok(()),
             false => Err(Error::argument("periods", periods, format!("give 1 to {}", AVERAGED.end()))),
         }
-    }
-}
-
-/// The smallest value of a field at which the mass is released, or its settled motion crosses or is
-/// interwell: for one scene, or in every cell of a grid.
-///
-/// # Columns
-///
-/// The fields of the grid, `of`, then `value`, `low`, `high` in the unit of the searched field,
-/// `undecided` and `windows`. `value` is missing if no value of the range has the motion. `low` and `high`
-/// are the nearest values that were tried whose motion is known; `windows` counts the changes above `value`.
-///
-/// # Method
-///
-/// The release under one sine has a closed form. Otherwise all steps of the range are run from rest,
-/// each until its motion repeats (by default for at most 1000 forcing periods beyond the run of the scene),
-/// and the first change is bisected, since the values that cross need not form an interval. A window narrower
-/// than a step may be missed; a smaller step costs more runs.
-///
-/// # Errors
-///
-/// [`Error::Argument`] for a wrong `field`, `resolution` or `until_settled`, for a release (`of`) without
-/// stops, for a grid over the searched field, and for `melnikov` of a field that is not the amplitude of one
-/// sine; [`Error::Cells`] for cells in which no value of the range gives a valid scene, or one whose drive
-/// repeats, which interwell motion needs.
-///
-/// # Example
-///
-/// ```
-/// # use interwell_studies as interwell;
-/// use interwell::questions::{Onset, Progress, Simulation, Threshold};
-///
-/// // The mass is released when mass times base acceleration exceeds the force on the stop at 4 mm.
-/// let question = Threshold { of: Onset::Release, ..Threshold::default() };
-/// let table = question.run(&Simulation::preset("nominal-cubic")?, &Progress::none())?;
-/// let force_n = 40.0 * 4e-3 - 816_326.530_612_245 * 4e-3_f64.powi(3);
-/// let amplitude_g = force_n / (15.2e-3 * 9.806_65);
-/// assert!((table.numbers("value").unwrap()[0] - amplitude_g).abs() < 1e-9);
-/// # Ok::<(), interwell::questions::Error>(())
-/// ```
-#[derive(Debug, Clone, PartialEq)]
-pub struct Threshold {
-    /// The fields of the grid, the slowest first; if there are none, the table has one row.
-    pub over: Over,
-    /// The field that is searched and its range: `FIELD=FROM:TO`, in 200 steps, or `FIELD=FROM:TO:STEP`.
-    pub field: String,
-    /// The onset that is searched.
-    pub of: Onset,
-    /// Resolution of the threshold in the unit of the field; by default a 1000th of the step, or 1 for a
-    /// field of whole numbers.
-    pub resolution: Option<f64>,
-    /// Each run continues until its motion repeats, at most up to this time in s.
-    pub until_settled: Option<f64>,
-    /// Whether the column `melnikov_g` is added, of a cosine or force in SI `melnikov_m_per_s2` or
-    /// `melnikov_n`: Melnikov's threshold, in closed form up to quadrature
-    /// (Melnikov 1963; Guckenheimer and Holmes 1983, section 4.5): the first order in damping and drive of
-    /// the amplitude above which irregular motions that cross exist. It needs the drive's amplitude as field.
-    pub melnikov: bool,
-}
-
-impl Default for Threshold {
-    fn default() -> Self {
-        let (field, of) = (DEFAULT_FIELD.to_owned(), Onset::Crossing);
-        Self { over: Vec::new(), field, of, resolution: None, until_settled: None, melnikov: false }
-    }
-}
-
-/// Why there is no Melnikov's threshold of a field.
-const NO_MELNIKOV: &str = "Melnikov's threshold is an amplitude of one sine: take a Sine, \
-                           Cosine or Force, and search its amplitude, such as excitation.amplitude_g";
-
-/// The field and range of the default question.
-const DEFAULT_FIELD: &str = "excitation.amplitude_g=0:2";
-
-/// Number of steps of a range that is given without a step.
-const DEFAULT_STEPS: f64 = 200.0;
-
-impl Threshold {
-    /// Searches the thresholds.
-    pub fn run(&self, simulation: &Simulation, progress: &Progress) -> Result<Table, Error> {
-        self.in_cells(simulation.document(), &grid_or_one(&self.over, simulation)?, progress)
-    }
-
-    /// Like [`Escape::in_cells`](super::Escape::in_cells).
-    #[doc(hidden)]
-    pub fn in_cells(&self, document: &Document, grid: &Grid, progress: &Progress) -> Result<Table, Error> {
-        let scan = self.scan(document, grid)?;
-        let values = grid.cells() * scan.values.len() as u64;
-        let cells = Cells::new(&document.scene, &document.files, grid.clone());
-        let found = progress.shared(values, |pool, task| {
-            let table = threshold_table(&cells, &scan, self.of, pool, task)?;
-            if self.melnikov { with_melnikov(table, &cells, pool, task) } else { Ok(table) }
-        })?;
-        found.map_err(|end| no_table(document, end))
-    }
-
-    /// The values of the scan in the cells of `grid`, and the resolution of the threshold.
-    #[doc(hidden)]
-    pub fn scan(&self, document: &Document, grid: &Grid) -> Result<Scan, Error> {
-        if self.of == Onset::Release && document.scene.stops == Stops::None {
-            let remedy = "the scene has no stops to release the mass from; give it some, such as \
-                          stops=Rigid(travel_limit_mm: 1.5, restitution: 0.36)";
-            return Err(Error::argument("of", "release", remedy));
-        }
-        let argument = self.field.trim();
-        let default = if argument == DEFAULT_FIELD { " (the default; give another)" } else { "" };
-        let wrong = |problem: String| Error::argument("field", format!("{argument}{default}"), problem);
-        let parsed = |text: &str| -> Result<Axis, Error> {
-            let axis = Axis::parse(text, &document.scene).map_err(wrong)?;
-            match axis.values.iter().all(|value| value.is_finite()) {
-                true => Ok(axis),
-                false => Err(wrong("the ends of the range must be finite".into())),
-            }
-        };
-        let (mut full, mut end) = (argument.to_owned(), None);
-        if let Some((from, to)) = argument.split_once(':').filter(|(_, to)| !to.contains(':')) {
-            // parsed as a list, so that the message names a wrong end
-            let ends = parsed(&format!("{from},{to}"))?;
-            let [low, high] = ends.values[..] else {
-                let problem = "write FIELD=FROM:TO or FIELD=FROM:TO:STEP, such as excitation.amplitude_g=0:2";
-                return Err(wrong(problem.into()));
-            };
-            if low == high {
-                return Err(wrong(format!("FROM and TO are both {low}; give a range, such as 0:2")));
-            }
-            if low > high {
-                return Err(wrong(format!("TO must be above FROM; write {high}:{low}")));
-            }
-            let step = (high - low) / DEFAULT_STEPS;
-            let step = if is_whole(&document.scene, &ends.field) { step.ceil() } else { step };
-            (full, end) = (format!("{argument}:{step}"), Some(high));
-        }
-        let axis = parsed(&full)?;
-        let mut values = axis.values;
-        values.sort_by(f64::total_cmp);
-        values.dedup();
-        if values.len() < 2 {
-            let problem = "it is a single value; give a range of which STEP is a part, such as 0:2:0.1";
-            return Err(wrong(problem.into()));
-        }
-        let step = (values[values.len() - 1] - values[0]) / (values.len() - 1) as f64;
-        if let Some(high) = end {
-            // rounding may put the last step just below the end of the range
-            values.retain(|value| *value < high - 1e-6 * step);
-            values.push(high);
-        }
-        let whole = is_whole(&document.scene, &axis.field);
-        let resolution = match self.resolution {
-            None if whole => 1.0,
-            None => 1e-3 * step,
-            Some(value) if value > 0.0 && value.is_finite() && (!whole || value.fract() == 0.0) => value,
-            Some(value) => {
-                let kind = if whole { "whole number" } else { "number" };
-                let problem = format!("give a {kind} above 0, in the unit of the field");
-                return Err(Error::number("resolution", value, problem));
-            }
-        };
-        if self.melnikov && !suits_melnikov(&document.scene, &axis.field) {
-            return Err(wrong(NO_MELNIKOV.to_owned()));
-        }
-        if grid.axes().iter().any(|swept| swept.field == axis.field) {
-            return Err(Error::argument("over", axis.field, "the threshold is over it; sweep another field"));
-        }
-        if self.until_settled.is_some() {
-            let mut first = document.scene.clone();
-            grid.apply(0, &mut first);
-            check_until(self.until_settled, document, &drive_alone(document, first)?)?;
-        }
-        Ok(Scan { field: axis.field, values, resolution, until_settled: self.until_settled })
     }
 }
 

@@ -88,6 +88,7 @@ mod distance;
 mod error;
 mod escape;
 mod grid;
+mod kept;
 mod lesson;
 mod motion;
 mod orbits;
@@ -97,6 +98,7 @@ mod record;
 mod remarks;
 mod simulation;
 mod sweep;
+mod threshold;
 
 #[doc(hidden)]
 pub use accuracy::check_accuracy;
@@ -108,7 +110,7 @@ pub use distance::{Distance, DistanceAnswer};
 pub use error::longest_wait;
 pub use error::{Error, FaultAt};
 pub use escape::{Escape, ProbableThreshold};
-pub use grid::{Exponents, Section, Threshold};
+pub use grid::{Exponents, Section};
 #[doc(hidden)]
 pub use lesson::{JudgedStep, check_lessons};
 pub use motion::{Basins, BasinsAnswer, Curve, FlexuresAnswer, Spectrum};
@@ -123,6 +125,7 @@ pub use simulation::Simulation;
 pub use sweep::Sweep;
 #[doc(hidden)]
 pub use sweep::{SweepCells, assign as assign_uncertain};
+pub use threshold::Threshold;
 
 pub use crate::mechanics::flexure::State as FlexureState;
 pub use crate::scene::Uncertain;
@@ -130,10 +133,10 @@ pub use crate::scene::Uncertain;
 pub use crate::study::accuracy::methods::{Scheme, Statistics};
 pub use crate::study::accuracy::scene::{AtTolerance, Course, Lateness, StepSize, Tolerances, Trust};
 pub use crate::study::{
-    Answer, Attractor, BestDesign, BestQuestion, Branch as BranchAnswer, BranchEnd, BranchEvent, Carry,
-    Column, Comparison, Estimate, EvenRange, ExponentOptions, Exponents as ExponentsAnswer, FieldRange,
-    ForceComparison, Found, Grid, Identified, Identity, Locus as OneLocus, LocusEnd, LocusEvent,
-    MeasuredMotion, Onset, Optimum, Orbit as OrbitAnswer, Rated, Recorded, Sampling, SectionAt,
+    Answer, Attractor, Begin, BestDesign, BestQuestion, Branch as BranchAnswer, BranchEnd, BranchEvent,
+    Carry, Column, Comparison, Estimate, EvenRange, ExponentOptions, Exponents as ExponentsAnswer,
+    FieldRange, ForceComparison, Found, Grid, Identified, Identity, Locus as OneLocus, LocusEnd, LocusEvent,
+    MeasuredMotion, Onset, Optimum, Orbit as OrbitAnswer, Rated, Recorded, Sampling, Searched, SectionAt,
     SectionOptions, Shares, Signal, Spectrum as SpectrumAnswer, Spread, Table, Thresholds, Tried, Until,
     Values,
 };

@@ -253,8 +253,9 @@ impl Spectrum {
 /// Starts that share a release share everything after it, which is computed once. Without rest a
 /// start is followed until it enters an ellipse around a stable orbit (motions told by their return to known
 /// ones: Datseris and Wagemakers 2022). The shares of `random` starts are the basin stability of Menck et al.
-/// (2013). `sure` compares with ten times the tolerance, which costs somewhat less than half of the time.
-/// Without rests of the mass the cost per start is many times as large; at most 1e7 starts are taken.
+/// (2013). A row is `sure` if a second run at a thousandth of the tolerance stays beside the first one up to
+/// the attractor; it depends on no other start. Without rests of the mass the cost per start is many times as
+/// large; at most 1e7 starts are taken.
 ///
 /// # Errors
 ///
@@ -327,17 +328,10 @@ impl Basins {
         }
     }
 
-    /// Follows the starts, then once more those whose answer may be uncertain. Progress counts the two phases
-    /// separately.
+    /// Follows the starts, each twice: the second run tells whether the answer is sure.
     pub fn run(&self, simulation: &Simulation, progress: &Progress) -> Result<BasinsAnswer, Error> {
-        self.follow(simulation, progress)?.checked(progress)
-    }
-
-    /// The first phase alone; [`BasinsAnswer::checked`] is the second.
-    #[doc(hidden)]
-    pub fn follow(&self, simulation: &Simulation, progress: &Progress) -> Result<BasinsAnswer, Error> {
         let begun = self.begin(self.starts()?, simulation.document(), simulation.mechanism())?;
-        Self::followed(begun, progress, None)
+        Self::followed(begun.checked(), progress, None)
     }
 
     /// The starts before any is followed, of a scene whose own start need not be possible.
@@ -352,8 +346,8 @@ impl Basins {
         begun.map_err(|problem| no_basins(document, problem, self.x_mm))
     }
 
-    /// The first phase of starts that [`begin`](Self::begin), from coarse to fine. `coarse` gets what is
-    /// known after each level but the last.
+    /// Follows the starts that [`begin`](Self::begin), from coarse to fine. `coarse` gets what is known after
+    /// each level but the last.
     #[doc(hidden)]
     pub fn followed(
         mut basins: study::Basins,
@@ -390,15 +384,6 @@ fn no_basins(document: &Document, problem: NoBasins, x_mm: EvenRange) -> Error {
 }
 
 impl BasinsAnswer {
-    /// The second phase: follows once more the starts whose answer may be uncertain.
-    #[doc(hidden)]
-    pub fn checked(mut self, progress: &Progress) -> Result<Self, Error> {
-        let Self { basins, answer } = &mut self;
-        let uncertain = basins.rows_to_check(answer).len() as u64;
-        let whole = progress.shared(uncertain, |pool, task| basins.check(answer, pool, task))?;
-        if whole { Ok(self) } else { Err(Error::Cancelled) }
-    }
-
     /// One row per start, the displacement the slower, or in the order in which they were drawn.
     pub fn table(&self) -> Table {
         self.answer.table(&self.basins, 0, self.answer.rows.len())

@@ -5,9 +5,9 @@ use crate::dynamics::Model;
 use crate::numeric::number_text;
 use crate::scene::{Axis, Document, FieldPath, Scene, is_whole};
 use crate::study::{
-    Branch as BranchAnswer, BranchEnd, BranchEvent, BranchOptions, Family, FieldRange, Locus as OneLocus,
-    NoBasins, NoOrbit, Orbit as OrbitAnswer, Table, branch, branches_table, loci, loci_table, orbit,
-    switched,
+    Begin, Branch as BranchAnswer, BranchEnd, BranchEvent, BranchOptions, Family, FieldRange,
+    Locus as OneLocus, NoBasins, NoOrbit, Orbit as OrbitAnswer, Table, begun, branch, branches_table, loci,
+    loci_table, switched,
 };
 
 /// The periodic orbit near the settled motion of a run, stable or not, with its Floquet multipliers.
@@ -48,10 +48,13 @@ use crate::study::{
 /// ```
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Orbit {
-    /// Its period in forcing periods, 1 to 1000; by default that of the settled motion, at most 12.
+    /// Its period in forcing periods, 1 to 1000; by default that of the settled motion, at most 12, or 1
+    /// where a number of impacts is given.
     pub period: Option<u32>,
     /// Phase of the drive in degrees at which the state is given.
     pub phase_deg: f64,
+    /// Which motion is meant: by default that near the settled motion of the run.
+    pub begin: Begin,
 }
 
 impl Orbit {
@@ -59,7 +62,8 @@ impl Orbit {
     pub fn run(&self, simulation: &Simulation, progress: &Progress) -> Result<OrbitAnswer, Error> {
         check_period(self.period)?;
         can_have_orbits(simulation.document(), simulation.model())?;
-        let found = orbit(simulation.model(), phase(self.phase_deg)?, self.period, progress.stop());
+        let phase = phase(self.phase_deg)?;
+        let found = begun(simulation.model(), phase, self.period, self.begin, progress.stop());
         found.map_err(|error| no_orbit(simulation.document(), error, ""))
     }
 }
@@ -107,6 +111,8 @@ pub struct Branch {
     pub period: Option<u32>,
     /// Phase of the drive in degrees at which states are given.
     pub phase_deg: f64,
+    /// The motion with which it begins, as of [`Orbit`].
+    pub begin: Begin,
     /// Longest step, as a share of the range and of the scales of the state, 1e-4 to 0.05. A shorter one
     /// takes longer and misses fewer events.
     pub step: f64,
@@ -118,7 +124,15 @@ impl Branch {
     /// A branch over a field, from one value towards another.
     pub fn over(field: impl Into<String>, from: f64, to: f64) -> Self {
         let (step, count) = (BranchOptions::STEP, BranchOptions::COUNT);
-        Self { field: field.into(), range: (from, to), period: None, phase_deg: 0.0, step, count }
+        Self {
+            field: field.into(),
+            range: (from, to),
+            period: None,
+            phase_deg: 0.0,
+            begin: Begin::Run,
+            step,
+            count,
+        }
     }
 
     /// Follows the branch. The value of the field in the scene is replaced by the first value of the range.
@@ -162,7 +176,9 @@ impl Branch {
         });
         let found =
             found.map_err(|error| no_orbit(document, error, &format!("at {} = {from}: ", self.field)));
-        Ok(BranchesAnswer { branches: found?, range: self.range })
+        let branches = found?;
+        let begins = branches[0].orbits.first().map(|orbit| described(first.model(), orbit));
+        Ok(BranchesAnswer { begins: begins.unwrap_or_default(), branches, range: self.range })
     }
 
     fn field_range(&self) -> FieldRange {
@@ -179,7 +195,8 @@ impl Branch {
             return Err(Error::argument("count", self.count, format!("give 1 to {}", COUNTS.end())));
         }
         let phase = phase(self.phase_deg)?;
-        Ok(BranchOptions { phase, period: self.period, step: self.step, count: self.count })
+        let Self { period, begin, step, count, .. } = *self;
+        Ok(BranchOptions { phase, period, begin, step, count })
     }
 }
 
@@ -234,6 +251,8 @@ fn check_fields<'a>(
 pub struct BranchesAnswer {
     /// The branches, each after the one on which it begins; the first is the branch that was asked for.
     pub branches: Vec<BranchAnswer>,
+    /// The motion with which the first one begins, in words.
+    begins: String,
     range: (f64, f64),
 }
 
@@ -244,15 +263,34 @@ impl BranchesAnswer {
         branches_table(&self.branches)
     }
 
-    /// The remarks of each branch, with its number if there are several.
+    /// The motion with which the first branch begins, and the remarks of each branch, with its number if
+    /// there are several.
     pub fn remarks(&self) -> Vec<String> {
         let several = self.branches.len() > 1;
         let of_branch = |(number, branch): (u64, &BranchAnswer)| {
             let remark = move |line| if several { format!("branch {number}: {line}") } else { line };
             branch.remarks(self.range).into_iter().map(remark)
         };
-        (1..).zip(&self.branches).flat_map(of_branch).collect()
+        let begins = format!("the branch begins with {}", self.begins);
+        std::iter::once(begins).chain((1..).zip(&self.branches).flat_map(of_branch)).collect()
     }
+}
+
+/// A motion in words: its period, its impacts, and where it is.
+fn described(model: &Model, orbit: &OrbitAnswer) -> String {
+    let count = |number: u64, one: &str| format!("{number} {one}{}", if number == 1 { "" } else { "s" });
+    let place = match model.crossing_level() {
+        None => "",
+        Some(_) if orbit.passage.crossings() > 0 => ", across the barrier",
+        Some(level) if orbit.state.x < level => ", left of the barrier",
+        Some(_) => ", right of the barrier",
+    };
+    let impacts = match (model.stop_positions(), orbit.passage.rests()) {
+        ((None, None), _) => String::new(),
+        (_, 0) => format!(" with {}", count(orbit.passage.impacts, "impact")),
+        (_, rests) => format!(" with {} on a stop", count(rests, "rest")),
+    };
+    format!("the motion that repeats after {}{impacts}{place}", count(orbit.period.into(), "forcing period"))
 }
 
 impl BranchAnswer {
@@ -260,13 +298,21 @@ impl BranchAnswer {
     /// the end of its range, where and why it ended.
     pub fn remarks(&self, (from, to): (f64, f64)) -> Vec<String> {
         let field = &self.field;
+        let at_stops =
+            |orbit: &OrbitAnswer| !(orbit.passage.misses.is_empty() && orbit.contacts().is_empty());
+        let changes = match self.orbits.iter().any(at_stops) {
+            true => "its stability or how it touches the stops",
+            false => "its stability",
+        };
         let unlocated = |(before, after): &(f64, f64)| {
             format!(
-                "between {field} = {before} and {after} the motion changes how it touches the stops, or its \
-                 stability; no event was located there, and the table has none"
+                "between {field} = {before} and {after} the motion changes {changes}; no event was located \
+                 there, and the table has none"
             )
         };
+        let unbegun = |value: &f64| format!("no branch was found that begins at {field} = {value}");
         let mut lines: Vec<String> = self.unlocated.iter().map(unlocated).collect();
+        lines.extend(self.unbegun.iter().map(unbegun));
         let at = self.values.last().copied().unwrap_or(f64::NAN);
         let why = match self.end {
             BranchEnd::Range if (at - to).abs() < (at - from).abs() => return lines,

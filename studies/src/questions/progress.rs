@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use super::Error;
 use crate::study::Task;
-use crate::system::threads::{Pool, processors, spawn};
+use crate::system::threads::{MAX_THREADS, Pool, processors, spawn};
 
 /// A callback for progress: it gets the number of finished parts and, if it is known, that of all parts. Any
 /// thread may call it.
@@ -19,7 +19,7 @@ type Report<'a> = &'a (dyn Fn(u64, Option<u64>) + Sync);
 /// are counted are cells of a grid, starts, orbits or runs, by the question; questions about one motion do
 /// not report. The callback is called by the threads that compute and should return soon. More threads than
 /// processors make nothing faster; the answer has the same bits for any number. A number of threads that is
-/// 0, or that the system does not grant, is an [`Error::Argument`] named `threads`.
+/// 0 or above 1024, or that the system does not grant, is an [`Error::Argument`] named `threads`.
 ///
 /// ```
 /// # use interwell_studies as interwell;
@@ -144,10 +144,32 @@ impl<'a> Progress<'a> {
         self.pool(|pool| self.task(Some(all), |task| work(pool, task)))
     }
 
+    /// Runs `work` with a thread pool, a task that counts its parts, and a function that it calls with the
+    /// number of parts that are left to do, so far as it is known: at the beginning, and whenever it turns
+    /// out to be another.
+    pub(super) fn planned<R>(
+        &self,
+        work: impl FnOnce(&Pool, &Task, &(dyn Fn(u64) + Sync)) -> R,
+    ) -> Result<R, Error> {
+        let (done, all) = (AtomicU64::new(0), AtomicU64::new(0));
+        let report = |done: u64| {
+            if let Some(report) = self.report {
+                report(done, Some(all.load(Ordering::Relaxed).max(done)));
+            }
+        };
+        let plan = |left: u64| {
+            let done = done.load(Ordering::Relaxed);
+            all.store(done + left, Ordering::Relaxed);
+            report(done);
+        };
+        let tick = || report(done.fetch_add(1, Ordering::Relaxed) + 1);
+        self.pool(|pool| work(pool, &Task { tick: &tick, cancel: self.stop }, &plan))
+    }
+
     pub(super) fn pool<R>(&self, work: impl FnOnce(&Pool) -> R) -> Result<R, Error> {
         let count = self.threads.unwrap_or_else(processors);
-        if count == 0 {
-            return Err(Error::argument("threads", count, "give at least 1"));
+        if !(1..=usize::from(MAX_THREADS)).contains(&count) {
+            return Err(Error::argument("threads", count, format!("give 1 to {MAX_THREADS}")));
         }
         let last = POOL.lock().unwrap_or_else(PoisonError::into_inner).take();
         let pool = match last {

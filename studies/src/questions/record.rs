@@ -4,7 +4,6 @@ use std::fmt::Display;
 use std::path::Path;
 
 use super::{Error, Progress};
-use crate::numeric::number_text;
 use crate::scene::{Channel, ColumnRequest, Measured, Quantity, Timing, read_measured};
 use crate::study::{Identified, Table, Unidentified, damping, force, restitution, restitution_of_times};
 
@@ -80,8 +79,6 @@ pub struct Identify {
     pub between: [Option<f64>; 2],
     /// For restitution: the record contains only the times of impacts, one per row.
     pub impact_times: bool,
-    /// For restitution: approximate positions of the left and the right stop in mm.
-    pub stops_mm: [Option<f64>; 2],
     /// For a force: number of points of the curve, 4 to 100000; by default 101, or as many as the
     /// samples allow.
     pub points: Option<u32>,
@@ -124,8 +121,7 @@ impl Identify {
     /// The question about a record whose columns are found by the units in their names.
     pub fn of(of: WhatToIdentify) -> Self {
         let [time, column, position, base] = [const { [None, None] }; 4];
-        let (between, stops_mm) = ([None; 2], [None; 2]);
-        Self { of, time, column, position, base, between, impact_times: false, stops_mm, points: None }
+        Self { of, time, column, position, base, between: [None; 2], impact_times: false, points: None }
     }
 
     /// Reads the record at `path` and identifies the quantity. Once it is cancelled, what it has begun is
@@ -144,8 +140,6 @@ impl Identify {
             ("impact_times", self.impact_times.then(String::new), Restitution),
             ("base", self.base[0].clone(), Restitution),
             ("base_unit", self.base[1].clone(), Restitution),
-            ("left_mm", self.stops_mm[0].map(number_text), Restitution),
-            ("right_mm", self.stops_mm[1].map(number_text), Restitution),
             ("points", self.points.map(|points| points.to_string()), Force),
             ("position", self.position[0].clone(), Force),
             ("position_unit", self.position[1].clone(), Force),
@@ -176,32 +170,15 @@ impl Identify {
         self.check_restitution()
     }
 
-    /// Refuses impossible positions of stops, and options that contradict `impact_times`.
+    /// Refuses a unit without its column, and options that contradict `impact_times`.
     fn check_restitution(&self) -> Result<(), Error> {
-        for (name, place) in ["left_mm", "right_mm"].into_iter().zip(self.stops_mm) {
-            if let Some(place) = place.filter(|place| !place.is_finite()) {
-                return Err(Error::argument(name, place, "give the place of the stop in mm"));
-            }
-        }
-        if let [Some(left), Some(right)] = self.stops_mm
-            && !(left < right)
-        {
-            let problem = "the left stop is the one at the lesser displacement; exchange them";
-            return Err(Error::argument("left_mm", left, format!("--right-mm is {right}: {problem}")));
-        }
         if let [None, Some(unit)] = &self.base {
             let problem = "is the unit of a column: name the column by --base";
             return Err(Error::argument("base_unit", unit, problem));
         }
-        for (name, given) in [
-            ("base", self.base[0].clone()),
-            ("left_mm", self.stops_mm[0].map(number_text)),
-            ("right_mm", self.stops_mm[1].map(number_text)),
-        ] {
-            if let Some(value) = given.filter(|_| self.impact_times) {
-                let problem = "a record of --impact-times has no displacement; leave one of them out";
-                return Err(Error::argument(name, value, problem));
-            }
+        if let Some(base) = self.base[0].as_ref().filter(|_| self.impact_times) {
+            let problem = "a record of --impact-times has no displacement; leave one of them out";
+            return Err(Error::argument("base", base, problem));
         }
         Ok(())
     }
@@ -251,8 +228,7 @@ impl Identify {
                     let (record, columns) = read(path, &[times, values])?;
                     (self.cut(record, path)?.channels, None, columns)
                 };
-                let places = self.stops_mm.map(|place| place.map(|mm| mm * 1e-3));
-                let found = restitution(&times.values, &values.values, base.as_deref(), places);
+                let found = restitution(&times.values, &values.values, base.as_deref());
                 answer(found, Some(Timing::of(&times.values)), times.values, values, columns)
             }
         }

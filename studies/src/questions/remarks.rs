@@ -9,7 +9,7 @@ use crate::dynamics::Regime;
 use crate::mechanics::Mechanism;
 use crate::numeric::{extent, short};
 use crate::scene::{Document, RunSettings, Stops, Transducer};
-use crate::study::{Grid, Onset, Rated, Scan, Table, Values, can_cross};
+use crate::study::{Grid, Onset, Rated, Scan, Searched, Table, Values, can_cross};
 
 impl Threshold {
     /// Why `table`, the answer of [`run`](Self::run), has rows without a value, with the first value of the
@@ -31,13 +31,22 @@ impl Threshold {
         mechanism: Option<&Mechanism>,
         table: &Table,
     ) -> Vec<String> {
-        let Ok(scan) = self.scan(document, grid) else { return Vec::new() };
-        let blocked = blocked(document, grid, mechanism, &scan.field);
-        let missing = missing(table, &scan, self.of, grid, blocked.filter(|_| self.of != Onset::Release));
-        [missing, at_first(table, &scan), undecided(table), without_melnikov(table)]
-            .into_iter()
-            .flatten()
-            .collect()
+        let Ok(searched) = self.searched(document, grid) else { return Vec::new() };
+        let blocked = blocked(document, grid, mechanism, searched.field());
+        let blocked = blocked.filter(|_| self.of != Onset::Release);
+        let at_first = match &searched {
+            Searched::Scan(scan) => at_first(table, scan),
+            Searched::Upward { .. } => None,
+        };
+        [
+            missing(table, &searched, self.of, grid, blocked),
+            at_first,
+            undecided(table),
+            without_melnikov(table),
+        ]
+        .into_iter()
+        .flatten()
+        .collect()
     }
 }
 
@@ -168,7 +177,13 @@ fn undecided(table: &Table) -> Option<String> {
 }
 
 /// Explains an empty `value`, if a row has one. `blocked` says why no row can have a crossing.
-fn missing(table: &Table, scan: &Scan, onset: Onset, grid: &Grid, blocked: Option<&str>) -> Option<String> {
+fn missing(
+    table: &Table,
+    searched: &Searched,
+    onset: Onset,
+    grid: &Grid,
+    blocked: Option<&str>,
+) -> Option<String> {
     let rows = without_value(table)?;
     if let Some(why) = blocked {
         return Some(format!("{rows}: {why}, so nothing to cross"));
@@ -178,16 +193,19 @@ fn missing(table: &Table, scan: &Scan, onset: Onset, grid: &Grid, blocked: Optio
         Onset::Crossing => "makes the settled motion cross",
         Onset::Interwell => "makes the settled motion interwell",
     };
-    let (low, high) = extent(scan.values.iter().copied());
-    let unsolved = match grid.changes_mechanism() || scan.field.starts_with("mechanism") {
+    let field = searched.field();
+    let unsolved = match grid.changes_mechanism() || field.starts_with("mechanism") {
         true => ", or the flexures are not solved",
         false => "",
     };
-    Some(format!(
-        "{rows}: no {} that was tried from {low} to {high} {what}{unsolved}; give a wider range or smaller \
-         steps",
-        scan.field
-    ))
+    let (range, remedy) = match searched {
+        Searched::Scan(scan) => {
+            let (low, high) = extent(scan.values.iter().copied());
+            (format!("from {low} to {high} "), "give a wider range or smaller steps".to_owned())
+        }
+        Searched::Upward { .. } => (String::new(), format!("give a range, --field {field}=FROM:TO")),
+    };
+    Some(format!("{rows}: no {field} that was tried {range}{what}{unsolved}; {remedy}"))
 }
 
 /// The remarks on a comparison: which scenes have another excitation or run than in their files, and why the
@@ -214,12 +232,12 @@ pub(super) fn of_comparison(
 fn replaced(simulation: &Simulation, environment: &Document) -> Option<String> {
     let (scene, lent) = (simulation.scene(), &environment.scene);
     let how = match (scene.excitation != lent.excitation, window(&scene.run) != window(&lent.run)) {
-        (true, true) => "under the excitation and with the run of",
-        (true, false) => "under the excitation of",
-        (false, true) => "with the run of",
+        (true, true) => "excitation and run",
+        (true, false) => "excitation",
+        (false, true) => "run",
         (false, false) => return None,
     };
-    Some(format!("{how} {}", environment.name))
+    Some(format!("rated with the {how} of {}, not with its own", environment.name))
 }
 
 /// Duration of a run, beginning of its settled window, and tolerance.
@@ -294,6 +312,7 @@ fn why_empty(column: &str, simulation: &Simulation, rated: &Rated, given: &str) 
         _ if crossing.is_none() => "no amplitude that was tried makes its settled motion cross",
         "crossing_low_g" => "no smaller amplitude that was tried is known not to cross",
         "crossing_high_g" => "no amplitude that was tried is known to cross for good",
+        "crossing_step_g" | "crossing_resolution_g" => "it crosses at the least amplitude that was tried",
         _ => "its mechanism has no length, thickness or gap to change",
     }
     .to_owned()

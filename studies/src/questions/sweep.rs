@@ -299,6 +299,17 @@ fn check_share(law: &Variation, value: f64) -> Result<(), String> {
 /// The variation of `field` by `by`, a number in its unit or a percentage of its value; `form` is how both
 /// are written. The error is a clause.
 pub(super) fn variation(field: &str, by: &str, form: &str, document: &Document) -> Result<Variation, String> {
+    can_vary(field, document)?;
+    let (by, relative) = deviation(by, form)?;
+    if by < 0.0 {
+        let given = if relative { 100.0 * by } else { by };
+        return Err(format!("{} is negative; give 0 or more", number_text(given)));
+    }
+    Ok(Variation { field: field.to_owned(), by, relative })
+}
+
+/// Whether a field can have values a little beside its own; the error is a clause.
+pub(super) fn can_vary(field: &str, document: &Document) -> Result<(), String> {
     if FieldPath::new(field).get(&document.scene).is_none() {
         // the error of `parse` lists the fields
         Axis::parse(&format!("{field}=1"), &document.scene)?;
@@ -308,14 +319,16 @@ pub(super) fn variation(field: &str, by: &str, form: &str, document: &Document) 
         let problem = "holds whole numbers, which do not come out a little otherwise; vary another field";
         return Err(problem.to_owned());
     }
-    let (number, relative) = by.strip_suffix('%').map_or((by, false), |share| (share, true));
+    Ok(())
+}
+
+/// A number in the unit of a field, or the share of its value that a percentage is, and whether it is one.
+pub(super) fn deviation(text: &str, form: &str) -> Result<(f64, bool), String> {
+    let text = text.trim();
+    let (number, relative) = text.strip_suffix('%').map_or((text, false), |share| (share, true));
     let number = read_number(number).map_err(|_| form)?;
     if !number.is_finite() {
-        return Err(format!("{} is not finite; give a number from 0 up", number_text(number)));
+        return Err(format!("{} is not finite; give a finite number", number_text(number)));
     }
-    if number < 0.0 {
-        return Err(format!("{} is negative; give 0 or more", number_text(number)));
-    }
-    let by = if relative { number / 100.0 } else { number };
-    Ok(Variation { field: field.to_owned(), by, relative })
+    Ok((if relative { number / 100.0 } else { number }, relative))
 }

@@ -3,11 +3,11 @@
 
 use std::sync::Arc;
 
-use super::amplitudes::{Above, crossing, frees_at};
+use super::amplitudes::{crossing, frees_at};
 use super::bisection::multiple;
 use super::grid::{is_of_mechanism, name_of};
 use super::settled::{followed, settled_within, shared_runs};
-use super::thresholds::from_rest;
+use super::thresholds::{Above, from_rest};
 use super::{Cancelled, Family, Found, Onset, Result, SummaryField, Table, Task};
 use crate::dynamics::{Model, Run, Summary};
 use crate::mechanics::Mechanism;
@@ -235,7 +235,9 @@ pub fn comparison_table(rated: &[Rated]) -> Table {
         .each("crossing_g", rated, Rated::crossing_g)
         .each("crossing_low_g", rated, |row| row.crossing?.low)
         .each("crossing_high_g", rated, |row| row.crossing?.high)
-        .each("crossing_undecided", rated, |row| row.crossing.map(|found| found.undecided));
+        .each("crossing_undecided", rated, |row| row.crossing.map(|found| found.undecided))
+        .each("crossing_step_g", rated, |row| row.crossing?.step)
+        .each("crossing_resolution_g", rated, |row| row.crossing?.resolution);
     let summary = ["rms_velocity_m_per_s", "mean_load_power_w", "max_abs_x_m", "impact_speed_max_m_per_s"];
     for field in summary.into_iter().filter_map(SummaryField::find) {
         table = table.with(field.name, field.column(rated.iter().map(|row| Some(&row.summary))));

@@ -6,19 +6,13 @@ use serde::{Deserialize, Serialize};
 
 use super::bisection::multiple;
 use super::settled::followed;
-use super::thresholds::{Answers, Search, from_rest};
+use super::thresholds::{Above, Search, from_rest};
 use super::{Cancelled, Family, Found, Onset, Task, Verdict};
 use crate::dynamics::{Model, Request, STANDARD_GRAVITY};
 use crate::mechanics::{Landscape, Mechanism};
-use crate::numeric::elementary;
-use crate::numeric::round::{ONE_TWO_FIVE, decade, round_down};
+use crate::numeric::round::{ONE_TWO_FIVE, round_down};
 use crate::scene::{Files, Scene, Stops};
 use crate::system::threads::Pool;
-
-/// The place value of the third significant digit.
-fn third_digit(value: f64) -> f64 {
-    elementary::powi(10.0, decade(value) - 2)
-}
 
 /// Threshold amplitudes in g of motions from rest at the frequency of the scene.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -32,22 +26,53 @@ pub struct Thresholds {
     pub searched_to: f64,
 }
 
-/// Number of steps of the scan up to the amplitude whose inertial force equals the largest force of the
-/// mechanism, and again up to twice that amplitude.
-const FINE_STEPS: u32 = 50;
-/// Ratio of consecutive amplitudes above that range.
-const GROWTH: f64 = 1.02;
+/// The amplitudes that are tried from rest where no range is given, so that scenes of any size have the same
+/// search: `threshold`, `compare` and the window ask by it.
+///
+/// The scale is the amplitude whose inertial force equals the largest force of the mechanism between the rest
+/// position and the barrier, which slow shaking needs to cross. The values go from 0 in even steps to twice
+/// that amplitude, and on in steps of 1 % to thirty times. Without a barrier it is 1 g, and they end at 2 g.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Upward {
+    /// Ascending.
+    pub values: Vec<f64>,
+    pub resolution: f64,
+}
 
-/// Number of steps that are run together before checking whether one of them crosses.
-const TOGETHER: usize = 32;
-
-/// Multiple of that amplitude at which the search ends.
+/// Least number of even steps up to the scale; the step is 1, 2 or 5 times a power of ten.
+const STEPS: f64 = 100.0;
+/// Multiple of the scale up to which steps are even.
+const EVEN: f64 = 2.0;
+/// Ratio of consecutive amplitudes above.
+const GROWTH: f64 = 1.01;
+/// Multiple of the scale at which the search ends.
 const MAX_PUSHES: f64 = 30.0;
+/// The resolution as a share of the step.
+const RESOLUTION: f64 = 1e-3;
 
-/// Number of steps above the crossing threshold in which changes are searched.
-const GAP_STEPS: u32 = 50;
-/// Length of such a step, as a share of the threshold.
-const GAP_STEP: f64 = 0.01;
+impl Upward {
+    /// The values of the amplitude `field` of a scene.
+    pub fn of(scene: &Scene, mechanism: &Mechanism, field: &str) -> Self {
+        let amplitudes = scene.amplitudes();
+        let amplitude = amplitudes.iter().find(|amplitude| amplitude.path == field);
+        let in_unit = |g: f64| amplitude.map_or(g, |amplitude| amplitude.of(g * STANDARD_GRAVITY));
+        match holding_push(scene, mechanism) {
+            Some(push) => Self::new(in_unit(push), MAX_PUSHES),
+            None => Self::new(in_unit(1.0), EVEN),
+        }
+    }
+
+    fn new(scale: f64, pushes: f64) -> Self {
+        let step = round_down(scale / STEPS, &ONE_TWO_FIVE);
+        let even = (EVEN * scale / step).ceil() as u32;
+        // in multiples of the step, so that the reported values are the ones that were run
+        let mut values: Vec<f64> = (0..=even).map(|i| multiple(step * f64::from(i), step)).collect();
+        while let Some(last) = values.last().filter(|last| **last < pushes * scale) {
+            values.push(multiple(last * GROWTH, step));
+        }
+        Self { values, resolution: RESOLUTION * step }
+    }
+}
 
 /// The thresholds of the amplitude; `None` without a harmonic drive or a barrier, or if cancelled.
 pub fn thresholds(scene: &Scene, mechanism: &Arc<Mechanism>, task: &Task) -> Option<Thresholds> {
@@ -55,13 +80,6 @@ pub fn thresholds(scene: &Scene, mechanism: &Arc<Mechanism>, task: &Task) -> Opt
     let (crossing, searched_to) = found.ok().flatten()?;
     let frees_at = frees_at(scene, mechanism).map(|acceleration| acceleration / STANDARD_GRAVITY);
     Some(Thresholds { frees_at, crossing, searched_to })
-}
-
-/// Whether the range above a threshold is searched for windows, gaps and values known to cross.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Above {
-    Searched,
-    Skipped,
 }
 
 /// The smallest amplitude in g of a harmonic drive whose settled motion from rest crosses, and the largest
@@ -75,43 +93,17 @@ pub(super) fn crossing(
     above: Above,
     task: &Task,
 ) -> Result<Option<(Found, f64)>, Cancelled> {
-    let Some(drive) = scene.harmonic() else { return Ok(None) };
-    let Some(push) = holding_push(scene, mechanism) else { return Ok(None) };
-    let step = push / f64::from(FINE_STEPS);
-    let mut values: Vec<f64> = (1..=2 * FINE_STEPS).map(|i| step * f64::from(i)).collect();
-    while let Some(last) = values.last().filter(|last| **last < MAX_PUSHES * push) {
-        values.push(last * GROWTH);
-    }
-    // rounded as in the report, so that the reported value is one that was run
-    values.iter_mut().for_each(|value| *value = multiple(*value, third_digit(*value)));
-    values.dedup();
-    let searched_to = values.last().copied().unwrap_or(push);
+    let Some(drive) = scene.harmonic().filter(|_| holding_push(scene, mechanism).is_some()) else {
+        return Ok(None);
+    };
     let trial = Scene { excitation: drive.sine(), ..from_rest(scene) };
     let files = Files::default(); // an amplitude changes no mechanism
-    let family = Family::new(&trial, &files, mechanism, "excitation.amplitude_g");
+    let field = "excitation.amplitude_g";
+    let upward = Upward::of(&trial, mechanism, field);
+    let family = Family::new(&trial, &files, mechanism, field);
     let search = Search { family, onset: Onset::Crossing, until_settled, task, pool, ahead: 1 };
-    let (mut answers, mut resolution) = (Answers::default(), third_digit(push));
-    for part in values.chunks(TOGETHER) {
-        resolution = third_digit(answers.scan.last().map_or(part[0], |last| last.0));
-        search.scan(&mut answers, part, resolution)?;
-        if let Some(first) = answers.first_with_motion() {
-            // values beyond the threshold are dropped, since their number depends on where a part ends
-            answers.scan.truncate(first + 1);
-            break;
-        }
-    }
-    let mut found = answers.found(resolution);
-    if let Some(value) = found.value.filter(|_| above == Above::Searched) {
-        let tried = (1..=GAP_STEPS).map(|i| value * (1.0 + GAP_STEP * f64::from(i)));
-        let mut tried: Vec<f64> = tried.map(|value| multiple(value, third_digit(value))).collect();
-        tried.dedup();
-        let mut answers = Answers::begun_with(value);
-        search.scan(&mut answers, &tried, resolution)?;
-        let Found { high, windows, without_gap, .. } = answers.found(resolution);
-        let high = [found.high, high].into_iter().flatten().reduce(f64::min);
-        found = Found { high, windows, without_gap, ..found };
-    }
-    Ok(Some((found, searched_to)))
+    let found = search.upward(&trial, mechanism, (field, &upward, above))?;
+    Ok(upward.values.last().map(|last| (found, *last)))
 }
 
 /// The amplitude in g whose inertial force equals the largest one between the rest position and the barrier.

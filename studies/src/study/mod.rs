@@ -79,10 +79,10 @@ pub use amplitudes::{Thresholds, can_cross, thresholds};
 pub(crate) use basins::StartsError;
 pub use basins::{Answer, Attractor, Basins, EvenRange, NoBasins, Shares, Starts};
 pub use best::{
-    BestDesign, BestQuestion, Constraint, DesignRange, Environment, NoBest, Optimum, Spread, Tried,
-    Variation, best, names, place, quantity,
+    BestDesign, BestQuestion, Constraint, DesignRange, DesignRun, Environment, Memory, NoBest, Optimum,
+    Results, Seeds, Spread, Tolerance, Tried, best, names, place, quantity,
 };
-pub(crate) use best::{INTERVALS, MOST_FIELDS, scan_places, scan_runs};
+pub(crate) use best::{INTERVALS, MOST_FIELDS, scan_places};
 pub use contact::yield_warning;
 pub(crate) use contact::{contact, yield_speed};
 pub use curve::{
@@ -112,8 +112,8 @@ pub use melnikov::melnikov_threshold;
 pub(crate) use melnikov::{suits_melnikov, with_melnikov};
 pub(crate) use models::ModelUse;
 pub use orbit::{
-    Branch, BranchEnd, BranchEvent, BranchOptions, FieldRange, Locus, LocusEnd, LocusEvent, NoOrbit, Orbit,
-    branch, branches_table, loci, loci_table, orbit, orbit_near, switched,
+    Begin, Branch, BranchEnd, BranchEvent, BranchOptions, FieldRange, Locus, LocusEnd, LocusEvent, NoOrbit,
+    Orbit, begun, branch, branches_table, loci, loci_table, orbit, orbit_near, switched,
 };
 pub use section::{IMPACTS, MAX_SECTION, SectionAt, SectionOptions, Sections, section};
 pub(crate) use settled::followed_until;
@@ -128,14 +128,13 @@ pub(crate) use sweep::CellFaults;
 pub use sweep::{Cell, DIRECTION, STANDARD as STANDARD_COLUMNS, Sweep, SweepEnd, SweepOptions, Tally};
 pub use table::{Column, Table, Values, label_and_unit, with_unit};
 pub(crate) use thresholds::NoThresholds;
-pub use thresholds::{Found, Onset, Scan, Verdict, threshold, threshold_table};
-pub(crate) use trace::Trace;
-pub use trace::{between, simulate_with_trace};
+pub use thresholds::{Found, Onset, Scan, Searched, Verdict, threshold, threshold_table};
+pub use trace::{Trace, between, simulate_with_trace};
 pub use uncertain::MAX_DRAWS;
-pub(crate) use uncertain::{Draws, share_in_range};
+pub(crate) use uncertain::{Draws, Variation, share_in_range};
 pub(crate) use walk::NoModel;
 pub use walk::{Carry, Direction, Family, Visit, up_and_down};
-pub use watch::{Watch, continued_scene, distances, watched_events};
+pub use watch::{Watch, continued_scene, watched_events};
 
 /// Progress and cancellation of a long study.
 #[derive(Clone, Copy)]

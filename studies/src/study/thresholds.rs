@@ -11,14 +11,15 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use serde::{Deserialize, Serialize};
 
-use super::amplitudes::frees_at;
-use super::bisection::{Trial, between, next_between};
+use super::amplitudes::{Upward, frees_at};
+use super::bisection::{Trial, between, multiple, next_between};
 use super::grid_study::{Built, Cells};
 use super::settled::{followed, runs_from};
 use super::walk::excitation_fault;
 use super::{Cancelled, CellFaults, Family, NoModel, Table, Task};
 use crate::dynamics::{Model, Outcome, Regime, Run, Summary};
 use crate::mechanics::Mechanism;
+use crate::numeric::rounded;
 use crate::scene::{Fault, Files, Scene, Start};
 use crate::system::threads::{Pool, Queue, UnderWay};
 
@@ -38,7 +39,8 @@ pub struct Scan {
 /// A threshold.
 ///
 /// Values are in the unit of the searched field. The motions that begin at a threshold need not go on above
-/// it: [`windows`](Self::windows) counts where they end and begin again.
+/// it: [`windows`](Self::windows) counts where they end and begin again, within the scan or, of an amplitude
+/// that is searched upward, within half the threshold above it.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Found {
     /// The smallest value with the motion; `None` if no value of the scan has it.
@@ -49,10 +51,64 @@ pub struct Found {
     pub high: Option<f64>,
     /// Whether the answer at the value or just below it is unknown; without a value, at the end of the scan.
     pub undecided: bool,
-    /// Number of changes of the answer above it, within the scan.
+    /// Number of changes of the answer above it.
     pub windows: u64,
-    /// The value above which the whole scan has the motion; `None` if its last value does not have it.
+    /// The value above which all tried values have the motion; `None` if the last does not have it.
     pub without_gap: Option<f64>,
+    /// Distance of the values of the scan on both sides of it: a narrower window below may be missed. `None`
+    /// for a closed form, and where the scan has no value on one side.
+    pub step: Option<f64>,
+    /// Its resolution, where it was bisected.
+    pub resolution: Option<f64>,
+}
+
+/// What is searched for a threshold.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Searched {
+    /// The values of a scan.
+    Scan(Scan),
+    /// An amplitude of the drive from 0 upward, in steps that suit each scene.
+    Upward {
+        /// Dotted path of its field, one of [`Scene::amplitudes`].
+        field: String,
+        /// As in [`Scan`]; by default a thousandth of the first step.
+        resolution: Option<f64>,
+        /// As in [`Scan`].
+        until_settled: Option<f64>,
+    },
+}
+
+impl Searched {
+    /// Dotted path of the searched field.
+    pub fn field(&self) -> &str {
+        match self {
+            Self::Scan(scan) => &scan.field,
+            Self::Upward { field, .. } => field,
+        }
+    }
+
+    fn until_settled(&self) -> Option<f64> {
+        match self {
+            Self::Scan(scan) => scan.until_settled,
+            Self::Upward { until_settled, .. } => *until_settled,
+        }
+    }
+
+    /// Number of times that a search of one scene ticks.
+    pub fn ticks(&self) -> u64 {
+        match self {
+            Self::Scan(scan) => scan.values.len() as u64,
+            Self::Upward { .. } => 1,
+        }
+    }
+
+    /// The values that may be tried of a scene first.
+    fn values(&self, scene: &Scene, mechanism: &Mechanism) -> Vec<f64> {
+        match self {
+            Self::Scan(scan) => scan.values.clone(),
+            Self::Upward { field, .. } => Upward::of(scene, mechanism, field).values,
+        }
+    }
 }
 
 /// The threshold of `scene` with its `mechanism` from `files`; all runs begin at rest. `None` if cancelled.
@@ -70,7 +126,7 @@ pub fn threshold(
     let trial = from_rest(scene);
     let family = Family::new(&trial, files, mechanism, &scan.field);
     let search = Search { family, onset, until_settled: scan.until_settled, task, pool: None, ahead: 1 };
-    search.found(scene, mechanism, scan).ok()
+    search.scanned(scene, mechanism, scan).ok()
 }
 
 /// Why there is no table of thresholds or of escapes.
@@ -89,34 +145,45 @@ impl From<Cancelled> for NoThresholds {
     }
 }
 
-/// The thresholds of every cell, with the columns of [`Threshold`](crate::questions::Threshold).
-/// Ticks for each value of the scan in each cell. All cells are checked before the first run.
+/// The thresholds of every cell, with the columns of [`Threshold`](crate::questions::Threshold). Ticks
+/// [`Searched::ticks`] times for each cell. All cells are checked before the first run.
 pub fn threshold_table(
     cells: &Cells,
-    scan: &Scan,
+    searched: &Searched,
     onset: Onset,
     pool: &Pool,
     task: &Task,
 ) -> Result<Table, NoThresholds> {
     cells.check(pool, task, |scene, mechanism| {
-        let trial = from_rest(scene);
-        faults(&trial, mechanism, &cells.files, scan, |model| {
+        let (trial, values) = (from_rest(scene), searched.values(scene, mechanism));
+        faults(&trial, mechanism, &cells.files, (searched.field(), &values), |model| {
             let suits = onset != Onset::Interwell || model.repeats();
             (!suits).then(|| excitation_fault(&trial, NO_PERIOD.to_owned()))
         })
     })?;
     // with several cells, each runs on one thread
     let ahead = if cells.grid.cells() == 1 { pool.count() } else { 1 };
+    let silent = Task { tick: &|| (), cancel: task.cancel };
     let of_cell = |scene: &Scene, built: Built, _: u64| {
         let Ok(mechanism) = built else {
-            scan.values.iter().for_each(|_| (task.tick)());
+            (0..searched.ticks()).for_each(|_| (task.tick)());
             return Ok(Found { undecided: true, ..Found::default() });
         };
         let trial = from_rest(scene);
-        let family = Family::new(&trial, &cells.files, &mechanism, &scan.field);
-        let until_settled = scan.until_settled;
+        let family = Family::new(&trial, &cells.files, &mechanism, searched.field());
+        let until_settled = searched.until_settled();
         let search = Search { family, onset, until_settled, task, pool: Some(pool), ahead };
-        search.found(scene, &mechanism, scan)
+        match searched {
+            Searched::Scan(scan) => search.scanned(scene, &mechanism, scan),
+            Searched::Upward { field, resolution, .. } => {
+                let mut upward = Upward::of(scene, &mechanism, field);
+                upward.resolution = resolution.unwrap_or(upward.resolution);
+                let how = (&**field, &upward, Above::Searched);
+                let found = Search { task: &silent, ..search }.upward(scene, &mechanism, how)?;
+                (task.tick)();
+                Ok(found)
+            }
+        }
     };
     let found = cells.map(1, pool, task, of_cell)?;
     Ok(cells
@@ -126,24 +193,26 @@ pub fn threshold_table(
         .each("low", &found, |found| found.low)
         .each("high", &found, |found| found.high)
         .each("undecided", &found, |found| Some(found.undecided))
-        .each("windows", &found, |found| found.value.map(|_| found.windows)))
+        .each("windows", &found, |found| found.value.map(|_| found.windows))
+        .each("step", &found, |found| found.step)
+        .each("resolution", &found, |found| found.resolution))
 }
 
 pub(super) fn from_rest(scene: &Scene) -> Scene {
     Scene { start: Start::Rest, ..scene.clone() }
 }
 
-/// The faults at the first value of the scan, if no value gives a model in which `fault` finds none.
+/// The faults at the first of these values of a field, if none gives a model in which `fault` finds none.
 pub(super) fn faults(
     scene: &Scene,
     mechanism: &Arc<Mechanism>,
     files: &Files,
-    scan: &Scan,
+    (field, values): (&str, &[f64]),
     fault: impl Fn(&Model) -> Option<Fault>,
 ) -> Option<Vec<Fault>> {
-    let family = Family::new(scene, files, mechanism, &scan.field);
+    let family = Family::new(scene, files, mechanism, field);
     let mut first = None;
-    for value in &scan.values {
+    for value in values {
         let faults = match family.model(*value) {
             Ok(model) => vec![fault(&model)?],
             Err(NoModel::NoField | NoModel::Unsolved) => return None,
@@ -239,9 +308,29 @@ impl Answers {
             undecided: [below.last(), above.first()].into_iter().flatten().any(|(_, verdict)| !verdict.known),
             windows,
             without_gap: last_up.or(value).filter(|_| ends_with_yes),
+            step: span.map(|(low, high)| rounded(high - low, DIGITS)),
+            resolution: span.map(|_| rounded(resolution, DIGITS)),
         }
     }
 }
+
+/// Number of values that are run together before it is seen whether one of them has the motion.
+const TOGETHER: usize = 32;
+
+/// Number of steps above a threshold in which changes are searched.
+const GAP_STEPS: u32 = 50;
+/// Length of such a step, as a share of the threshold.
+const GAP_STEP: f64 = 0.01;
+
+/// Whether the range above a threshold is searched for windows, gaps and values known to have the motion.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Above {
+    Searched,
+    Skipped,
+}
+
+/// Digits of a step and a resolution, which leave out the rounding of the difference of two values.
+const DIGITS: usize = 12;
 
 /// Number of runs under way on a thread from which further runs share their vector lanes.
 const SHARING: usize = 5;
@@ -260,12 +349,16 @@ pub(super) struct Search<'a> {
 }
 
 impl Search<'_> {
+    /// The value of `field` that releases the mass, where it has a closed form and that is what is searched.
+    fn frees_at(&self, scene: &Scene, mechanism: &Mechanism, field: &str) -> Option<f64> {
+        let drive = scene.harmonic().filter(|drive| drive.amplitude_path() == field)?;
+        let frees = frees_at(scene, mechanism).filter(|_| self.onset == Onset::Release)?;
+        Some(drive.amplitude_of(frees))
+    }
+
     /// The threshold of `scene` with its `mechanism`; the family of models must be theirs.
-    fn found(&self, scene: &Scene, mechanism: &Mechanism, scan: &Scan) -> Result<Found, Cancelled> {
-        if self.onset == Onset::Release
-            && let Some(drive) = scene.harmonic().filter(|drive| drive.amplitude_path() == scan.field)
-            && let Some(frees) =
-                frees_at(scene, mechanism).map(|acceleration| drive.amplitude_of(acceleration))
+    fn scanned(&self, scene: &Scene, mechanism: &Mechanism, scan: &Scan) -> Result<Found, Cancelled> {
+        if let Some(frees) = self.frees_at(scene, mechanism, &scan.field)
             && let (Some(&first), Some(&last)) = (scan.values.first(), scan.values.last())
             && first > -frees
         {
@@ -277,6 +370,40 @@ impl Search<'_> {
         let mut answers = Answers::default();
         self.scan(&mut answers, &scan.values, scan.resolution)?;
         Ok(answers.found(scan.resolution))
+    }
+
+    /// The threshold of `scene` with its `mechanism` in `field`, the field of the family of models, searched
+    /// upward: the values above the first one with the motion are not tried, but for those within half of it.
+    pub fn upward(
+        &self,
+        scene: &Scene,
+        mechanism: &Mechanism,
+        (field, upward, above): (&str, &Upward, Above),
+    ) -> Result<Found, Cancelled> {
+        if let Some(frees) = self.frees_at(scene, mechanism, field) {
+            let all = Some(frees);
+            return Ok(Found { value: all, low: all, high: all, without_gap: all, ..Found::default() });
+        }
+        let Upward { values, resolution } = upward;
+        let mut answers = Answers::default();
+        for part in values.chunks(TOGETHER) {
+            self.scan(&mut answers, part, *resolution)?;
+            if let Some(first) = answers.first_with_motion() {
+                // values beyond the threshold are dropped, since their number depends on where a part ends
+                answers.scan.truncate(first + 1);
+                break;
+            }
+        }
+        let found = answers.found(*resolution);
+        let Some(value) = found.value.filter(|_| above == Above::Searched) else { return Ok(found) };
+        let tried = (1..=GAP_STEPS).map(|i| multiple(value * (1.0 + GAP_STEP * f64::from(i)), *resolution));
+        let mut tried: Vec<f64> = tried.collect();
+        tried.dedup();
+        let mut answers = Answers::begun_with(value);
+        self.scan(&mut answers, &tried, *resolution)?;
+        let Found { high, windows, without_gap, .. } = answers.found(*resolution);
+        let high = [found.high, high].into_iter().flatten().reduce(f64::min);
+        Ok(Found { high, windows, without_gap, ..found })
     }
 
     /// Runs further values of a scan, and in free vector lanes values of the bisection at its first change.

@@ -7,14 +7,14 @@ use std::sync::atomic::AtomicBool;
 use super::simulate::in_order;
 use super::watch::ledger_over;
 use super::{Keep, Recorded, Table, events_table, samples_table};
-use crate::dynamics::{Event, EventKind, LiveLedger, Model, Outcome, Phase, Request, Sample, Side};
+use crate::dynamics::{Event, EventKind, Live, LiveLedger, Model, Outcome, Phase, Request, Sample, Side};
 
 /// The data of a run that a picture shows.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trace {
     /// `t_s,x_m,v_m_per_s,base_accel_m_per_s2,power_w` in order of time; an impact has two rows, before and
-    /// after it, in which base acceleration and power are missing. The power is that into the load of a
-    /// transducer or, without a transducer, that of the base on the mass.
+    /// after it. The power is that into the load of a transducer or, without a transducer, that of the base
+    /// on the mass.
     pub path: Table,
     /// Whether the scene has a transducer.
     pub has_load: bool,
@@ -101,7 +101,7 @@ pub fn simulate_with_trace(
         (picture_samples, strobes) = sampled(close, end);
         shown = model.run(&Request { sample_times: &picture_samples, ..request }).samples;
     }
-    let path = path(model, &shown, &run.events);
+    let path = path(model, &shown, &jumps(model, &run.events, request));
     let rows = path.numbers("t_s").unwrap_or_default();
     let (mut portrait_from, shown_to) = close;
     let until = rows.partition_point(|t| *t <= shown_to);
@@ -178,25 +178,50 @@ fn picture_times(model: &Model, close: (f64, f64), duration: f64) -> Vec<f64> {
     ascending(even((0.0, duration), count).chain(even(close, PORTRAIT)).collect())
 }
 
-/// Samples and impacts in order of time. A sample at the time of an impact is the state after it.
-fn path(model: &Model, samples: &[Sample], events: &[Event]) -> Table {
-    let mut rows: Vec<[f64; 5]> = Vec::with_capacity(samples.len());
-    let mut jumps = events.iter().filter(|event| event.kind == EventKind::Impact).peekable();
+/// The states before and after each impact, where velocity and power jump. The state of a circuit, which an
+/// event does not have, is that of a sample of the same run at its time.
+fn jumps(model: &Model, events: &[Event], request: Request) -> Vec<[Sample; 2]> {
+    let impacts = || events.iter().filter(|event| event.kind == EventKind::Impact);
+    let circuit = model.has_electrical_state() && impacts().next().is_some();
+    let times = if circuit { ascending(impacts().map(|jump| jump.t).collect()) } else { Vec::new() };
+    let charged = match circuit {
+        true => model.run(&Request { sample_times: &times, ..request }).samples,
+        false => Vec::new(),
+    };
+    let live = Live::new(model);
+    let jump = |event: &Event| {
+        let x = model.stop(event.side).map_or(f64::NAN, |stop| stop.x);
+        let electrical = match charged.binary_search_by(|sample| sample.t.total_cmp(&event.t)) {
+            Ok(place) => charged[place].electrical,
+            Err(_) if circuit => f64::NAN,
+            Err(_) => 0.0,
+        };
+        let base_accel = live.base_acceleration(event.t);
+        let state = |v: f64| Sample { t: event.t, x, v, base_accel, phase: Phase::Free, electrical };
+        [event.v_in, event.v_out].map(state)
+    };
+    impacts().map(jump).collect()
+}
+
+/// Samples and jumps in order of time. A sample at the time of an impact is the state after it.
+fn path(model: &Model, samples: &[Sample], jumps: &[[Sample; 2]]) -> Table {
+    let mut rows: Vec<&Sample> = Vec::with_capacity(samples.len() + 2 * jumps.len());
+    let mut jumps = jumps.iter().peekable();
     for sample in samples {
-        while let Some(jump) = jumps.next_if(|jump| jump.t <= sample.t) {
-            let x = model.stop(jump.side).map_or(f64::NAN, |stop| stop.x);
-            rows.push([jump.t, x, jump.v_in, f64::NAN, f64::NAN]);
-            rows.push([jump.t, x, jump.v_out, f64::NAN, f64::NAN]);
+        while let Some(jump) = jumps.next_if(|jump| jump[0].t <= sample.t) {
+            rows.extend(jump);
         }
-        let power = model.output(sample).map_or(sample.work_rate(model.mass()), |output| output.power);
-        rows.push([sample.t, sample.x, sample.v, sample.base_accel, power]);
+        rows.push(sample);
     }
+    let work_rate = |sample: &Sample| sample.work_rate(model.mass());
+    let power =
+        |sample: &&Sample| model.output(sample).map_or_else(|| work_rate(sample), |output| output.power);
     Table::new()
-        .each("t_s", &rows, |row| row[0])
-        .each("x_m", &rows, |row| row[1])
-        .each("v_m_per_s", &rows, |row| row[2])
-        .each("base_accel_m_per_s2", &rows, |row| row[3])
-        .each("power_w", &rows, |row| row[4])
+        .each("t_s", &rows, |row| row.t)
+        .each("x_m", &rows, |row| row.x)
+        .each("v_m_per_s", &rows, |row| row.v)
+        .each("base_accel_m_per_s2", &rows, |row| row.base_accel)
+        .each("power_w", &rows, power)
 }
 
 fn impacts(events: &[Event]) -> Table {

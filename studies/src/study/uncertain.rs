@@ -4,7 +4,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
 use super::grid::is_of_mechanism;
-use super::{Cell, Grid, Read, Row, SummaryField, Table, Values, Variation};
+use super::{Cell, Grid, Read, Row, SummaryField, Table, Values};
 use crate::numeric::{normal_probability, normal_quantile, number_text};
 use crate::scene::{FieldPath, Range, Scene, Uncertain, field_info};
 
@@ -19,6 +19,17 @@ const SEED: u64 = 1;
 const ENDS: [usize; 2] = [1, 39];
 
 const COUNT: &str = "draws";
+
+/// A field that is known with a standard deviation.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Variation {
+    /// Dotted path of the field.
+    pub field: String,
+    /// The standard deviation: a share of the value, or in the field's unit.
+    pub by: f64,
+    /// Whether it is a share.
+    pub relative: bool,
+}
 
 /// The draws of uncertain fields, from independent normal distributions about the value of each field, which
 /// are truncated to its range. The k-th draw is at the same probabilities in every cell.

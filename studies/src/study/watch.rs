@@ -60,7 +60,7 @@ impl Watch {
             now,
             step: sampling_step(model),
         };
-        watch.take(LiveOutput { samples: vec![now], events: Vec::new() }, None);
+        watch.take(LiveOutput { samples: vec![now], events: Vec::new() }, &[], None);
         watch.advance(0.0);
         watch
     }
@@ -89,6 +89,7 @@ impl Watch {
         let count = ((to / step).floor() - first + 1.0).max(0.0) as u32;
         let times = (0..count).map(|i| (first + f64::from(i)) * step);
         let times: Vec<f64> = times.filter(|t| *t > from && *t <= to).collect();
+        let before = self.live.model().has_electrical_state().then(|| self.live.clone());
         let mut passage = LiveOutput::default();
         let (mut done, mut arrived) = (0, true);
         for mark in self.marks(from, to) {
@@ -101,7 +102,8 @@ impl Watch {
             self.ledgers.push_back((mark, self.live.ledger()));
         }
         arrived = arrived && self.live.advance(to, &times[done..], &mut passage);
-        self.take(passage, None);
+        let charged = before.map_or_else(Vec::new, |live| at_events(live, self.live.time(), &passage.events));
+        self.take(passage, &charged, None);
         self.now = self.live.state();
         arrived
     }
@@ -138,7 +140,7 @@ impl Watch {
         change(&mut self.live, &mut passage);
         self.now = self.live.state();
         // a mass that a stop was moved away from is not on it any more
-        self.take(passage, Some(self.now.x));
+        self.take(passage, &[self.now], Some(self.now.x));
     }
 
     /// The present time in s.
@@ -226,10 +228,14 @@ impl Watch {
 
     /// The state at a time in s, by cubic Hermite interpolation between two samples.
     pub fn state_at(&self, t: f64) -> Sample {
+        self.state_before(self.samples.partition_point(|sample| sample.t <= t), t)
+    }
+
+    /// The state at a time in s, of which the sample `after` is the first later one.
+    fn state_before(&self, after: usize, t: f64) -> Sample {
         if t >= self.now.t {
             return self.now;
         }
-        let after = self.samples.partition_point(|sample| sample.t <= t);
         let Some(a) = after.checked_sub(1).and_then(|i| self.samples.get(i)) else {
             return self.samples.front().copied().unwrap_or(self.now);
         };
@@ -247,12 +253,7 @@ impl Watch {
             v: a.v + s * (2.0 * c + s * 3.0 * bend) / h,
             base_accel: a.base_accel + s * (b.base_accel - a.base_accel),
             phase: Phase::Free,
-            electrical: match b.electrical - a.electrical {
-                // samples at events have no electrical state
-                change if change.is_nan() && a.electrical.is_nan() => b.electrical,
-                change if change.is_nan() => a.electrical,
-                change => a.electrical + s * change,
-            },
+            electrical: a.electrical + s * (b.electrical - a.electrical),
         }
     }
 
@@ -277,29 +278,35 @@ impl Watch {
     }
 
     /// Stores the samples and events of a passage, with samples at its events where the path has corners: at
-    /// the stop that was touched, or if the present state or model was changed at `changed` in m.
-    fn take(&mut self, passage: LiveOutput, changed: Option<f64>) {
+    /// the stop that was touched, or if the present state or model was changed at `changed` in m. The
+    /// electrical state at an event is that of the sample in `charged` at its time. Without a barrier there
+    /// is nothing to cross: a passage through the equilibrium of the only well is no event.
+    fn take(&mut self, passage: LiveOutput, charged: &[Sample], changed: Option<f64>) {
         let mut events = passage.events.iter().peekable();
         for sample in &passage.samples {
             while let Some(event) = events.next_if(|event| event.t <= sample.t) {
-                self.corner(event, changed);
+                self.corner(event, charged, changed);
             }
             self.samples.push_back(*sample);
         }
-        events.for_each(|event| self.corner(event, changed));
-        self.events.extend(passage.events);
+        events.for_each(|event| self.corner(event, charged, changed));
+        let has_barrier = self.live.model().mechanism().landscape.barrier.is_some();
+        let is_kept = |event: &Event| has_barrier || event.kind != EventKind::Crossing;
+        self.events.extend(passage.events.into_iter().filter(is_kept));
         keep_last(&mut self.samples, MAX_KEPT_SAMPLES);
         self.dropped_events += keep_last(&mut self.events, MAX_KEPT_EVENTS);
         keep_last(&mut self.ledgers, MAX_KEPT_LEDGERS);
         self.models.forget(self.begin());
     }
 
-    fn corner(&mut self, event: &Event, changed: Option<f64>) {
+    fn corner(&mut self, event: &Event, charged: &[Sample], changed: Option<f64>) {
         let stop = self.live.model().stop(event.side);
         let Some(x) = changed.or(stop.map(|stop| stop.x)) else { return };
         let base_accel = self.live.base_acceleration(event.t);
-        // Events have no electrical state; NaN becomes a missing value in a table.
-        let electrical = if self.live.model().has_electrical_state() { f64::NAN } else { 0.0 };
+        let place = charged.partition_point(|sample| sample.t < event.t);
+        let mut here = charged.get(place).into_iter().chain(self.samples.back());
+        let unknown = if self.live.model().has_electrical_state() { f64::NAN } else { 0.0 };
+        let electrical = here.find(|sample| sample.t == event.t).map_or(unknown, |sample| sample.electrical);
         let sample = |v: f64, phase: Phase| Sample { t: event.t, x, v, base_accel, phase, electrical };
         let on_stop = if event.side == Side::Left { Phase::LeftStop } else { Phase::RightStop };
         match event.kind {
@@ -316,6 +323,20 @@ impl Watch {
     }
 }
 
+/// Samples of a motion at events that lie between its present and a later time in s: events have no
+/// electrical state of their own.
+fn at_events(mut live: Live, to: f64, events: &[Event]) -> Vec<Sample> {
+    let mut times: Vec<f64> = events.iter().map(|event| event.t).collect();
+    times.dedup();
+    let mut passage = LiveOutput::default();
+    // one call stops where impacts follow each other closely
+    while !times.is_empty() && !live.advance(to, &times, &mut passage) && live.ended().is_none() {
+        let reached = live.time();
+        times.retain(|t| *t > reached);
+    }
+    passage.samples
+}
+
 /// Drops all but the last `limit` entries; returns how many were dropped.
 fn keep_last<T>(entries: &mut VecDeque<T>, limit: usize) -> usize {
     let spare = entries.len().saturating_sub(limit);
@@ -327,9 +348,6 @@ fn sampling_step(model: &Model) -> f64 {
     let swing = model.natural_time();
     model.forcing_period().map_or(swing, |period| period.min(swing)) / PER_PERIOD
 }
-
-/// Smallest share of samples at common times for which only these are compared.
-const MIN_COMMON: f64 = 0.25;
 
 /// Parts in which a motion is advanced, between which it may be cancelled.
 const PARTS: u32 = 100;
@@ -350,36 +368,6 @@ pub fn ledger_over(model: &Model, (from, to): (f64, f64), cancel: Option<&Atomic
     };
     let before = reach(from);
     reach(to).since(&before)
-}
-
-/// Times in s from `from` to `to` with the distance in m of two motions, about `limit` of them at most.
-///
-/// Motions with the same sampling steps are compared at their common samples, which are exact. Others are
-/// interpolated, with an error of about a millionth of the distance between two samples.
-pub fn distances(a: &Watch, b: &Watch, (from, to): (f64, f64), limit: usize) -> Vec<(f64, f64)> {
-    let (samples, other) = (a.samples(), b.samples());
-    let to = to.min(a.time()).min(b.time());
-    let from = from.max(a.begin()).max(b.begin());
-    let first = samples.partition_point(|sample| sample.t < from);
-    let last = samples.partition_point(|sample| sample.t <= to);
-    // a power of two, so that the samples taken stay the same while others are added
-    let stride = (last.saturating_sub(first) / limit.max(1)).max(1).next_power_of_two();
-    let first = first.next_multiple_of(stride);
-    let taken = || (first..last).step_by(stride).map(|i| &samples[i]);
-    let mut found: Vec<(f64, f64)> = taken()
-        .filter_map(|sample| {
-            let at = other.partition_point(|twin| twin.t < sample.t);
-            let twin = other.get(at).filter(|twin| twin.t == sample.t)?;
-            Some((sample.t, (sample.x - twin.x).abs()))
-        })
-        .collect();
-    if (found.len() as f64) < MIN_COMMON * taken().count() as f64 {
-        found = taken().map(|sample| (sample.t, (sample.x - b.state_at(sample.t).x).abs())).collect();
-    }
-    if to > from {
-        found.push((to, (a.state_at(to).x - b.state_at(to).x).abs()));
-    }
-    found
 }
 
 /// The kept events with these indices, in the columns of [`events_table`](super::events_table) and two more:

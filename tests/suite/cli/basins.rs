@@ -139,8 +139,13 @@ fn one_start_is_a_map() {
 
 #[test]
 fn what_is_not_sure_is_marked_and_counted() {
-    let line = "basins paper-unconstrained --set excitation.amplitude_g=1.13 --x-mm -8:8:9 --v -0.8:0.8:9";
-    let assert = headless(line).assert().success();
+    let line = "basins duffing --set mass_g=1000 --set damping=Coefficient(c_n_s_per_m:0.15) \
+                --set mechanism=Cubic(linear_n_per_m:-1,cubic_n_per_m3:1) \
+                --set excitation=Force(amplitude_n:0.2,frequency_rad_per_s:1) \
+                --x-mm -2000:2000:15 --v -1.5:1.5:11";
+    let folder = tempfile::tempdir().unwrap();
+    let picture = folder.path().join("map.svg");
+    let assert = headless(line).arg("--plot").arg(&picture).assert().success();
     let output = assert.get_output();
     let rows = String::from_utf8(output.stdout.clone()).unwrap();
     let sure = column(&rows, "sure");
@@ -148,6 +153,8 @@ fn what_is_not_sure_is_marked_and_counted() {
     assert!(unsure > 0 && sure.iter().filter(|word| **word == "true").count() > 40, "{unsure}");
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
     assert!(said.contains(&format!(", {unsure} not sure")), "{said}");
+    assert!(fs::read_to_string(picture).unwrap().contains("paler: not sure"));
+    assert!(stdout("basins --help").contains("A row is `sure` where"));
     // the same for any number of threads
     assert_eq!(stdout(&format!("{line} --jobs 1")), stdout(&format!("{line} --jobs 3")));
 }

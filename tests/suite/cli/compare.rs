@@ -73,11 +73,12 @@ fn each_column_is_that_of_the_study_it_is_made_of() {
                 None => assert_eq!(cell(name), "", "{name} of row {row}"),
             }
         }
-        // the threshold crosses, and a third digit less does not
+        // the threshold crosses, and a resolution less does not
         let crosses =
             |set: String, hz: f64| settled(path, &set, (1000.0, hz))["crossings"].as_u64().unwrap() > 0;
         let least = number(&cell("crossing_g"));
-        let digit = 10_f64.powf(least.log10().floor() - 2.0);
+        let digit = number(&cell("crossing_resolution_g"));
+        assert!(digit < 2e-3 * number(&cell("crossing_step_g")));
         assert!(crosses(format!("excitation.amplitude_g={least}"), 3.0));
         assert!(!crosses(format!("excitation.amplitude_g={}", least - digit), 3.0), "{least}");
         // it is decided where both of them are known
@@ -120,6 +121,8 @@ fn the_harvester_has_one_threshold() {
         (low.unwrap_or(0.0), high.unwrap_or(f64::INFINITY))
     };
     let compared = ends("compare harvester --quiet", ["crossing_low_g", "crossing_high_g"]);
+    // without a range it is the same search
+    assert_eq!(ends("threshold harvester --quiet", ["low", "high"]), compared);
     let line = "threshold harvester --of crossing --field excitation.amplitude_g=0.6:0.8:0.02 --quiet";
     let searched = ends(line, ["low", "high"]);
     assert!(compared.0 > 0.7 && compared.1 < 0.75, "{compared:?}");
@@ -250,7 +253,7 @@ fn what_a_row_cannot_say_is_said() {
     };
     let both = said(&paths, "");
     assert!(both.contains("still.ron: 0.6 g does not move it"), "{both}");
-    assert!(!both.contains("only scene") && !both.contains("with the run of"), "{both}");
+    assert!(!both.contains("only scene") && !both.contains("rated with"), "{both}");
     // every empty cell of a row has a reason, one line for all that it is the same of
     let [first, second] = [&paths[0], &paths[1]].map(|path| path.display().to_string());
     for line in [
@@ -267,9 +270,9 @@ fn what_a_row_cannot_say_is_said() {
         format!("{second}: no release_g: it rests on no stop\n"),
         format!("{second}: no impact_speed_max_m_per_s: it has no stops\n"),
         format!(
-            "{second}: no crossing_g, crossing_low_g, crossing_high_g, crossing_undecided, crosses_from_hz, \
-             crosses_to_hz, threshold_sensitivity, most_sensitive_to: no barrier between two wells, so \
-             nothing to cross\n"
+            "{second}: no crossing_g, crossing_low_g, crossing_high_g, crossing_undecided, crossing_step_g, \
+             crossing_resolution_g, crosses_from_hz, crosses_to_hz, threshold_sensitivity, \
+             most_sensitive_to: no barrier between two wells, so nothing to cross\n"
         ),
     ] {
         assert!(both.contains(&line), "{line}{both}");
@@ -277,7 +280,10 @@ fn what_a_row_cannot_say_is_said() {
     let alone = said(&paths[1..], "");
     assert!(alone.contains("single.ron: the only scene; name others to set beside it"), "{alone}");
     let lent = said(&paths[1..], "--environment duffing");
-    assert!(lent.contains("single.ron: under the excitation and with the run of built-in duffing"), "{lent}");
+    assert!(
+        lent.contains("single.ron: rated with the excitation and run of built-in duffing, not with its own"),
+        "{lent}"
+    );
     let text = |name: &str, run: &str| {
         let path = folder.path().join(name);
         let shaken = "excitation: Sine(frequency_hz: 3.0, amplitude_g: 0.5)";
@@ -288,6 +294,9 @@ fn what_a_row_cannot_say_is_said() {
     let weak = text("weak.ron", "run: (duration_s: 4.0)");
     let lent = said(&[paths[1].clone(), weak], "");
     let lender = paths[1].display();
-    assert!(lent.contains(&format!("weak.ron: under the excitation of {lender}\n")), "{lent}");
+    assert!(
+        lent.contains(&format!("weak.ron: rated with the excitation of {lender}, not with its own\n")),
+        "{lent}"
+    );
     assert_eq!(said(&paths, "--quiet"), "");
 }

@@ -85,6 +85,20 @@ fn options_take_short_names_and_write_full_ones() {
     let cut = format!("{sweep} {map} --cut travel_limt=2");
     refused(headless(&cut), &["--cut travel_limt=2", "did you mean `travel_limit_mm`?"]);
 
+    // an earlier name is answered with the present one
+    let powered =
+        "sweep harvester --over excitation.amplitude_g=0.9,1 --set run.duration_s=2 --quiet --columns";
+    let full = stdout(&format!("{powered} mean_load_power_w"));
+    assert!(full.starts_with("amplitude_g,mean_load_power_w\n"), "{full}");
+    for name in ["mean_power_w", "mean_power", "mean_load_power"] {
+        assert_eq!(stdout(&format!("{powered} {name}")), full);
+    }
+    let best =
+        "best harvester --over stops.travel_limit_mm=1:2:0.5 --set run.duration_s=2 --quiet --maximise";
+    let full = stdout(&format!("{best} mean_load_power_w"));
+    assert!(full.contains(",mean_load_power_w,"), "{full}");
+    assert_eq!(stdout(&format!("{best} mean_power_w --subject-to mean_power_w>=0")), full);
+
     let best = "best nominal-cubic --over stops.travel_limit_mm=1:5:1 --set run.duration_s=2 --quiet";
     let full = format!("{best} --maximise travel_m --subject-to max_abs_x_m<=0.003");
     assert_eq!(stdout(&format!("{best} --maximise travel --subject-to max_abs_x<=0.003")), stdout(&full));

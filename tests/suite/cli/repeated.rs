@@ -49,7 +49,8 @@ fn calls(command: &str) -> Vec<&'static str> {
         "compare" => vec!["linear.ron l2.ron --environment SCENE --set run.tolerance=1e-7"],
         "best" => vec![
             "SCENE --over mass_g=900:1000:50 --environment linear.ron*2 --environment mass_g=1000 --seed 3 \
-             --vary damping.c_n_s_per_m=+-1% --maximise rms_velocity --subject-to max_abs_x<=9 --plot p.svg",
+             --vary damping.c_n_s_per_m=-1%:1% --maximise rms_velocity --subject-to max_abs_x<=9 \
+             --plot p.svg",
         ],
         "spectrum" => vec!["SCENE --of v --taper hann --rate-hz 20 --plot p.svg --quantity psd"],
         "basins" => vec![

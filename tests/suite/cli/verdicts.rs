@@ -69,7 +69,10 @@ fn waiting_needs_something_to_wait_for() {
 fn thresholds_are_tables() {
     // in closed form: mass times amplitude is the force at the stop
     let csv = stdout("threshold paper --of release --over stops.travel_limit_mm=1,1.5,4");
-    assert_eq!(csv.lines().next().unwrap(), "travel_limit_mm,of,value,low,high,undecided,windows");
+    assert_eq!(
+        csv.lines().next().unwrap(),
+        "travel_limit_mm,of,value,low,high,undecided,windows,step,resolution"
+    );
     let curve = column(&stdout("curve paper --at-mm 1,1.5,4"), "force_n");
     assert_eq!((column(&csv, "value").len(), curve.len()), (3, 3));
     for (value, force) in column(&csv, "value").iter().zip(curve) {
@@ -95,7 +98,7 @@ fn thresholds_are_tables() {
     // none in the range, and another field
     assert_eq!(
         stdout("threshold paper --field excitation.amplitude_g=0:0.5"),
-        "of,value,low,high,undecided,windows\ncrossing,,0.5,,false,\n"
+        "of,value,low,high,undecided,windows,step,resolution\ncrossing,,0.5,,false,,,\n"
     );
     // that is said
     let told = |line: &str| {
@@ -116,7 +119,7 @@ fn thresholds_are_tables() {
     // a negative amplitude pushes as hard, half a period later: all from -1 g on is a range with a gap
     assert_eq!(
         stdout("threshold paper --of release --field excitation.amplitude_g=-1:1:0.1 --quiet"),
-        "of,value,low,high,undecided,windows\nrelease,-1,,-1,false,2\n"
+        "of,value,low,high,undecided,windows,step,resolution\nrelease,-1,,-1,false,2,,\n"
     );
     let csv = stdout("threshold paper --field stops.travel_limit_mm=1:3:0.1 --of interwell");
     assert_eq!(column(&csv, "windows"), ["1"], "it ends where the stops hold the mass too hard: {csv}");
@@ -173,7 +176,7 @@ fn a_threshold_of_whole_numbers_is_a_whole_number() {
     // the end of the range is tried where no step meets it
     let still = "random-shaking --set run.duration_s=2 --set excitation.rms_g=0.01 --quiet";
     let csv = stdout(&format!("threshold {still} --field excitation.seed=1:402"));
-    assert_eq!(csv, "of,value,low,high,undecided,windows\ncrossing,,402,,false,\n");
+    assert_eq!(csv, "of,value,low,high,undecided,windows,step,resolution\ncrossing,,402,,false,,,\n");
     for (line, words) in [
         ("threshold paper --field mechanism.parallel.count=1:4:0.5", &["whole, 1 to 64", "1.5"][..]),
         ("threshold paper --field mechanism.parallel.count=1.5:4", &["whole, 1 to 64", "1.5"]),
@@ -203,7 +206,14 @@ fn waiting_needs_no_mechanism_that_is_never_run() {
 fn a_threshold_that_cannot_be_searched_is_refused() {
     for (line, words) in [
         ("threshold paper --field excitation.amplitude_g=2:0", &["--field", "TO must be above FROM"][..]),
-        ("threshold paper --field excitation.amplitude_g", &["--field", "FROM:TO"]),
+        ("threshold paper --field mass_g", &["--field", "FROM:TO"]),
+        ("threshold walking", &["--field", "has no amplitude", "name a field with its range"]),
+        (
+            "threshold duffing --set excitation=Sum([Sine(frequency_hz:0.2,amplitude_g:0.1),\
+             Sine(frequency_hz:0.4,amplitude_g:0.1)])",
+            &["--field", "several amplitudes", "excitation.0.amplitude_g, excitation.1.amplitude_g"],
+        ),
+        ("threshold paper --probability 0.5", &["--field", "no noise", "excitation.rms_g=0:2"]),
         ("threshold paper --field excitation.amplitude=0:2", &["excitation.amplitude_g"]),
         ("threshold paper --field excitation.amplitude_g=-1e999:2", &["--field", "`-1e999` is not a finite"]),
         ("threshold paper --field excitation.amplitude_g=0,1:2", &["--field", "write FIELD=FROM:TO"]),

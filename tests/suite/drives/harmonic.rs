@@ -175,7 +175,7 @@ fn a_force_releases_the_mass_at_the_force_on_its_stop_whatever_the_mass() {
     let masses = vec![1.0, 15.2, 400.0];
     let question = Threshold {
         over: vec![("mass_g".to_owned(), masses.clone())],
-        field: "excitation.amplitude_n=0:1:0.01".to_owned(),
+        field: Some("excitation.amplitude_n=0:1:0.01".to_owned()),
         of: Onset::Release,
         ..Threshold::default()
     };

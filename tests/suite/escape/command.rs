@@ -143,7 +143,7 @@ fn what_cannot_escape_is_refused() {
     refused(headless(&format!("escape {} --runs 0", scene(1.0))), &["--runs", "1 to 1000000"]);
     refused(headless(&format!("escape {} --within -1", scene(1.0))), &["--within", "-1"]);
     refused(headless(&format!("escape {} --over mass_g=-1,2", scene(1.0))), &["mass_g"]);
-    refused(headless("threshold nominal-cubic --probability 0.5"), &["no noise"]);
+    refused(headless("threshold nominal-cubic --probability 0.5"), &["--field", "no noise"]);
     let chance =
         |share: &str| format!("threshold {} --field excitation.rms_g=0:2 --probability {share}", scene(1.0));
     refused(headless(&chance("1")), &["--probability", "above 0 and below 1"]);

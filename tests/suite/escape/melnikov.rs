@@ -148,7 +148,7 @@ fn of_a_force_it_is_in_newtons_for_the_mass_of_each_cell() {
     let simulation = Simulation::from_text("force", &scene).unwrap();
     let question = Threshold {
         over: vec![("mass_g".to_owned(), masses.to_vec())],
-        field: "excitation.amplitude_n=0:0.01:0.005".to_owned(),
+        field: Some("excitation.amplitude_n=0:0.01:0.005".to_owned()),
         melnikov: true,
         ..Threshold::default()
     };

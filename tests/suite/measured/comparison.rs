@@ -5,9 +5,11 @@ use std::sync::atomic::AtomicBool;
 use interwell::dynamics::{EventKind, Model};
 use interwell::scene::{Channel, Document, Files, Quantity};
 use interwell_studies::study::{Comparison, Keep, MeasuredMotion, NoComparison, compare, simulate};
+use proptest::prelude::*;
 
 use super::Noise;
 use crate::cli::{headless, refused};
+use crate::properties::harness::hold_for;
 use crate::support::{build, of_kind, run_at};
 
 fn model(changes: &[&str]) -> (Document, Model) {
@@ -184,4 +186,33 @@ fn a_last_sample_at_the_end_of_the_run_is_within_it() {
         assert_eq!(found.times.len(), 8, "{:?}", found.remarks);
         assert!(!found.remarks.iter().any(|remark| remark.contains("outside")), "{:?}", found.remarks);
     }
+}
+
+/// A difference in percent of 0 is not known: of records of zeros, constants and single values, at any size.
+#[test]
+fn no_percent_is_infinite() {
+    let value = prop_oneof![Just(0.0), Just(-0.0), Just(5e-324), Just(1e-300), -1e-3..1e-3_f64];
+    let drawn = (value.clone(), value, 2..40_usize, 0..4_usize);
+    let (document, model) = model(&[]);
+    let check = |(value, other, length, quantity): &(f64, f64, usize, usize)| {
+        let times: Vec<f64> = (0..*length).map(|i| 0.05 * i as f64).collect();
+        let values =
+            times.iter().enumerate().map(|(i, _)| if i == length / 2 { *other } else { *value }).collect();
+        let quantities = [Quantity::Displacement, Quantity::Velocity, Quantity::Acceleration];
+        let quantity = quantities[quantity % quantities.len()];
+        let channel = Channel { quantity, column: "x".into(), values };
+        let shift = Some(0.0);
+        let motion = MeasuredMotion { times: &times, channel: &channel, offset: 0.0, time_scale: 1.0, shift };
+        let found = compare(&document.scene, &model, &motion, &AtomicBool::new(false)).unwrap();
+        let table = &found.table;
+        let percents = table.numbers("difference_percent").unwrap();
+        prop_assert!(percents.iter().all(|percent| !percent.is_infinite()), "{percents:?}");
+        prop_assert!(!found.rms.1.is_infinite());
+        for (measured, percent) in table.numbers("measured").unwrap().iter().zip(percents) {
+            prop_assert!(*measured != 0.0 || percent.is_nan(), "{percent} of 0");
+        }
+        prop_assert!(!interwell_studies::output::csv(table).contains("inf"));
+        Ok((*value, *other) == (0.0, 0.0))
+    };
+    hold_for("percents", 200, 0.05, drawn, |drawn| format!("{drawn:?}"), check);
 }

@@ -33,7 +33,7 @@ fn changes(changes: &[&str]) -> Vec<String> {
 }
 
 fn identified(record: &Recorded) -> Result<Identified, Unidentified> {
-    restitution(&record[0], &record[1], None, [None; 2])
+    restitution(&record[0], &record[1], None)
 }
 
 /// Numbers drawn at random.
@@ -322,17 +322,6 @@ fn a_cut_is_seen_wherever_the_samples_next_to_it_lie() {
 }
 
 #[test]
-fn a_stop_that_lies_elsewhere_than_given_is_said() {
-    let changes = changes(&["run.duration_s=5", "run.settle_s=0"]);
-    let record = recorded("paper", &changes, 1e-3, 0.0, 1);
-    let found = restitution(&record[0], &record[1], None, [None, Some(1.45e-3)]).unwrap();
-    let stop = number(&found, "right_stop_m");
-    assert!((stop.value - 1.5e-3).abs() < 1e-6, "{}", stop.describe());
-    let is_said = |text: &String| text.starts_with("the right stop lies at 1.5");
-    assert!(found.remarks.iter().any(is_said), "{:?}", found.remarks);
-}
-
-#[test]
 fn the_acceleration_of_the_base_makes_flights_smoother() {
     let shaking =
         "Sum([Sine(frequency_hz: 3, amplitude_g: 1.2), Noise(rms_g: 2, low_hz: 20, high_hz: 200, seed: 3)])";
@@ -340,7 +329,7 @@ fn the_acceleration_of_the_base_makes_flights_smoother() {
     let changes = changes(&[stops, &format!("excitation={shaking}"), "run.duration_s=20", "run.settle_s=0"]);
     let record = recorded("random-shaking", &changes, 5e-4, 2e-6, 1);
     let half = |base: Option<&[f64]>| {
-        let found = restitution(&record[0], &record[1], base, [None; 2]).unwrap();
+        let found = restitution(&record[0], &record[1], base).unwrap();
         let e = number(&found, "restitution");
         assert!((e.value - 0.6).abs() < 0.02, "{}", e.describe());
         0.5 * (e.interval.1 - e.interval.0)
@@ -367,7 +356,7 @@ fn what_cannot_be_identified_says_why_and_at_which_rate_it_could() {
 }
 
 #[test]
-fn places_of_stops_and_the_base_are_checked() {
+fn the_base_is_checked() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("r.csv");
     std::fs::write(&file, "t_s,x_mm\n0,1.5\n0.5,1.2\n1,1.5\n").unwrap();
@@ -377,10 +366,8 @@ fn places_of_stops_and_the_base_are_checked() {
         command
     };
     let of = "--of restitution";
-    refused(line(&format!("{of} --left-mm 2 --right-mm=-2")), &["--left-mm 2", "exchange them"]);
-    refused(line(&format!("{of} --left-mm nan")), &["--left-mm"]);
     refused(line(&format!("{of} --base accel_g")), &["accel_g", "t_s, x_mm"]);
     refused(line(&format!("{of} --base-unit g")), &["--base-unit", "--base"]);
-    refused(line(&format!("{of} --impact-times --right-mm 2")), &["--right-mm", "--impact-times"]);
-    refused(line("--of damping --right-mm 2"), &["--right-mm", "--of restitution"]);
+    refused(line(&format!("{of} --impact-times --base x_mm")), &["--base", "--impact-times"]);
+    refused(line("--of damping --base x_mm"), &["--base", "--of restitution"]);
 }

@@ -97,6 +97,22 @@ fn levels_follow_a_cascade_of_doublings() {
     assert_eq!(table.rows(), all.iter().map(|branch| branch.values.len()).sum::<usize>());
 }
 
+/// In a wide range the doublings of a Duffing oscillator follow each other as in one that is cut to them.
+#[test]
+fn doublings_are_followed_whatever_the_range() {
+    let of_each = [(0.034, 0.0368), (0.028, 0.05)].map(|range| {
+        let all = followed(&Document::load("duffing-cascade").unwrap(), range, 3);
+        let flips = |level: u32| {
+            let of_period = all.iter().filter(move |branch| branch.orbits[0].period == 1 << level);
+            of_period.flat_map(|branch| at(branch, BranchEvent::Flip)).reduce(f64::min)
+        };
+        (0..4).map(|level| flips(level).unwrap()).collect::<Vec<f64>>()
+    });
+    of_each[0].iter().zip(&of_each[1]).for_each(|(one, other)| near_relative(*one, *other, 1e-9));
+    let last: Vec<f64> = of_each[0].windows(2).map(|pair| pair[1] - pair[0]).collect();
+    assert!((last[1] / last[2] - 4.669_201_609).abs() < 0.1, "{of_each:?}");
+}
+
 /// Without a number it is one level, whatever option follows.
 #[test]
 fn a_switch_without_a_number_is_one_level() {

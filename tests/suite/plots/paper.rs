@@ -334,7 +334,7 @@ fn the_data_of_a_picture_are_the_rows_that_it_shows() {
     for (line, header) in [
         ("spectrum paper", "series,frequency_hz,amplitude\n"),
         ("section paper --over excitation.amplitude_g=0.5:1:0.25", "series,amplitude_g,x_m,v_m_per_s\n"),
-        ("basins paper --x-mm -1:1:3 --v -0.1:0.1:3", "series,x_mm,v_m_per_s,attractor\nstart,-1,-0.1,"),
+        ("basins paper --x-mm -1:1:3 --v -0.1:0.1:3", "series,x_mm,v_m_per_s,attractor,sure\nstart,-1,-0.1,"),
         (
             "orbit impact-oscillator --branch excitation.amplitude_g=0.05:0.06",
             "series,amplitude_g,x_m,stable,event\nbranch,0.05,",

@@ -107,7 +107,7 @@ fn over_two_fields_the_scan_is_a_map_and_over_more_the_values_stand_in_order() {
 fn the_command_draws_a_search_and_its_numbers() {
     let folder = tempfile::tempdir().unwrap();
     let line = "best paper --set run.duration_s=6 --over stops.travel_limit_mm=0.5:3:0.25 --vary \
-        stops.travel_limit_mm=+-5% --plot-data data.csv";
+        stops.travel_limit_mm=-5%:5% --plot-data data.csv";
     let mut command = with_plot(line, &folder.path().join("a.svg"));
     command.args(["--out", "/dev/null", "--quiet"]).current_dir(folder.path()).assert().success();
     let texts = texts(&folder.path().join("a.svg"));

@@ -6,6 +6,7 @@ use std::sync::atomic::AtomicBool;
 
 use interwell::dynamics::{Model, Regime, Request, STANDARD_GRAVITY, Summary};
 use interwell::mechanics::Mechanism;
+use interwell::questions::{Progress, Simulation, Threshold};
 use interwell::scene::{Document, FieldPath, Files, Scene};
 use interwell::system::threads::Pool;
 use interwell_studies::study::{Alternative, Found, Onset, Scan, Task, alternatives, threshold, thresholds};
@@ -240,11 +241,9 @@ fn a_comparison_names_the_first_amplitude_that_is_known_to_cross() {
             prop_assert_eq!((found.high, found.windows), (None, 0));
             return Ok(false);
         };
-        let hundredth = |i: u32| {
-            let amplitude = value * (1.0 + 0.01 * f64::from(i));
-            let digit = 10_f64.powi(amplitude.log10().floor() as i32 - 2);
-            (amplitude / digit).round() / (1.0 / digit).round()
-        };
+        let unit = found.resolution.unwrap();
+        let per_unit = (1.0 / unit).round();
+        let hundredth = |i: u32| (value * (1.0 + 0.01 * f64::from(i)) / unit).round() / per_unit;
         let known = |amplitude: f64| told(&scene, amplitude, until) == (true, true);
         let first = std::iter::once(value).chain((1..=50).map(hundredth)).find(|at| known(*at));
         match found.high {
@@ -276,6 +275,80 @@ fn two_searches_of_a_harvester_without_stops_bracket_one_threshold() {
     let ends = |found: Found| (found.low.unwrap_or(0.0), found.high.unwrap_or(f64::INFINITY));
     let ((low, high), (other_low, other_high)) = (ends(alone), ends(scanned));
     assert!(low > 1.0 && low <= other_high && other_low <= high, "{alone:?} {scanned:?}");
+}
+
+/// Without a range `threshold`, `compare` and the window give one threshold to the last bit, whose step and
+/// resolution are said: no step of the scan below it crosses.
+#[test]
+fn without_a_range_all_ask_by_one_search() {
+    let limits = prop_oneof![1 => Just(None), 2 => (0.2..1.2_f64).prop_map(Some)];
+    let all = drawn(limits, 0.02..0.3, 0.1..1.2, 12);
+    let pool = Pool::new(1).unwrap();
+    let task = Task { tick: &|| (), cancel: &AtomicBool::new(false) };
+    hold_for("one search", 20, 0.6, all, Drawn::text, |drawn| {
+        let (scene, until) = (drawn.scene(), Some(60.0 / drawn.frequency_hz()));
+        let alone = Alternative {
+            name: "drawn".to_owned(),
+            scene: scene.clone(),
+            files: Files::default(),
+            mechanism: mechanism(&scene),
+        };
+        let compared = alternatives(&[alone], until, &pool, &task).unwrap()[0].crossing.unwrap();
+        let simulation = Simulation::from_text("drawn", &drawn.text()).unwrap();
+        let question = Threshold { until_settled: until, ..Threshold::default() };
+        let table = question.run(&simulation, &Progress::none().threads(2)).unwrap();
+        let number = |name: &str| Some(table.numbers(name).unwrap()[0]).filter(|value| !value.is_nan());
+        let Found { value, low, high, step, resolution, .. } = compared;
+        for (name, known) in
+            [("value", value), ("low", low), ("high", high), ("step", step), ("resolution", resolution)]
+        {
+            prop_assert_eq!(number(name), known, "{}: {:?}", name, compared);
+        }
+        prop_assert_eq!(table.words("undecided")[0], compared.undecided.to_string());
+        let (Some(value), Some(step), Some(resolution)) = (value, step, resolution) else { return Ok(false) };
+        let most = drawn.most_g();
+        prop_assert!(step <= 0.0126 * value.max(most), "{step} {compared:?}");
+        prop_assert!((0.39e-5..1.01e-5).contains(&(resolution / most)), "{most} {compared:?}");
+        if step < 0.0101 * most {
+            let per_unit = (1.0 / step).round();
+            let steps = (1..(value / step).ceil() as u32).map(|i| f64::from(i) / per_unit);
+            let crossing =
+                steps.filter(|at| *at < value - step).find(|at| told(&scene, *at, until.unwrap()).0);
+            prop_assert_eq!(crossing, None, "{:?}", compared);
+        }
+        Ok(true)
+    });
+}
+
+/// A cosine and a force are searched in the unit of their own amplitude, also beside a tilt in a sum, where
+/// the same motion of a sine has the same sharp threshold.
+#[test]
+fn the_default_field_is_the_amplitude_of_the_drive_that_there_is() {
+    let all = drawn((0.15..0.5_f64).prop_map(Some), 0.05..0.4, 0.004..0.01, 4);
+    hold_for("default field", 12, 1.0, all, Drawn::text, |drawn| {
+        let simulation = Simulation::from_text("drawn", &drawn.text()).unwrap();
+        let (hz, mass) = (drawn.frequency_hz(), drawn.mass_g * 1e-3);
+        let rate = TAU * hz;
+        let exact = drawn.push_g(drawn.limit.unwrap()) * STANDARD_GRAVITY;
+        let sine = format!("Sine(frequency_hz: {hz:?}, amplitude_g: 0)");
+        for (drive, per_unit) in [
+            (format!("Cosine(frequency_rad_per_s: {rate:?}, amplitude_m_per_s2: 0, phase_deg: -90)"), 1.0),
+            (format!("Force(frequency_rad_per_s: {rate:?}, amplitude_n: 0, phase_deg: 90)"), 1.0 / mass),
+            (format!("Sum([Constant(accel_g: 0), {sine}])"), STANDARD_GRAVITY),
+            (sine.clone(), STANDARD_GRAVITY),
+        ] {
+            let simulation = simulation.with("excitation", &*drive).unwrap();
+            for of in [Onset::Crossing, Onset::Release] {
+                let question = Threshold { of, ..Threshold::default() };
+                let table = question.run(&simulation, &Progress::none().threads(1)).unwrap();
+                let value = table.numbers("value").unwrap()[0] * per_unit;
+                let excess = value / exact - 1.0;
+                let most = if of == Onset::Release { 2e-4 } else { 0.02 };
+                prop_assert!((-1e-9..most).contains(&excess), "{} {}: {}", drive, of.name(), excess);
+            }
+        }
+        Ok(true)
+    });
 }
 
 /// A sharp threshold is the same for any step of the scan and for the search that needs none.

@@ -8,6 +8,7 @@ use interwell::scene::*;
 use proptest::prelude::*;
 
 use super::*;
+use crate::properties::harness::hold_for;
 use crate::support::{build, every, run_at, same_bits};
 
 /// An expression as a tree.
@@ -415,4 +416,31 @@ fn hostile_arithmetic_is_refused_in_time() {
     let many = "1/0, ".repeat(count);
     let error = refused(&text(&[("mechanism", &format!("Polynomial(coefficients_si: [{many}])"))]));
     assert!(error.lines().count() <= 51, "{}", error.lines().count());
+}
+
+/// Parentheses, roots, signs and powers within each other, in any order: 64 levels are read, and no more.
+#[test]
+fn sixty_four_levels_are_read_and_no_more() {
+    let nested = proptest::collection::vec(0..4_usize, 1..100);
+    let check = |levels: &Vec<usize>| {
+        // the value stays 1
+        let inner = levels.iter().fold("1".to_owned(), |inner, level| match level {
+            0 => format!("({inner})"),
+            1 => format!("sqrt({inner})"),
+            2 => format!("1^{inner}"),
+            _ => format!("--{inner}"),
+        });
+        let depth: usize = levels.iter().map(|level| if *level == 3 { 2 } else { 1 }).sum();
+        let written = format!("2*{inner}");
+        if depth <= 64 {
+            prop_assert_eq!(read_number(&written), Ok(2.0));
+            let scene = Document::from_text("s.ron", &text(&[("mass_g", &written)]), Files::default());
+            prop_assert_eq!(scene.unwrap().scene.mass_g, 2.0);
+        } else {
+            let error = read_number(&written).unwrap_err();
+            prop_assert!(error.contains("it is nested deeper than 64 levels"), "{error}");
+        }
+        Ok((50..80).contains(&depth))
+    };
+    hold_for("nested", 400, 0.1, nested, |levels| format!("{levels:?}"), check);
 }

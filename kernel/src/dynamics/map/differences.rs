@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{Jacobian, Kernel, StroboscopicMap, passage};
+use super::{Jacobian, Kernel, StroboscopicMap};
 use crate::dynamics::drive::form::with_drive;
 use crate::dynamics::model::Model;
 use crate::dynamics::result::{EventKind, MapState};
@@ -30,8 +30,7 @@ fn differences(model: &Model, seconds: f64, start: MapState) -> Jacobian {
         let si = [start.x, start.v, start.electrical];
         let start = std::array::from_fn(|i| (dd(si[i]) + by[i]) * dd(units[i]));
         let span = map.span(&clock, (0.0, 1.0));
-        with_drive!(&drive, drive => passage::trace(&map.model, &equation, clock, drive, start, span, None))
-            .end
+        with_drive!(&drive, drive => map.trace(&equation, clock, drive, start, span)).end
     };
     let zero = dd(0.0);
     let slope = |j: usize| -> [f64; 3] {

@@ -1,6 +1,6 @@
 //! Derivatives of a state with respect to an earlier one, and their eigenvalues.
 
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, Vector3};
 
 use crate::numeric::elementary;
 
@@ -140,6 +140,20 @@ impl Jacobian {
     #[must_use]
     pub fn mirrored(&self) -> Self {
         Self { rows: self.rows.map(|row| row.map(|entry| 0.0 - entry)), ..*self }
+    }
+
+    /// The step of Newton's method to a fixed point of a map with these derivatives, which is `off` at
+    /// present: (1 - J) step = off. `None` where the matrix is singular.
+    #[doc(hidden)]
+    pub fn newton_step(&self, off: [f64; 3]) -> Option<[f64; 3]> {
+        if self.has_circuit {
+            let entry = |i: usize, j: usize| if i == j { 1.0 - self.rows[i][j] } else { -self.rows[i][j] };
+            return Matrix3::from_fn(entry).lu().solve(&Vector3::from(off)).map(Into::into);
+        }
+        let [[a, b], [c, d]] = self.of_motion();
+        let determinant = (1.0 - a) * (1.0 - d) - b * c;
+        let (x, v) = ((1.0 - d) * off[0] + b * off[1], c * off[0] + (1.0 - a) * off[1]);
+        Some([x / determinant, v / determinant, 0.0])
     }
 
     /// Eigenvalues, as many as rows, by falling magnitude; of a conjugate pair first the one above the real

@@ -7,14 +7,17 @@
 //! all derivatives are 0, since the release depends on the drive alone; beside a circuit it depends on its
 //! state too, which then is all that the later motion remembers.
 
+mod attraction;
 #[cfg(test)]
 mod differences;
 mod jacobian;
 mod passage;
 
+use std::sync::OnceLock;
 use std::sync::atomic::AtomicBool;
 
 use super::clock::{Clock, Instant};
+use super::drive::Drive;
 use super::drive::form::{Kernel, general, with_drive};
 use super::drive::general::General;
 use super::equation::Equation;
@@ -22,6 +25,7 @@ use super::model::Model;
 use super::result::MapState;
 use crate::numeric::{Dual, Number, Scalar};
 
+pub(super) use attraction::Repetition;
 pub use jacobian::{Jacobian, Multiplier};
 use passage::Traced;
 pub use passage::{Miss, Passage};
@@ -68,7 +72,10 @@ impl DualKernel {
 pub struct StroboscopicMap<'a> {
     model: Model,
     plain: Kernel<f64>,
-    dual: DualKernel,
+    /// Built for the first passage with derivatives.
+    dual: OnceLock<DualKernel>,
+    /// Whether passages list the points at which the mass turned back before a stop.
+    lists_misses: bool,
     /// Cycles of the clock up to the strobe: their whole number and the fraction.
     phase: (i64, f64),
     length: Length,
@@ -98,7 +105,8 @@ impl StroboscopicMap<'static> {
     pub fn over(model: &Model, seconds: f64) -> Self {
         Self {
             plain: Kernel::new(model),
-            dual: DualKernel::new(model),
+            dual: OnceLock::new(),
+            lists_misses: true,
             // the settled window is empty, so nothing is classified
             model: model.with_duration(seconds, seconds),
             phase: (0, 0.0),
@@ -114,6 +122,12 @@ impl StroboscopicMap<'_> {
     #[must_use]
     pub fn cancelled_by(self, cancel: &AtomicBool) -> StroboscopicMap<'_> {
         StroboscopicMap { cancel: Some(cancel), ..self }
+    }
+
+    /// The same map between the instants at this one, in cycles of the clock and a fraction of one, and whole
+    /// forcing periods later, whose passages list no misses.
+    pub(super) fn beginning_at(self, phase: (i64, f64)) -> Self {
+        Self { phase, lists_misses: false, ..self }
     }
 
     /// The model.
@@ -146,10 +160,19 @@ impl StroboscopicMap<'_> {
         let start = [x, v * by_v, electrical * by_electrical];
         let Kernel { equation, clock, drive } = &self.plain;
         let span = self.span(clock, span);
-        let traced = with_drive!(drive, drive => {
-            passage::trace(&self.model, equation, *clock, drive, start, span, self.cancel)
-        });
-        traced.passage
+        with_drive!(drive, drive => self.trace(equation, *clock, drive, start, span)).passage
+    }
+
+    fn trace<T: Scalar, D: Drive<T>>(
+        &self,
+        equation: &Equation<T>,
+        clock: Clock<T>,
+        drive: &D,
+        start: [T; 3],
+        span: (Instant<T>, Instant<T>),
+    ) -> Traced<T> {
+        let listed = self.lists_misses;
+        passage::trace(&self.model, equation, clock, drive, start, span, (listed, self.cancel))
     }
 
     /// The same with the derivatives of the state at the end with respect to that at the start. Without a
@@ -166,15 +189,12 @@ impl StroboscopicMap<'_> {
         span: (f64, f64),
     ) -> (Passage, Jacobian) {
         let MapState { x, v, electrical } = state.into();
-        let model = &self.model;
-        match &self.dual {
+        match self.dual.get_or_init(|| DualKernel::new(&self.model)) {
             DualKernel::Motion(kernel) => {
                 let Kernel { equation, clock, drive } = &**kernel;
                 let [x, v] = self.variables([x, v]);
                 let (start, span) = ([x, v, Dual::of(0.0)], self.span(clock, span));
-                let traced = with_drive!(drive, drive => {
-                    passage::trace(model, equation, *clock, drive, start, span, self.cancel)
-                });
+                let traced = with_drive!(drive, drive => self.trace(equation, *clock, drive, start, span));
                 let [x, v, _] = traced.end;
                 let [by_x, by_v] = self.slopes([x, v], traced.passage.rested);
                 (traced.passage, Jacobian::mechanical([by_x, by_v]))
@@ -182,8 +202,7 @@ impl StroboscopicMap<'_> {
             DualKernel::WithCircuit(kernel) => {
                 let (equation, clock, drive) = &**kernel;
                 let (start, span) = (self.variables([x, v, electrical]), self.span(clock, span));
-                let Traced { passage, end } =
-                    passage::trace(model, equation, *clock, drive, start, span, self.cancel);
+                let Traced { passage, end } = self.trace(equation, *clock, drive, start, span);
                 let rows = self.slopes(end, false);
                 (passage, Jacobian::with_circuit(rows))
             }

@@ -107,7 +107,8 @@ pub(super) struct Traced<T> {
     pub end: [T; 3],
 }
 
-/// Integrates the motion between two instants, from a state in kernel units, unless `cancel` is set.
+/// Integrates the motion between two instants, from a state in kernel units, unless `cancel` is set. Misses
+/// are only listed if `with_misses`, since they take time.
 pub(super) fn trace<T: Scalar, D: Drive<T>>(
     model: &Model,
     equation: &Equation<T>,
@@ -115,7 +116,7 @@ pub(super) fn trace<T: Scalar, D: Drive<T>>(
     drive: &D,
     start: [T; 3],
     (from, to): (Instant<T>, Instant<T>),
-    cancel: Option<&AtomicBool>,
+    (with_misses, cancel): (bool, Option<&AtomicBool>),
 ) -> Traced<T> {
     let request = Request { events: true, cancel, ..Request::default() };
     let mut motion = Motion::new(model, &request, model.tolerance, equation, clock, drive);
@@ -144,7 +145,7 @@ pub(super) fn trace<T: Scalar, D: Drive<T>>(
             && motion.steps > steps
             && motion.record.counts.sums == sums
             && flow.is_none();
-        if flown {
+        if flown && with_misses {
             let Stepper { series, clock, .. } = &motion.stepper;
             add_misses(motion.stepper.mode(&before), series, clock, (&before, motion.state.at), &mut misses);
         }

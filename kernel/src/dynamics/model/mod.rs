@@ -233,15 +233,20 @@ impl Model {
         left.map(|stop| (stop - x, false)).into_iter().chain(right).find(|(depth, _)| *depth > 0.0)
     }
 
-    /// Whether the mirror image of a free motion is a motion of the same model with mirrored crossings: an
-    /// odd curve, equal stops on both sides.
+    /// Whether the mirror image of a free motion is a motion of the same model with mirrored crossings.
     pub(crate) fn is_symmetric(&self) -> bool {
+        self.is_odd() && self.crossing_level.is_none_or(|level| level == 0.0)
+    }
+
+    /// Whether the mirror image of a free motion is a motion of the same model: an odd curve, equal stops on
+    /// both sides.
+    fn is_odd(&self) -> bool {
         let alike = match self.sides() {
             (Some(left), Some(right)) => right == StopAt { x: -left.x, ..left },
             (None, None) => true,
             _ => false,
         };
-        alike && self.mechanism.curve.is_odd() && self.crossing_level.is_none_or(|level| level == 0.0)
+        alike && self.mechanism.curve.is_odd()
     }
 
     /// Whether the mirror image of a motion, half a forcing period later, is a motion too. The drive is
@@ -249,7 +254,7 @@ impl Model {
     pub fn mirrors_in_half_a_period(&self) -> bool {
         let ExcitationParts { constant, tones, .. } = &self.excitation;
         let odd = |period: f64| tones.iter().all(|tone| (tone.frequency * period).round() % 2.0 == 1.0);
-        self.is_symmetric() && *constant == 0.0 && self.repeats() && self.forcing_period.is_some_and(odd)
+        self.is_odd() && *constant == 0.0 && self.repeats() && self.forcing_period.is_some_and(odd)
     }
 
     /// Whether the base moves.

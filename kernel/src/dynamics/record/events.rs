@@ -165,12 +165,18 @@ impl<T: Scalar> Recorder<'_, T> {
 
     fn rest(&mut self, at: &Instant<T>, side: Side) {
         self.counts.rests += 1;
+        self.rests_since = Some(*at);
         self.event(at, EventKind::Rest, side, 0.0, 0.0);
     }
 
     fn release(&mut self, at: &Instant<T>, side: Side) {
         if self.in_window(at) {
             self.counts.releases += 1;
+        }
+        if let Some(since) = self.rests_since.take() {
+            let lasted = self.clock.between(&since, at);
+            self.shortest_rest = self.shortest_rest.min(lasted.to_f64());
+            self.rested = Some((self.clock.advance(&since, lasted * T::of(0.5)), side));
         }
         self.classifier.release(self.in_periods(at), self.clock.seconds(at));
         self.event(at, EventKind::Release, side, 0.0, 0.0);

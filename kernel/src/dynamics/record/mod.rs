@@ -2,6 +2,7 @@
 
 pub(crate) mod barrier;
 mod crossings;
+mod decay;
 pub(crate) mod event_free;
 pub(crate) mod events;
 pub(crate) mod goal;
@@ -10,7 +11,7 @@ mod listing;
 pub(crate) mod log;
 pub(crate) mod recorder;
 mod regime;
-mod repeats;
+pub(crate) mod repeats;
 mod steps;
 pub(crate) mod summary;
 mod sums;

@@ -55,6 +55,14 @@ pub(crate) struct Recorder<'a, T: Copy> {
     /// The first instant of the run at the window's phase.
     pub origin: Instant<T>,
     pub next_strobe: Option<Instant<T>>,
+    /// The instant since which the mass rests on a rigid stop.
+    pub rests_since: Option<Instant<T>>,
+    /// The middle of the last rest that ended with a release, and the side of its stop.
+    pub rested: Option<(Instant<T>, Side)>,
+    /// Time in kernel units of the shortest rest that ended with a release; infinity without one.
+    pub shortest_rest: f64,
+    /// State of the circuit at the last stroboscopic state.
+    pub strobed_circuit: T,
     pub listings: Listings<T>,
     /// Cycles of the clock in a forcing period.
     pub period_cycles: i64,
@@ -130,6 +138,10 @@ impl<'a, T: Scalar> Recorder<'a, T> {
             standing_circuit: None,
             origin,
             next_strobe: (periods > 0).then_some(origin),
+            rests_since: None,
+            rested: None,
+            shortest_rest: f64::INFINITY,
+            strobed_circuit: T::zero(),
             listings: Listings::new(request, &clock, from, (periods, cycles), model.start_phase),
             period_cycles: cycles,
             strobes_left: MAX_STROBES,

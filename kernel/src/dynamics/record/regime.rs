@@ -87,6 +87,8 @@ pub(crate) struct Classifier {
     /// Forcing period of the last crossing of the whole run.
     last_crossing: Option<i64>,
     observations: Option<Vec<Observation>>,
+    /// The verdict on a window that repeats: the period of the orbit that attracts the motion, if one does.
+    verdict: Option<Option<u32>>,
 }
 
 impl Classifier {
@@ -106,6 +108,7 @@ impl Classifier {
             firsts: Firsts::default(),
             last_crossing: None,
             observations: None,
+            verdict: None,
         }
     }
 
@@ -262,7 +265,7 @@ impl Classifier {
 
     /// Whether the crossings of the window repeat, either alone or with the motion.
     pub fn crossings_repeat(&self) -> bool {
-        self.period().is_some() || self.crossings.repeat()
+        self.repeats().is_some() || self.crossings.repeat()
     }
 
     /// The smallest number of forcing periods, at most 12, after which the motion repeats over the whole
@@ -271,8 +274,21 @@ impl Classifier {
         self.strobes.period().filter(|_| self.rhythm == Rhythm::Periodic)
     }
 
+    /// The number of forcing periods after which the window repeats, if there is no verdict on it yet.
+    pub fn without_verdict(&self) -> Option<u32> {
+        self.repeats().map(|(period, _)| period).filter(|_| self.verdict.is_none())
+    }
+
+    /// Sets the verdict on a window that repeats: the period of the orbit that attracts the motion, if one
+    /// does.
+    pub fn decide(&mut self, verdict: Option<u32>) {
+        self.verdict = Some(verdict);
+    }
+
+    /// The period of the motion: that of the orbit that attracts it, or, of a mass that rests, of its
+    /// states.
     pub fn period(&self) -> Option<u32> {
-        self.repeats().map(|(period, _)| period)
+        self.repeats().and_then(|(period, _)| self.verdict.unwrap_or(Some(period)))
     }
 
     /// Whether the motion has settled: it repeats, or `rests` during the whole window. `None` under a drive
@@ -297,7 +313,7 @@ impl Classifier {
 
     /// Time in s since which the motion has repeated; `at` gives the time of a stroboscopic state.
     pub fn settles_at(&self, at: impl Fn(u64) -> f64) -> Option<f64> {
-        self.repeats().map(|(_, since)| at(since))
+        self.period().and(self.repeats()).map(|(_, since)| at(since))
     }
 
     /// Forcing periods of the window with a crossing, and with a release.
@@ -322,6 +338,7 @@ impl Classifier {
     pub fn open_window(&mut self) {
         self.from += self.periods;
         self.strobes.open_window();
+        self.verdict = None;
         self.crossings = Crossings::new(self.periods);
         (self.crossing_periods, self.release_periods) = Default::default();
         (self.speed, self.crossed, self.last) = Default::default();

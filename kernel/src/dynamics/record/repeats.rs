@@ -5,6 +5,7 @@
 
 use std::collections::VecDeque;
 
+use super::decay::{DECAYED, Decay};
 use crate::dynamics::result::Side;
 
 /// Maximum number of forcing periods after which a motion may repeat and still count as periodic.
@@ -16,7 +17,7 @@ const CROSSING_MATCH: f64 = 1e-2;
 
 /// Two stroboscopic states repeat if they agree to this share of the scene's scales: fine enough to see a
 /// period doubling soon after its onset, coarse enough for a transient that has decayed to a thousandth.
-const STATE_MATCH: f64 = 1e-3;
+pub(crate) const STATE_MATCH: f64 = 1e-3;
 
 /// Largest change over half a window, as a share of the scales, of a motion that stands still: well above
 /// rounding and the errors of the usual tolerances, and a hundredth of [`STATE_MATCH`].
@@ -32,6 +33,12 @@ pub(crate) struct Strobe {
 impl Strobe {
     fn is_near(&self, other: &Self, (length, speed): (f64, f64)) -> bool {
         (self.x - other.x).abs() <= STATE_MATCH * length && (self.v - other.v).abs() <= STATE_MATCH * speed
+    }
+
+    /// The largest change to `later`, as a share of the scales.
+    fn size_of_change(&self, later: &Self, scales: (f64, f64)) -> f64 {
+        let (length, speed) = self.change(later, scales);
+        length.abs().max(speed.abs())
     }
 
     /// The change to `later`, as shares of the scales.
@@ -52,6 +59,7 @@ pub(crate) struct Strobes {
     recent: [Strobe; LONGEST],
     /// For each period up to [`LONGEST`], the number of the state from which on all states repeat with it.
     since: [u64; LONGEST],
+    decays: [Decay; LONGEST],
     /// Forcing periods in the settled window.
     periods: u64,
     /// Number of the first state of the window.
@@ -70,6 +78,7 @@ impl Strobes {
             seen: 0,
             recent: Default::default(),
             since: [0; LONGEST],
+            decays: Default::default(),
             periods,
             from,
             opening: Default::default(),
@@ -91,11 +100,17 @@ impl Strobes {
             return;
         }
         let number = self.seen;
-        for (index, since) in self.since.iter_mut().enumerate().take(self.longest) {
-            let Some(before) = number.checked_sub(index as u64 + 1) else { break };
-            if !state.is_near(&self.recent[before as usize % LONGEST], self.scales) {
-                *since = before + 1;
+        let changes = self.since.iter_mut().zip(&mut self.decays);
+        for (index, (since, decay)) in changes.enumerate().take(self.longest) {
+            let Some(number_before) = number.checked_sub(index as u64 + 1) else { break };
+            let before = &self.recent[number_before as usize % LONGEST];
+            if !state.is_near(before, self.scales) {
+                *since = number_before + 1;
+                *decay = Decay::default();
+                continue;
             }
+            let size = before.size_of_change(&state, self.scales);
+            decay.add(number, size);
         }
         self.recent[number as usize % LONGEST] = state;
         self.keep(number, state);
@@ -153,6 +168,29 @@ impl Strobes {
         let q =
             (1..=self.longest as u64).find(back).filter(|q| self.is_complete() && self.stands_still(*q))?;
         Some((q as u32, self.since[q as usize - 1]))
+    }
+
+    /// The period of a motion whose changes after `q` states have decayed so fast that its orbit attracts in
+    /// every direction: `q` or a divisor. `volume` is the factor, as a logarithm to base 2, by which areas of
+    /// states shrink in `q` periods at least.
+    pub fn decayed_to(&self, q: u32, volume: f64) -> Option<u32> {
+        let decay = &self.decays[q as usize - 1];
+        decay.is_clear(q, self.seen, volume).then(|| self.shortest(q))
+    }
+
+    /// The shortest period after which the last state of a motion without a transient, which repeats after
+    /// `q` states, comes back.
+    pub fn shortest(&self, q: u32) -> u32 {
+        let ends = |period: &u32| {
+            let before = &self.recent[(self.seen - 1 - u64::from(*period)) as usize % LONGEST];
+            q.is_multiple_of(*period) && before.size_of_change(&self.last(), self.scales) <= DECAYED
+        };
+        (1..q).find(ends).unwrap_or(q)
+    }
+
+    /// The last state.
+    pub fn last(&self) -> Strobe {
+        self.recent[(self.seen.max(1) - 1) as usize % LONGEST]
     }
 
     /// Whether a motion whose states repeat after `q` states does not drift. In a slow drift neighbouring

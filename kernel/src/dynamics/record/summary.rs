@@ -28,21 +28,15 @@ impl<T: Scalar> Recorder<'_, T> {
         let (final_x, final_v) = (x.to_f64(), v.to_f64() / self.unit);
         let electrical = self.electrical(circuit);
         self.sample_the_end(state);
-        self.last_strobe(state);
         let (section, carried) = self.listed(&end, MapState { x: final_x, v: final_v, electrical });
         let covered = value(&self.covered);
         let seen = covered > 0.0;
         let ledger = self.ledger.then(|| self.energy_ledger(state, start, potential));
         let rms = (value(&self.settled.squared_velocity) / covered).sqrt() / self.unit;
         let work = value(&self.settled.work);
-        let travel = (self.high - self.low).to_f64();
-        let scales = &self.model.scales;
         let counts = self.counts;
-        let has_events = counts.crossings + counts.impacts + counts.releases > 0;
         let compliant = self.model.compliant;
-        // A mass pressed onto a compliant stop during the whole window oscillates there without leaving it.
-        let pressed = compliant.is_some() && value(&self.settled.rested) == covered;
-        let moved = seen && (has_events || (travel > MAX_ROUNDING * scales.length && !pressed));
+        let moved = self.has_moved();
         let rests = seen && !moved;
         let force = compliant.map(|_| self.peak_contact.to_f64() * self.model.mass / (self.unit * self.unit));
         let pressure = compliant.zip(force).and_then(|(stop, force)| stop.pressure(force));
@@ -105,6 +99,16 @@ impl<T: Scalar> Recorder<'_, T> {
             ledger,
         };
         Run { samples: self.samples, events: self.events.unwrap_or_default(), section, carried, summary }
+    }
+
+    /// Whether the mass has moved in the settled window.
+    pub fn has_moved(&self) -> bool {
+        let (counts, covered) = (self.counts, value(&self.covered));
+        let has_events = counts.crossings + counts.impacts + counts.releases > 0;
+        // A mass pressed onto a compliant stop during the whole window oscillates there without leaving it.
+        let pressed = self.model.compliant.is_some() && value(&self.settled.rested) == covered;
+        let travel = (self.high - self.low).to_f64();
+        covered > 0.0 && (has_events || (travel > MAX_ROUNDING * self.model.scales.length && !pressed))
     }
 
     /// Records the samples requested at the very end (to rounding), which are the final state.

@@ -38,6 +38,7 @@ impl<'a, T: Scalar> Recorder<'a, T> {
     pub(crate) fn strobe(&mut self, x: T, v: T, circuit: T) {
         let electrical = if self.goal.is_some() { self.electrical(circuit) } else { 0.0 };
         let Some(strobe) = &mut self.next_strobe else { return };
+        self.strobed_circuit = circuit;
         strobe.cycle += self.period_cycles;
         self.strobes_left -= 1;
         if self.strobes_left == 0 || self.clock.between(strobe, &self.window.1) < T::zero() {

@@ -75,6 +75,33 @@ pub struct ReleaseIdentity {
     pub phase: f64,
 }
 
+/// Displacement, velocity and state of a circuit once a forcing period, in SI, rounded to seven digits:
+/// enough to tell whether another motion is near.
+#[doc(hidden)]
+pub type Trail = Vec<[f32; 3]>;
+
+/// A motion beside which another one is followed until they part.
+#[doc(hidden)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Beside<'a> {
+    /// Its states from the start to its arrival.
+    pub trail: &'a [[f32; 3]],
+    /// Difference of two states of the same number from which on the motions have parted.
+    pub within: MapState,
+}
+
+impl Beside<'_> {
+    /// Whether a motion in the state `place` has parted from it.
+    pub fn is_left(&self, place: usize, state: MapState) -> bool {
+        let far = |value: f64, other: f32, limit: f64| !((value - f64::from(other)).abs() <= limit);
+        self.trail.get(place).is_some_and(|[x, v, electrical]| {
+            far(state.x, *x, self.within.x)
+                || far(state.v, *v, self.within.v)
+                || far(state.electrical, *electrical, self.within.electrical)
+        })
+    }
+}
+
 /// Start and termination criteria of a pursuit.
 #[doc(hidden)]
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -93,6 +120,8 @@ pub struct Pursuit<'a> {
     pub releases: u32,
     /// Work after which it is given up, in units of some ten nanoseconds; at most the work budget of a run.
     pub max_work: u64,
+    /// The motion that it is to stay beside. It has then arrived as soon as it is inside an ellipse.
+    pub beside: Option<Beside<'a>>,
 }
 
 impl Pursuit<'_> {
@@ -109,8 +138,8 @@ pub struct Pursued {
     /// The number of the first stroboscopic state after the arrival, where the start has the number 0; `None`
     /// if the motion is unsettled.
     pub periods: Option<u64>,
-    /// Crossings of the barrier up to the arrival.
-    pub crossings: u64,
+    /// Its states, unless it was followed beside another motion.
+    pub trail: Trail,
     /// Work done, in units of some ten nanoseconds.
     pub work: u64,
 }
@@ -135,6 +164,8 @@ pub enum Arrival {
         /// The last of the states.
         state: MapState,
     },
+    /// The motion beside which it was followed is somewhere else.
+    Parted,
     /// None of these. The settled window of the summary is the last hundred periods, or all if there
     /// were fewer.
     Unsettled(Box<Summary>),

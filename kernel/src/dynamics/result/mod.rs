@@ -7,7 +7,7 @@ mod summary;
 
 use std::sync::atomic::AtomicBool;
 
-pub use arrival::{Arrival, Capture, Pursued, Pursuit, Region, ReleaseIdentity};
+pub use arrival::{Arrival, Beside, Capture, Pursued, Pursuit, Region, ReleaseIdentity, Trail};
 pub use event::{Event, EventKind, MapState, Phase, Sample, SectionPoint, Side};
 pub use outcome::{Outcome, Place, Regime};
 pub use summary::{First, Firsts, Harvest, Ledger, Summary};

@@ -130,14 +130,14 @@ pub struct Summary {
     pub crossing_periods: u64,
     /// Forcing periods of the settled window with a release in them.
     pub release_periods: u64,
-    /// Whether the motion has settled: it has a [period](Self::period), or the mass rests. `None` under a
-    /// drive that changes.
+    /// Whether the motion has settled: it repeats and a periodic orbit attracts it, so that it has a
+    /// [period](Self::period), or the mass rests. `None` under a drive that changes.
     pub settled: Option<bool>,
     /// Whether averages over the window are steady: the motion has settled, or RMS velocity and crossings in
     /// both halves of the window agree within three standard errors. `None` under a drive that changes, if
     /// the run ended early, and if a motion that has not settled has fewer than 8 forcing periods.
     pub steady: Option<bool>,
-    /// Time in s since which the motion repeats; `None` if it does not.
+    /// Time in s since which the motion repeats; `None` if it has no period.
     pub settles_at: Option<f64>,
     /// First events, under a drive that changes.
     pub firsts: Option<Firsts>,
@@ -153,8 +153,8 @@ pub struct Summary {
     pub chatter_sums: u64,
     /// Times the mass came to rest on a stop.
     pub rests: u64,
-    /// Period of the motion in forcing periods; `None` if it does not repeat after at most 12 of them, or if
-    /// the mass rests.
+    /// Period in forcing periods of the orbit that attracts the motion; `None` if it does not repeat after at
+    /// most 12 of them, if no orbit attracts it, or if the mass rests.
     pub period: Option<u32>,
     /// Largest force in N of a compliant stop on the mass over the whole run; `None` if the stops are
     /// not compliant.

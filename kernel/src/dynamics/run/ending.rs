@@ -43,7 +43,11 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
     }
 
     /// Closes the record.
-    pub fn finish(self, outcome: Outcome) -> Run {
+    pub fn finish(mut self, outcome: Outcome) -> Run {
+        self.record.last_strobe(&self.state);
+        if outcome == Outcome::Done {
+            self.judge();
+        }
         let Self { stepper, state, record, steps, start, .. } = self;
         let (model, step_range) = (record.model, record.step_range);
         let speed = (2.0 * record.peak_kinetic).sqrt() / stepper.equation.unit;

@@ -4,7 +4,7 @@
 //! checks that the general step makes each time (touch, rest, release, sample, stroboscopic state, budgets)
 //! are made here once, before the first step; from step to step only state, clock and sums change. The first
 //! step on which an event is possible is left to the general step. The event-free step is written three
-//! times: here, as the general step of a single motion (`step/choose.rs` with `run/flight.rs`), and for a
+//! times: here, as the general step of a single motion (`step/choose.rs` with `advance/flight.rs`), and for a
 //! batch (`lanes/columns/step.rs`). The three do the same arithmetic and must stay equal to the bit.
 
 use crate::dynamics::drive::Drive;

@@ -2,8 +2,8 @@
 
 pub(crate) mod ending;
 pub(crate) mod event_free;
-mod flight;
 mod recurrence;
+mod settling;
 
 use crate::dynamics::clock::Instant;
 use crate::dynamics::drive::Drive;
@@ -12,9 +12,8 @@ use crate::dynamics::model::Model;
 use crate::dynamics::motion::Motion;
 use crate::dynamics::record::goal::Goal;
 use crate::dynamics::result::{Arrival, MapState, Outcome, Pursued, Pursuit, Request, Run};
-use crate::dynamics::state::{Contact, Flow};
 use crate::dynamics::step::stepper::Settings;
-use crate::dynamics::step::work::{Costs, IMPACT_BUDGET};
+use crate::dynamics::step::work::Costs;
 use crate::numeric::{DoubleDouble, Scalar};
 use crate::system::clock::ThreadClock;
 use event_free::FastPath;
@@ -118,6 +117,7 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
     fn begin_next_window(&mut self) -> bool {
         let Some(until) = self.until_settled else { return false };
         self.record.last_strobe(&self.state);
+        self.judge();
         if self.record.classifier.period().is_some() {
             return false;
         }
@@ -125,40 +125,6 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         self.stepper.end = end;
         self.recurs = self.may_recur;
         true
-    }
-
-    /// The outcome if a budget is spent or the run is cancelled.
-    #[inline]
-    pub fn spent(&mut self) -> Flow {
-        let cancelled = self.stepper.work.check_cancelled();
-        let at = || self.stepper.seconds(&self.state);
-        if cancelled {
-            return Some(Outcome::Cancelled { at: at() });
-        }
-        if self.stepper.work.impacts >= IMPACT_BUDGET {
-            return Some(Outcome::ImpactBudget { at: at(), count: self.stepper.work.impacts });
-        }
-        if self.stepper.work.is_done() {
-            return Some(Outcome::StepBudget { at: at(), count: self.steps });
-        }
-        None
-    }
-
-    /// Advances by one step of flight or contact or one rest; `left` is the time to the end of the run.
-    #[inline]
-    pub fn proceed(&mut self, left: T) -> Flow {
-        match self.state.contact {
-            Contact::Motionless => {
-                self.stand(self.stepper.end, self.state.phase());
-                None
-            }
-            Contact::Resting(end) => {
-                self.rest(end);
-                None
-            }
-            Contact::Free => self.fly(left),
-            Contact::Compressing(end) | Contact::Clipped(end) => self.contact_step(end, left),
-        }
     }
 }
 
@@ -180,11 +146,12 @@ impl<'a, T: Scalar, D: Drive<T>> Motion<'a, T, D> {
 
     /// Result of the pursuit.
     pub fn arrived(mut self, outcome: Outcome) -> Pursued {
-        let (crossings, work) = (self.record.counts.total_crossings, self.stepper.work.done);
-        let reached = self.record.goal.as_mut().and_then(|goal| goal.reached.take());
+        let work = self.stepper.work.done;
+        let goal = self.record.goal.take();
+        let (reached, trail) = goal.map(|goal| (goal.reached, goal.trail)).unwrap_or_default();
         let (arrival, periods) = reached.filter(|_| outcome == Outcome::Done).unzip();
         let unsettled = || Arrival::Unsettled(Box::new(self.finish(outcome).summary));
-        Pursued { arrival: arrival.unwrap_or_else(unsettled), periods, crossings, work }
+        Pursued { arrival: arrival.unwrap_or_else(unsettled), periods, trail, work }
     }
 }
 

@@ -145,7 +145,14 @@ pub(super) fn stages(lesson: &Lesson, folder: Option<&Path>, found: &mut Vec<Fau
     let mut current = match Document::load(&spec) {
         Ok(document) => document,
         Err(error) => {
-            found.push(Fault::new("scene", &lesson.scene, first_line(&error)));
+            // a lesson from elsewhere may name any file: its own words are not quoted
+            let problem = match error {
+                SceneError::Structure { name, .. } => {
+                    format!("{name} is no scene: `interwell --headless check` of it says why")
+                }
+                other => first_line(&other),
+            };
+            found.push(Fault::new("scene", &lesson.scene, problem));
             return Vec::new();
         }
     };

@@ -83,8 +83,9 @@ pub enum LessonView {
     Well,
     /// Displacement over time.
     Displacement,
-    /// The state before the last change, compared with the present one.
-    BeforeNow,
+    /// The scene as it was opened, compared with the present one.
+    #[serde(alias = "BeforeNow")]
+    Compare,
     /// Velocity over displacement.
     PhasePortrait,
     /// The force that holds the mass, over displacement.

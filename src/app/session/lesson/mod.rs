@@ -147,10 +147,6 @@ impl OpenLesson {
         &mut self.progress.answers[self.progress.step]
     }
 
-    pub fn why_mut(&mut self) -> &mut String {
-        &mut self.answer_mut().why
-    }
-
     /// The options of a prediction; empty in any other step.
     pub fn options(&self) -> &[Choice] {
         if let Step::Predict { options, .. } = self.step() { options } else { &[] }

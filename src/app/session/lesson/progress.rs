@@ -20,7 +20,6 @@ pub struct Answer {
     pub shown: bool,
     /// The option that holds, once it is known.
     pub outcome: Option<String>,
-    pub why: String,
     pub met: bool,
     /// The settings with which the task was done, as the command line takes them.
     pub with: String,
@@ -82,9 +81,6 @@ pub fn answers_text(records: &Records) -> Option<String> {
             let _ = writeln!(text, "  I expected: {}", answer.choice.as_deref().unwrap_or("nothing"));
             if let Some(outcome) = &answer.outcome {
                 let _ = writeln!(text, "  What holds: {outcome}");
-            }
-            if !answer.why.trim().is_empty() {
-                let _ = writeln!(text, "  Why: {}", answer.why.trim());
             }
         }
         text.push('\n');

@@ -133,7 +133,7 @@ pub fn part(axis: &SweepAxis, from: f64, to: f64) -> SweepAxis {
     SweepAxis {
         field: axis.field.clone(),
         from,
-        to: on_step(to).max(decimal(from + step)),
+        to: on_step(to).min(axis.to).max(decimal(from + step)),
         step,
         ..SweepAxis::default()
     }

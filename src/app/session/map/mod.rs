@@ -104,8 +104,8 @@ pub struct Mapping {
     chosen: Option<[SweepAxis; 2]>,
     /// The default axes, as they were when the map was first shown: they do not move with the scene.
     default_axes: Option<[SweepAxis; 2]>,
-    /// The axes of the enlarged parts of the map, each a part of the one before.
-    pub enlarged: Vec<[SweepAxis; 2]>,
+    /// The axes of the part of the map that is enlarged.
+    pub enlarged: Option<[SweepAxis; 2]>,
     map: Option<Map>,
     /// The previous map, shown until the new one has a result everywhere.
     previous: Option<Map>,
@@ -181,12 +181,7 @@ impl Mapping {
 
     /// Chooses axes; `None` for the default axes.
     pub fn choose(&mut self, axes: Option<[SweepAxis; 2]>) {
-        (self.chosen, self.enlarged) = (axes, Vec::new());
-    }
-
-    /// The axes of the enlarged part, or those that the user has chosen.
-    fn chosen(&self) -> Option<&[SweepAxis; 2]> {
-        self.enlarged.last().or(self.chosen.as_ref())
+        (self.chosen, self.enlarged) = (axes, None);
     }
 
     pub fn take(&mut self) {
@@ -204,9 +199,16 @@ impl Mapping {
 }
 
 impl Session {
-    /// The axes of the map; `None` if the scene has fewer than two fields for them.
+    /// The axes of the map, or of the part of it that is enlarged; `None` if the scene has fewer than two
+    /// fields for them.
     pub fn map_axes(&self) -> Option<[SweepAxis; 2]> {
-        let mut known = self.map.chosen().into_iter().chain(&self.map.default_axes);
+        let enlarged = self.map.enlarged.as_ref().filter(|axes| self.has_fields_of(*axes));
+        enlarged.cloned().or_else(|| self.map_whole())
+    }
+
+    /// The axes of the whole map.
+    pub fn map_whole(&self) -> Option<[SweepAxis; 2]> {
+        let mut known = self.map.chosen.iter().chain(&self.map.default_axes);
         let usual = || axes::default_axes(self.scene(), self.remembered_stops, self.well_mm());
         known.find(|axes| self.has_fields_of(*axes)).cloned().or_else(usual)
     }
@@ -236,8 +238,8 @@ impl Session {
             return false;
         };
         // chosen axes whose fields the scene lacks at present stay chosen
-        if self.map.chosen() != Some(&axes) {
-            self.map.default_axes = Some(axes.clone());
+        if self.map.chosen.is_none() || self.map.chosen != self.map_whole() {
+            self.map.default_axes = self.map_whole();
         }
         let Some(question) = self.map_question(axes) else { return false };
         self.map.cells.mark_wanted();

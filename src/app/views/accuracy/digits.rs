@@ -4,14 +4,14 @@ use eframe::egui::{self, Grid, RichText, Ui};
 
 use crate::app::ui::style::Style;
 use crate::app::ui::widgets::tell;
-use crate::output::{Chart, cost_panel};
-use interwell_studies::study::Table;
+use crate::output::{Marks, cost_panel};
 use interwell_studies::study::accuracy::scene::{
     AtTolerance, Tolerances, duration, length_mm, moment, small_length,
 };
 
 use super::super::ViewContext;
-use super::super::pane::fresh_pane_ui;
+use super::super::plot::{Part, part_ui};
+use super::super::view::{Axis, View};
 use super::waiting_ui;
 
 /// Smallest height in points of the plot of error over processor time.
@@ -44,9 +44,14 @@ pub fn digits_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         }
         let rest = ui.available_rect_before_wrap();
         if rest.height() > PICTURE && rest.width() > 200.0 {
-            let panel = cost_panel(&known, tolerance, stepped.as_slice());
-            let pane = fresh_pane_ui(ui, &style, rest, Chart::stack(vec![panel], "", Table::new()));
-            tell(&pane.response, egui::Role::Image, "error over processor time");
+            let mut panel = cost_panel(&known, tolerance, stepped.as_slice());
+            // these are read under the pointer
+            panel.layers.retain(|layer| !matches!(layer.marks, Marks::Words(_)));
+            let axes = [Some(Axis::CostAcross), Some(Axis::CostUp)];
+            let part = Part { view: View::Accuracy, name: "cost", axes };
+            let plotted = part_ui(ui, context.memory, part, &style, rest, (&panel, [None; 2]));
+            plotted.read(ui, &style, &panel);
+            tell(&plotted.response, egui::Role::Image, "error over processor time");
         }
     });
 }

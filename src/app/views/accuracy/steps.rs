@@ -4,13 +4,12 @@ use eframe::egui::{self, ComboBox, TextStyle, Ui, UiBuilder};
 
 use crate::app::session::accuracy::Accuracy;
 use crate::numeric;
-use crate::output::{Chart, steps_panel};
+use crate::output::steps_panel;
 use crate::scene::read_number;
-use interwell_studies::study::Table;
 use interwell_studies::study::accuracy::methods::Scheme;
 use interwell_studies::study::accuracy::scene::{StepSize, duration, step_name};
 
-use super::super::pane::pane_ui;
+use super::super::plot::plot_ui;
 use super::super::{View, ViewContext};
 use super::waiting_ui;
 
@@ -75,8 +74,8 @@ pub fn steps_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         let plot = rest.with_max_y((rest.bottom() - below).max(rest.top()));
         let mut top = rest.top();
         if plot.height() >= PLOT {
-            let chart = Chart::stack(vec![steps_panel(&known, 1, stops.into())], "", Table::new());
-            pane_ui(ui, context.memory, View::Accuracy, &style, plot, chart);
+            let panel = steps_panel(&known, 1, stops.into());
+            plot_ui(ui, context.memory, View::Accuracy, &style, plot, &panel).read(ui, &style, &panel);
             top = plot.bottom() + 4.0;
         }
         ui.scope_builder(UiBuilder::new().max_rect(rest.with_min_y(top)), |ui| {

@@ -1,8 +1,7 @@
 //! Controls over the map, its progress and its legend.
 
-use eframe::egui::{self, ComboBox, Rect, RichText, Ui, UiBuilder};
+use eframe::egui::{self, ComboBox, RichText, Ui};
 
-use crate::app::panels::controls;
 use crate::app::session::map::{Mapping, start};
 use crate::app::ui::knob::refuse;
 use crate::app::ui::widgets::{choices_ui, segment_ui, tell};
@@ -11,54 +10,42 @@ use crate::output::words_of;
 use crate::scene::{Start, SweepAxis};
 use interwell_studies::study::SummaryField;
 
+use super::super::ViewContext;
 use super::super::axes::{field_ui, range_id, range_row_ui};
 use super::super::memory::MapLook;
-use super::super::{LegendRow, ViewContext};
 
 /// Width in points of the title; a longer one is cut, but complete in the list and beside the colours.
 const TITLE: f32 = 150.0;
 
-/// Width in points below which the choices take two rows.
-const NARROW: f32 = 1080.0;
+/// Width in points below which the choices are in a menu.
+const NARROW: f32 = 560.0;
 
-/// Width in points that the choice of the axes needs in the row of the card, with all that follows it.
-const AXES: f32 = 430.0;
-
-/// Height in points from which on the rows have space between them.
-const LOW: f32 = 320.0;
-
-/// Title, choices, progress; in the row of the card where that has room for them.
+/// Quantity, axes, looks, further choices and progress in one row, which wraps.
 pub fn tools_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
-    if let Some(row) = LegendRow::given(ui) {
-        let area = ui.available_rect_before_wrap();
-        let place =
-            Rect::from_x_y_ranges(row.left + 4.0..=row.right, area.top()..=area.top() + LegendRow::HEIGHT);
-        let middle = egui::Layout::left_to_right(egui::Align::Center);
-        ui.scope_builder(UiBuilder::new().max_rect(place).layout(middle), |ui| row_ui(ui, context));
-        ui.advance_cursor_after_rect(place);
-        return;
-    }
-    // less spacing for a low map
-    ui.spacing_mut().item_spacing.y = if ui.available_height() > LOW { 4.0 } else { 0.0 };
-    let narrow = ui.available_width() < NARROW;
+    // what no step of a lesson explains is in the menu
+    let is_short = context.session.is_lesson || ui.available_width() < NARROW;
     egui::Frame::new().inner_margin(egui::Margin::symmetric(8, 0)).show(ui, |ui| {
-        // what no step explains is in a menu
-        if context.session.is_lesson {
-            return drop(ui.horizontal(|ui| row_ui(ui, context)));
-        }
         ui.horizontal_wrapped(|ui| {
             quantity_ui(ui, &mut context.session.map);
-            let start = start_in_words(context);
-            ui.label(RichText::new(start).heading()).on_hover_text(cells_in_words(start));
-            if !narrow {
-                axes_ui(ui, context);
+            if !is_short {
+                fields_ui(ui, context);
+                look_ui(ui, &mut context.memory.map_look, context.session.map.quantity());
             }
-            look_ui(ui, &mut context.memory.map_look, context.session.map.quantity());
+            choices_ui(ui, "Options", |ui| {
+                ui.label(format!("Every cell is a separate run {}.", start_in_words(context)));
+                if is_short {
+                    ui.horizontal(|ui| fields_ui(ui, context));
+                    let quantity = context.session.map.quantity();
+                    ui.horizontal(|ui| look_ui(ui, &mut context.memory.map_look, quantity));
+                }
+                trail_items_ui(ui, context);
+                ui.separator();
+                if let Some(axes) = context.session.map_axes() {
+                    ranges_items_ui(ui, context, &axes);
+                }
+            });
             progress_ui(ui, context);
         });
-        if narrow {
-            ui.horizontal_wrapped(|ui| axes_ui(ui, context));
-        }
     });
 }
 
@@ -67,38 +54,6 @@ fn start_in_words(context: &ViewContext<'_>) -> &'static str {
     match start(context.session.scene()) {
         Start::Rest => "from rest",
         Start::At { .. } => "from the scene's start",
-    }
-}
-
-fn cells_in_words(start: &str) -> String {
-    format!("Every cell is a separate run {start}.")
-}
-
-/// The quantity, the axes where they have room, a menu of all other choices, and the progress.
-fn row_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
-    (ui.spacing_mut().interact_size.y, ui.spacing_mut().button_padding.y) = (LegendRow::HEIGHT, 0.0);
-    quantity_ui(ui, &mut context.session.map);
-    let has_axes = ui.available_width() >= AXES;
-    if has_axes {
-        fields_ui(ui, context);
-    }
-    choices_ui(ui, "Options", |ui| {
-        ui.label(cells_in_words(start_in_words(context)));
-        ui.horizontal(|ui| look_ui(ui, &mut context.memory.map_look, context.session.map.quantity()));
-        trail_items_ui(ui, context);
-        ui.separator();
-        if !has_axes {
-            ui.horizontal(|ui| fields_ui(ui, context));
-        }
-        if let Some(axes) = context.session.map_axes() {
-            ranges_items_ui(ui, context, &axes);
-        }
-        ui.separator();
-        ui.horizontal(|ui| progress_ui(ui, context));
-    });
-    let mapping = &context.session.map;
-    if let Some(map) = mapping.map().filter(|_| mapping.is_running()) {
-        bar_ui(ui, (map.known, map.count()), 24.0);
     }
 }
 
@@ -141,18 +96,6 @@ fn look_ui(ui: &mut Ui, look: &mut MapLook, quantity: &SummaryField) {
         "Lines through the map where the scene is, beside it: the quantity over one axis at this value of \
          the other, with regimes, release and first crossing.",
     );
-}
-
-fn axes_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
-    fields_ui(ui, context);
-    let Some(axes) = context.session.map_axes() else { return };
-    choices_ui(ui, "Range", |ui| ranges_items_ui(ui, context, &axes)).on_hover_text(
-        "Ends and steps of both axes. A box drawn over the map enlarges it as well; on the cross-hair the \
-         keys + and - do.",
-    );
-    let button = choices_ui(ui, "Trail", |ui| trail_items_ui(ui, context));
-    button.on_hover_text("Where the live motion has been since the scene was opened, as a line that fades.");
-    controls::best_stops_ui(ui, context.session, "Best stops");
 }
 
 /// Choice of the fields of both axes.
@@ -199,11 +142,6 @@ fn ranges_items_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axes: &[SweepAxis
 
 fn progress_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let mapping = &mut context.session.map;
-    if !mapping.enlarged.is_empty()
-        && ui.button("Whole map").on_hover_text("A double click on the map does the same.").clicked()
-    {
-        mapping.enlarged.clear();
-    }
     let Some(map) = mapping.map() else { return };
     let (known, all) = (map.known, map.count());
     let took = map.took.as_secs_f64();

@@ -5,8 +5,7 @@ use eframe::egui::{Align2, Painter, Pos2, Rect, Shape, Stroke, vec2};
 use crate::app::ui::style::Style;
 
 use super::super::labels::haloed;
-use super::super::pane::Pane;
-use super::MAP;
+use super::super::plot::Plotted;
 
 /// Distance in points below which two places are merged.
 const NEAR: f32 = 3.0;
@@ -21,9 +20,8 @@ const NAMED: f32 = 40.0;
 
 /// Draws the places, the oldest first, and the name of the trail at its oldest end; a place at which the
 /// scene lacked the field of an axis is a gap.
-pub fn draw(painter: &Painter, pane: &Pane, style: &Style, places: &[[Option<f64>; 2]]) {
-    let painter = painter.with_clip_rect(pane.frame(MAP).unwrap_or(Rect::NOTHING));
-    let parts = parts(places, |at| pane.place(MAP, at).unwrap_or(Pos2::ZERO));
+pub fn draw(painter: &Painter, plotted: &Plotted, style: &Style, places: &[[Option<f64>; 2]]) {
+    let parts = parts(places, |at| plotted.place(at));
     for (points, opacity) in &parts {
         for stroke in style.trail_strokes() {
             let stroke = Stroke::new(stroke.width, stroke.color.gamma_multiply(*opacity));
@@ -33,7 +31,7 @@ pub fn draw(painter: &Painter, pane: &Pane, style: &Style, places: &[[Option<f64
     let all: Vec<Pos2> = parts.into_iter().flat_map(|part| part.0).collect();
     if let (Some(oldest), true) = (all.first(), Rect::from_points(&all).size().max_elem() > NAMED) {
         let words = (*oldest + vec2(0.0, -4.0), Align2::CENTER_BOTTOM);
-        haloed(&painter, style, words, "trail", (style.small(), style.ink()));
+        haloed(painter, style, words, "trail", (style.small(), style.ink()));
     }
 }
 

@@ -6,19 +6,13 @@ use egui_tiles::{Container, Linear, LinearDir, TileId, Tiles, Tree};
 use crate::app::views::View;
 use crate::scene::Layout;
 
-use super::Room;
-
 /// Share of the width that the left column has in the layout Look: 590 of 1030 points.
 const LEFT_SHARE: f32 = 590.0 / 1030.0;
-/// Share of the height that the displacement has in the right column: 298 of 584 points.
-const DISPLACEMENT_SHARE: f32 = 298.0 / 584.0;
 const MAP_SHARE: f32 = 640.0 / 1030.0;
-/// Share of the height that the mechanism has above the well.
+/// Share of the height that the mechanism has above the well, and the displacement above the portrait.
 const MECHANISM_SHARE: f32 = 0.4;
 /// Share of the width that the first column has in the layout Study.
 const STUDY_COLUMN: f32 = 0.34;
-/// Share of the width that views with legends have in a lesson in a compact window.
-const WIDE: f32 = 0.62;
 const HALF: f32 = 0.5;
 
 enum Part {
@@ -82,72 +76,61 @@ fn tree(id: &str, root: Part) -> Tree<View> {
 }
 
 pub(super) fn views_of(layout: Layout) -> Vec<View> {
-    let look = [View::Well, View::Mechanism, View::Displacement, View::BeforeNow];
-    let study = [View::PhasePortrait, View::ForceCurve, View::Energy];
+    let look =
+        [View::Well, View::PhasePortrait, View::Mechanism, View::Displacement, View::Compare].into_iter();
     match layout {
-        Layout::Look => look.to_vec(),
-        Layout::Map => vec![View::Map, View::Well, View::BeforeNow],
+        Layout::Look => look.collect(),
+        Layout::Map => vec![View::Map, View::Well, View::Compare],
         Layout::Explore => {
             let motion = [View::Well, View::PhasePortrait, View::Displacement];
             [View::UpAndDown, View::Basins, View::Spectrum].into_iter().chain(motion).collect()
         }
-        Layout::Study => look.into_iter().chain(study).collect(),
+        Layout::Study => look.chain([View::ForceCurve, View::Energy]).collect(),
     }
 }
 
-pub(super) fn wide_tree(layout: Layout, large: bool) -> Tree<View> {
+pub(super) fn wide_tree(layout: Layout) -> Tree<View> {
     let mechanism_and_well = || above(Pane(View::Mechanism), Pane(View::Well), MECHANISM_SHARE);
-    let (displacement, card) = (Pane(View::Displacement), Pane(View::BeforeNow));
+    let displacement = Pane(View::Displacement);
     match layout {
         Layout::Look => {
-            let right = match large {
-                true => Rows(vec![displacement, Pane(View::PhasePortrait), card]),
-                false => above(displacement, card, DISPLACEMENT_SHARE),
-            };
-            tree("wide", beside(mechanism_and_well(), right, LEFT_SHARE))
+            let states = Tabs(vec![View::PhasePortrait, View::Compare]);
+            tree(
+                "wide",
+                beside(mechanism_and_well(), above(displacement, states, MECHANISM_SHARE), LEFT_SHARE),
+            )
         }
-        // the map, with the well and the card beside it
+        // the map, with the well and what is compared beside it
         Layout::Map => {
-            let right = above(Pane(View::Well), card, DISPLACEMENT_SHARE);
+            let right = above(Pane(View::Well), Pane(View::Compare), HALF);
             tree("map", beside(Pane(View::Map), right, MAP_SHARE))
         }
         // the views of studies, with the motion beside them
         Layout::Explore => {
             let studies = Tabs(vec![View::UpAndDown, View::Basins, View::Spectrum]);
             let motion = Tabs(vec![View::PhasePortrait, View::Displacement]);
-            tree("explore", beside(studies, above(Pane(View::Well), motion, 0.45), MAP_SHARE))
+            tree("explore", beside(studies, above(Pane(View::Well), motion, HALF), MAP_SHARE))
         }
         // views along the displacement in two columns, the others in a third
         Layout::Study => {
             let middle = Rows(vec![Pane(View::PhasePortrait), Pane(View::ForceCurve)]);
-            let right = match large {
-                true => Rows(vec![displacement, Pane(View::Energy), card]),
-                false => Rows(vec![displacement, Tabs(vec![View::Energy, View::BeforeNow])]),
-            };
+            let right = Rows(vec![displacement, Tabs(vec![View::Energy, View::Compare])]);
             tree("wide", beside(mechanism_and_well(), beside(middle, right, HALF), STUDY_COLUMN))
         }
     }
 }
 
-/// Parts side by side, with this share for the first of two; equal and one below another in a narrow window.
-fn parts(parts: Vec<Part>, share: f32, room: Room) -> Part {
-    match room {
-        Room::Narrow => Rows(parts),
-        _ => columns(parts, share),
-    }
-}
-
-/// Two groups of tabs: the views along the displacement, and the mechanism with all others.
-pub(super) fn compact_tree(views: &[View], room: Room) -> Tree<View> {
-    let is_first = |view: &&View| view.is_along_x() && **view != View::Mechanism;
-    let (along, others): (Vec<View>, Vec<View>) = views.iter().partition(is_first);
-    let groups = [along, others].into_iter().filter(|group| !group.is_empty());
-    tree("compact", parts(groups.map(Tabs).collect(), HALF, room))
-}
-
-/// One view at a time over the whole width.
-pub(super) fn tabs_tree(views: &[View]) -> Tree<View> {
-    tree("compact map", Tabs(views.to_vec()))
+/// Two groups of tabs: those that come first, and the mechanism with all others.
+pub(super) fn narrow_tree(views: &[View]) -> Tree<View> {
+    let has_wide = views.iter().any(|view| is_wide(*view));
+    let is_first = |view: &&View| match has_wide {
+        true => is_wide(**view),
+        false => view.is_along_x() && **view != View::Mechanism,
+    };
+    let (first, others): (Vec<View>, Vec<View>) = views.iter().partition(is_first);
+    let groups = [first, others].into_iter().filter(|group| !group.is_empty());
+    let share = if has_wide { MAP_SHARE } else { HALF };
+    tree("narrow", columns(groups.map(Tabs).collect(), share))
 }
 
 /// Whether a view has legends that need room.
@@ -187,17 +170,4 @@ fn column(views: &[View]) -> Part {
         [one] => Pane(*one),
         _ => Rows(views.iter().copied().map(Pane).collect()),
     }
-}
-
-/// The tiles of a lesson in a compact window: its first view, and beside it the others as tabs if there are
-/// several. Beside views with legends all others share tabs.
-pub(super) fn compact_lesson_tree(views: &[View], room: Room) -> Tree<View> {
-    let (wide, others): (Vec<View>, Vec<View>) = views.iter().partition(|view| is_wide(**view));
-    let root = match views {
-        _ if !wide.is_empty() && !others.is_empty() => parts(vec![Tabs(wide), Tabs(others)], WIDE, room),
-        [first, rest @ ..] if rest.len() > 1 => parts(vec![Pane(*first), Tabs(rest.to_vec())], HALF, room),
-        [one] => Pane(*one),
-        _ => parts(views.iter().copied().map(Pane).collect(), HALF, room),
-    };
-    tree("compact lesson", root)
 }

@@ -49,7 +49,7 @@ pub fn threshold(scene: &Scene, found: &Found) -> Option<(String, &'static str)>
 
 /// A threshold in the unit of the drive's field, with digits that tell it from the amplitude of the scene.
 fn least(scene: &Scene, value: f64) -> String {
-    scene.harmonic().map_or_else(|| grams(value), |drive| grams_beside(value, drive.amplitude().abs()))
+    scene.harmonic().map_or_else(|| grams_up(value), |drive| grams_beside(value, drive.amplitude().abs()))
 }
 
 /// A distance in g from a threshold, with its unit: two significant digits, but no decimals that an uncertain

@@ -144,14 +144,15 @@ impl Assembly {
         Some((bottom - top - 2.0 * half).max(1.0) / clamps)
     }
 
-    /// The drawing in a frame, whose horizontal axis is the displacement in mm, with these words at the mass.
-    pub fn sketch(&self, frame: &Frame, theme: &Theme, mass: &str) -> Sketch {
-        Pen::new(self, frame, theme).draw(mass)
+    /// The drawing in a frame, whose horizontal axis is the displacement in mm, with these words at the mass
+    /// and at the flexures.
+    pub fn sketch(&self, frame: &Frame, theme: &Theme, mass: &str, flexures: Option<&str>) -> Sketch {
+        Pen::new(self, frame, theme).draw(mass, flexures)
     }
 
     /// Draws it in a frame, with its mass and its stops.
     pub(super) fn draw(&self, figure: &mut Figure, frame: &Frame, theme: &Theme) {
-        let sketch = self.sketch(frame, theme, "mass");
+        let sketch = self.sketch(frame, theme, "mass", self.bulge().as_deref());
         figure.shapes.extend(sketch.behind);
         let stops = sketch.stops.into_iter().flatten().map(|stop| (stop, Role::Stop));
         for (part, role) in stops.chain([(sketch.mass, Role::Mass)]) {

@@ -151,15 +151,26 @@ impl PlotAxis {
         Self { low, high, ..self.clone() }.with_ticks(USUAL)
     }
 
+    /// The axis with other ends, and without ticks.
+    #[doc(hidden)]
+    pub fn bare(&self, (low, high): (f64, f64)) -> Self {
+        let (label, name) = (String::new(), self.name.clone());
+        Self { low, high, ticks: Vec::new(), label, name, scale: self.scale }
+    }
+
+    /// The unit of its values, if it has one.
+    pub fn unit(&self) -> Option<&str> {
+        Some(self.name.rsplit_once(" (")?.1.trim_end_matches(')'))
+    }
+
+    /// Whether its ends are logarithms to base 10.
+    pub fn is_logarithmic(&self) -> bool {
+        self.scale == Scale::Decades
+    }
+
     /// Whether its ticks are numbers of a scale, so that some may be left out.
     pub(super) fn is_scale(&self) -> bool {
         self.scale != Scale::Given
-    }
-
-    /// The axis with only its unit as the label, if it has one.
-    pub(super) fn by_unit(&self) -> Self {
-        let unit = self.label.rsplit_once(" (").map(|(_, unit)| unit.trim_end_matches(')').to_owned());
-        Self { label: unit.unwrap_or_else(|| self.label.clone()), ..self.clone() }
     }
 
     /// Whether a value lies between its ends.

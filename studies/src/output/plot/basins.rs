@@ -1,4 +1,5 @@
-//! Picture of basins of attraction: the attractor of each start as colour, and the states of the attractors.
+//! Picture of basins of attraction: the attractor of each start as colour, paler where it is not sure, and
+//! the states of the attractors.
 
 use super::axis::PlotAxis;
 use super::cells::{Cell, Cells, Colours};
@@ -41,8 +42,16 @@ pub fn basins_chart(basins: &Basins, answer: &Answer) -> Chart {
     let mut panel = Panel::new(rightward, upward);
     let (room, source) = (basins.room(), source_row(basins));
     let is_outside = |x_mm: f64| x_mm / 1e3 < room.0 || x_mm / 1e3 > room.1;
-    let found = |row: usize| answer.rows[source(row)].map(|found| found.0 as usize - 1);
-    let (names, roles) = (names(basins, answer), roles(answer));
+    let count = answer.attractors.len();
+    // the attractors, then those of starts that are not sure
+    let found = |row: usize| {
+        let place = answer.rows[source(row)]?.0 as usize - 1;
+        Some(if answer.sure.get(source(row)) == Some(&false) { count + place } else { place })
+    };
+    let paler = |role: &Role| if let Role::Kind(place) = role { Role::Unsure(*place) } else { *role };
+    let (mut names, mut roles) = (names(basins, answer), roles(answer));
+    names.extend_from_within(..);
+    roles.extend(roles.iter().map(paler).collect::<Vec<Role>>());
     let missing = "none found";
     match starts.axes() {
         Some((x_mm, v)) => {
@@ -75,7 +84,10 @@ pub fn basins_chart(basins: &Basins, answer: &Answer) -> Chart {
             }
         }
     }
-    let more = answer.attractors.len().saturating_sub(MAX_NAMED);
+    if let Some(place) = (0..answer.rows.len()).filter_map(found).find(|place| *place >= count) {
+        panel.layer(roles[place], "paler: not sure", Marks::Patch);
+    }
+    let more = count.saturating_sub(MAX_NAMED);
     if more > 0 {
         panel.layer(Role::Several, format!("{more} more"), Marks::Patch);
     }
@@ -90,16 +102,17 @@ pub fn basins_chart(basins: &Basins, answer: &Answer) -> Chart {
 
 /// The data of the picture: the starts with the numbers of their attractors, and the attractors' states.
 fn drawn(basins: &Basins, answer: &Answer) -> Table {
-    let mut drawn = Drawn::new(["x_mm", "v_m_per_s", "attractor"], &[]);
+    let mut drawn = Drawn::new(["x_mm", "v_m_per_s", "attractor", "sure"], &[]);
     let source = source_row(basins);
     for row in 0..answer.rows.len() {
         let (x_mm, v) = basins.starts().at(row);
         let number = answer.rows[source(row)].map_or(f64::NAN, |found| f64::from(found.0));
-        drawn.put("start", &[x_mm, v, number], &[]);
+        let sure = answer.sure.get(source(row)).map_or(f64::NAN, |sure| f64::from(u8::from(*sure)));
+        drawn.put("start", &[x_mm, v, number, sure], &[]);
     }
     for (place, attractor) in answer.attractors.iter().enumerate() {
         for (x, v) in &attractor.states {
-            drawn.put("attractor", &[1e3 * x, *v, (place + 1) as f64], &[]);
+            drawn.put("attractor", &[1e3 * x, *v, (place + 1) as f64, f64::NAN], &[]);
         }
     }
     drawn.table()

@@ -56,7 +56,8 @@ impl Colours {
         }
     }
 
-    /// Draws a colour bar in `area` with the numbers of its axis.
+    /// Draws a colour bar in `area` with the numbers of its axis. Each step reaches up to the top, under
+    /// those above, so that the background does not show between them.
     pub fn bar(&self, figure: &mut Figure, area: Area, axis: &PlotAxis, theme: &Theme) {
         const STEPS: usize = 256;
         let Area { left, top, right, bottom } = area;
@@ -70,7 +71,7 @@ impl Colours {
                     self.ink(axis.low + share * (axis.high - axis.low), theme)
                 }
             };
-            figure.rect(Area::new(left, low - height, right, low), ink);
+            figure.rect(Area::new(left, top, right, low), ink);
         }
         figure.outline(area, style::FRAME, theme.ink);
         for (value, words) in &axis.ticks {

@@ -295,6 +295,8 @@ fn drawn(rated: &[Rated]) -> Table {
             ("crossing_low_g", scene.crossing.and_then(|found| found.low)),
             ("crossing_high_g", scene.crossing.and_then(|found| found.high)),
             ("crossing_undecided", scene.crossing.map(|found| f64::from(u8::from(found.undecided)))),
+            ("crossing_step_g", scene.crossing.and_then(|found| found.step)),
+            ("crossing_resolution_g", scene.crossing.and_then(|found| found.resolution)),
             ("rms_velocity_m_per_s", summary.rms_velocity),
             ("mean_load_power_w", power),
             ("max_abs_x_m", summary.max_abs_x),

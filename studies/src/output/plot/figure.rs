@@ -3,6 +3,8 @@
 //! Plots produce shapes; [`Format`](super::Format) turns them into a file. So a plot is independent of the
 //! format, and tests can inspect its contents.
 
+use std::borrow::Cow;
+
 use serde_json::{Map, Value};
 
 use super::font;
@@ -344,6 +346,11 @@ impl Figure {
     /// Fills `area`, and hatches it with lines that rise to the right.
     pub fn filled(&mut self, area: Area, ink: Ink, hatch: Option<Ink>) {
         self.rect(area, ink);
+        self.hatched(area, hatch);
+    }
+
+    /// Hatches `area`, where there is a hatching, with lines that rise to the right.
+    pub fn hatched(&mut self, area: Area, hatch: Option<Ink>) {
         if let Some(hatch) = hatch {
             self.hatch(area, hatch, 1.0);
         }
@@ -378,6 +385,13 @@ impl Figure {
 /// The distance from one point to another.
 pub fn distance(from: Point, to: Point) -> f64 {
     elementary::hypot(to.0 - from.0, to.1 - from.1)
+}
+
+/// A polygon with a fixed orientation, so that overlapping parts of a path leave no hole.
+pub(super) fn oriented(points: &[Point]) -> Cow<'_, [Point]> {
+    let ends = points.iter().zip(points.iter().cycle().skip(1));
+    let area: f64 = ends.map(|(a, b)| a.0 * b.1 - b.0 * a.1).sum();
+    if area < 0.0 { points.iter().rev().copied().collect() } else { points.into() }
 }
 
 /// A line cut into dashes.

@@ -7,7 +7,7 @@ use super::figure::{Align, Area, Figure, Point, Shape, Text, distance};
 use super::mark::{REGIMES, dot, mark, marker};
 use super::page::wrapped;
 use super::role::{Look, Role};
-use super::style::{self, Theme};
+use super::style::{self, Ink, Theme};
 use super::thinned::{extremes, once, thinned};
 use super::{font, labels};
 use crate::numeric::elementary;
@@ -260,35 +260,47 @@ impl Frame {
     }
 
     /// A line through data in any order. Points closer than a part of a pixel to the last kept one are left
-    /// out; a single point becomes a dash.
+    /// out.
     fn path(&self, figure: &mut Figure, points: &[Point], look: &Look) {
         const NEAR: f64 = 0.35;
-        let places: Vec<Point> = points.iter().map(|point| self.place(*point)).collect();
-        for part in places.split(|(x, y)| !(x.is_finite() && y.is_finite())) {
+        self.stretches(figure, points, look, |part| {
             let mut kept: Vec<Point> = Vec::new();
             for place in part {
                 if kept.last().is_none_or(|last: &Point| distance(*place, *last) > NEAR) {
                     kept.push(*place);
                 }
             }
-            match part {
-                [(x, y)] => figure.line(&[(x - 4.0, *y), (x + 4.0, *y)], look.width, look.ink, self.area),
-                _ => {
-                    kept.extend(part.last());
-                    figure.styled(&kept, look, self.area);
-                }
-            }
-        }
+            kept.extend(part.last());
+            kept
+        });
     }
 
     /// A line through data with ascending x: in each pixel column the first, smallest, largest and last
     /// points are kept, which cover the same pixels as all points.
     fn trace(&self, figure: &mut Figure, points: &[Point], look: &Look) {
+        self.stretches(figure, points, look, |part| {
+            part.chunk_by(|a, b| a.0.floor() == b.0.floor()).flat_map(extremes).collect()
+        });
+    }
+
+    /// The points that are `kept` of each stretch of a line between two gaps. A single point becomes a dash.
+    fn stretches(
+        &self,
+        figure: &mut Figure,
+        points: &[Point],
+        look: &Look,
+        kept: impl Fn(&[Point]) -> Vec<Point>,
+    ) {
+        const DASH: f64 = 4.0;
         let places: Vec<Point> = points.iter().map(|point| self.place(*point)).collect();
         for part in places.split(|(x, y)| !(x.is_finite() && y.is_finite())) {
-            let columns = part.chunk_by(|a, b| a.0.floor() == b.0.floor());
-            let kept: Vec<Point> = columns.flat_map(extremes).collect();
-            figure.styled(&kept, look, self.area);
+            match part {
+                [] => {}
+                [(x, y)] => {
+                    figure.line(&[(x - DASH, *y), (x + DASH, *y)], look.width, look.ink, self.area);
+                }
+                _ => figure.styled(&kept(part), look, self.area),
+            }
         }
     }
 
@@ -411,23 +423,41 @@ impl Frame {
         figure.line(&line, look.width, look.ink, self.area);
     }
 
+    /// A cell reaches under its neighbours to the right and above, which are painted over it, so that the
+    /// background does not show between two of them, whatever paints their edges.
     fn cells(&self, figure: &mut Figure, grid: &Cells, theme: &Theme) {
-        let rows = grid.up.values.len();
-        for column in 0..grid.across.values.len() {
+        let (columns, rows) = (grid.across.values.len(), grid.up.values.len());
+        let is_painted =
+            |column: usize, row: usize| column < columns && row < rows && grid.at(column, row) != Cell::Blank;
+        for column in 0..columns {
+            let with_right = |row: usize| (grid.at(column, row), is_painted(column + 1, row));
+            let all: Vec<(Cell, bool)> = (0..rows).map(with_right).collect();
             let mut row = 0;
-            for run in grid.cells[column * rows..][..rows].chunk_by(|a, b| a == b) {
-                let across = [column, column + 1].map(|edge| self.across(grid.across.edges[edge]));
-                let down = [row, row + run.len()].map(|edge| self.down(grid.up.edges[edge]));
-                row += run.len();
-                let Some(area) = Area::new(across[0], down[1], across[1], down[0]).common(self.area) else {
-                    continue;
+            for run in all.chunk_by(|a, b| a == b) {
+                let (first, above) = (row, row + run.len());
+                row = above;
+                let ((cell, aside), rises) = (run[0], is_painted(column, above));
+                // of three neighbours the one in the corner may not be painted
+                let is_bare = aside && rises && !is_painted(column + 1, above);
+                let place = |aside: bool, rises: bool| {
+                    let right = column + 1 + usize::from(aside);
+                    let across = [column, right].map(|edge| self.across(grid.across.edges[edge]));
+                    let top = above + usize::from(rises);
+                    let down = [first, top].map(|edge| self.down(grid.up.edges[edge]));
+                    Area::new(across[0], down[1], across[1], down[0]).common(self.area)
                 };
-                match run[0] {
+                let Some(area) = place(false, false) else { continue };
+                let mut fill = |ink: Ink, hatch: Option<Ink>| {
+                    let corner = if is_bare { place(false, true) } else { None };
+                    let grounds = [place(aside, rises && !is_bare), corner];
+                    grounds.into_iter().flatten().for_each(|ground| figure.rect(ground, ink));
+                    figure.hatched(area, hatch);
+                };
+                match cell {
                     Cell::Value(value) => {
-                        let (ink, hatch) = (grid.colours.ink(value, theme), grid.colours.hatch(value, theme));
-                        figure.filled(area, ink, hatch);
+                        fill(grid.colours.ink(value, theme), grid.colours.hatch(value, theme));
                     }
-                    Cell::Rest => figure.filled(area, theme.rest, Some(theme.rest_hatch)),
+                    Cell::Rest => fill(theme.rest, Some(theme.rest_hatch)),
                     Cell::Missing => figure.missing(area, theme),
                     Cell::Blank => {}
                 }

@@ -8,9 +8,9 @@ use super::figure::{Align, Area, Figure, Text};
 use super::font;
 use super::frame::Frame;
 use super::mark::marker;
-use super::page::{Lines, NAMELESS, Room, wrapped};
+use super::page::{Lines, wrapped};
 use super::style::{self, Theme};
-use super::surface;
+use super::surface::{self, Labels};
 
 /// Height of a heading above a panel.
 const HEADING: f64 = 46.0;
@@ -20,8 +20,6 @@ const NOTE: f64 = 36.0;
 const NUMBERS: f64 = style::TICK_LENGTH + 8.0 + 0.75 * style::TICK;
 /// Height of a line of the label below a panel.
 const LABEL: f64 = 38.0;
-/// Room below a surface.
-const SURFACE: f64 = 100.0;
 /// Distance from the frame to the numbers beside it.
 const TO_NUMBERS: f64 = style::TICK_LENGTH + 7.0;
 /// Distance from the numbers to the label beside them.
@@ -58,6 +56,8 @@ pub struct Slot<'a> {
     x_label: Lines,
     y_label: Lines,
     bar_label: Lines,
+    /// The labels of a surface.
+    labels: Labels,
     /// Room for the numbers of the vertical axis.
     numbers: f64,
     /// Additional width of its frame compared with the column, if it has no colour bar.
@@ -121,6 +121,7 @@ impl<'a> Grid<'a> {
                     x_label: Lines::default(),
                     y_label: Lines::default(),
                     bar_label: Lines::default(),
+                    labels: Labels::default(),
                     numbers: 0.0,
                     more: 0.0,
                     area: Area::new(0.0, 0.0, 0.0, 0.0),
@@ -141,9 +142,8 @@ impl<'a> Grid<'a> {
     }
 
     /// Finds the sizes of the frames between these edges and within this height, in which a panel of height 1
-    /// has at least `least`; returns the height that is needed. If a room is given, it determines where the
-    /// frames begin.
-    pub fn fit(&mut self, (left, right): (f64, f64), height: f64, least: f64, room: Option<&Room>) -> f64 {
+    /// has at least `least`; returns the height that is needed.
+    pub fn fit(&mut self, (left, right): (f64, f64), height: f64, least: f64) -> f64 {
         self.begin = left;
         let mut needed = height;
         // the ticks depend on the size of the frames, which depends on the room for the ticks
@@ -152,9 +152,6 @@ impl<'a> Grid<'a> {
             let most = MAX_NUMBERS_SHARE * (right - left);
             for (i, stack) in self.stacks.iter_mut().enumerate() {
                 stack.measure(most, (if i == 0 { left } else { 0.0 }, if i == last { left } else { 0.0 }));
-                if let Some(room) = room {
-                    stack.line_up(room, height);
-                }
             }
             let beside: f64 = self.stacks.iter().map(|stack| stack.left + stack.right).sum();
             let frames = right - left - beside - BETWEEN_COLUMNS * last as f64;
@@ -258,6 +255,9 @@ impl Stack<'_> {
             slot.y_label = if slot.shows_y { Lines::of_axis(&slot.y, along) } else { Lines::default() };
             let under = self.width.max(USUAL) + 10.0;
             slot.x_label = if slot.shows_x { Lines::of_axis(&slot.x, under) } else { Lines::default() };
+            if let Some((_, up)) = slot.panel.surface() {
+                slot.labels = Labels::new([&slot.x, &slot.y, up], (self.width.max(USUAL), height));
+            }
             if let Some((axis, _)) = &slot.bar {
                 slot.bar_label = Lines::of_axis(axis, along);
                 let label = slot.bar_label.across(LABEL_WIDTH);
@@ -290,32 +290,17 @@ impl Stack<'_> {
         }
     }
 
-    /// Gives the frames this room to the left and none to the right. A label that would need a second line is
-    /// reduced to its unit; in a low place the horizontal axis has no label.
-    fn line_up(&mut self, room: &Room, height: f64) {
-        (self.left, self.right) = (room.left, 0.0);
-        for slot in &mut self.slots {
-            slot.more = 0.0;
-            slot.numbers = (room.left - TO_NUMBERS - TO_LABEL - LABEL_WIDTH).max(0.0);
-            if slot.y_label.lines.len() > 1 || slot.y_label.size < ONE_LINE * style::AXIS {
-                slot.y_label = Lines::of_axis(&slot.y.by_unit(), f64::INFINITY);
-            }
-            if height < NAMELESS {
-                slot.x_label = Lines::default();
-            }
-        }
-    }
-
     fn row(&self, i: usize) -> Row {
         let slot = &self.slots[i];
         let heading = if slot.panel.heading.is_empty() { 0.0 } else { HEADING };
         // a number stands at the upper edge of a frame
         let over = if i == 0 { heading.max(14.0) } else { heading + BETWEEN };
-        let axis = match slot.panel.surface() {
-            Some(_) => SURFACE,
-            None if slot.shows_x => NUMBERS + slot.x_label.across(LABEL) + 8.0,
-            None => 0.0,
+        let (more, axis) = match slot.panel.surface() {
+            Some(_) => slot.labels.room(),
+            None if slot.shows_x => (0.0, NUMBERS + slot.x_label.across(LABEL) + 8.0),
+            None => (0.0, 0.0),
         };
+        let over = over + more;
         Row { over, height: slot.panel.height, under: axis + NOTE * slot.panel.notes.len() as f64 }
     }
 }
@@ -343,7 +328,10 @@ impl Slot<'_> {
     pub fn draw(&self, figure: &mut Figure, theme: &Theme) {
         let Area { left, top, right, .. } = self.area;
         match self.panel.surface() {
-            Some((cells, up)) => surface::draw(figure, self.area, (&self.x, &self.y, up), cells, theme),
+            Some((cells, up)) => {
+                let axes = [&self.x, &self.y, up];
+                surface::draw(figure, self.area, axes, &self.labels, cells, theme);
+            }
             None => self.draw_frame(figure, theme),
         }
         if !self.panel.heading.is_empty() {

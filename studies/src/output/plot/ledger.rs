@@ -45,8 +45,8 @@ impl LedgerTerm {
 
 /// Height of a bar relative to that of its row.
 const BAR: f64 = 0.5;
-/// Places of the lines of other motions below the middle of a row, relative to its height.
-const OTHERS: (f64, f64) = (0.3, 0.09);
+/// Distance of the bar of another motion from the middle of a row.
+const OTHER: f64 = 0.3;
 /// Room for a number beside the bars, relative to their range.
 const ROOM: f64 = 0.45;
 
@@ -84,13 +84,13 @@ pub fn share_of_work(joule: f64, ledger: &LiveLedger, (unit, decimals): (f64, us
     is_taken.then(|| format!("{share:.0} %"))
 }
 
-/// The bars of these rows of a ledger in a unit in J, without their numbers, and beside them those of other
-/// motions by the places of their letters. The axis of the energy reaches to `largest` in J both ways.
+/// The bars of these rows of a ledger in a unit in J, without their numbers, and beside them those of another
+/// motion. The axis of the energy reaches to `largest` in J both ways.
 #[doc(hidden)]
 pub fn ledger_bars(
     terms: &[LedgerTerm],
     ledger: &LiveLedger,
-    others: &[(usize, LiveLedger)],
+    other: Option<&LiveLedger>,
     (unit, largest): (f64, f64),
 ) -> Panel {
     let (count, end) = (terms.len() as f64, largest / unit);
@@ -107,9 +107,9 @@ pub fn ledger_bars(
         if value != 0.0 {
             panel.draw(term.role, Marks::Bars(vec![[middle(row), value.min(0.0), value.max(0.0)]], BAR));
         }
-        for (place, other) in others {
-            let up = middle(row) - OTHERS.0 - OTHERS.1 * *place as f64;
-            panel.draw(Role::Pin(*place), Marks::Path(vec![(0.0, up), (value_of(term, other, unit), up)]));
+        if let Some(other) = other {
+            let up = middle(row) - OTHER;
+            panel.draw(Role::Compared, Marks::Path(vec![(0.0, up), (value_of(term, other, unit), up)]));
         }
     }
     panel.draw(Role::Reference, Marks::Verticals(vec![0.0]));
@@ -132,7 +132,7 @@ pub(super) fn ledger_panel(
         term.name != LedgerTerm::BY_HAND.name && (has_transducer || term.name != LedgerTerm::TRANSDUCER.name)
     };
     let terms: Vec<LedgerTerm> = LedgerTerm::ALL.into_iter().filter(is_shown).collect();
-    let mut panel = ledger_bars(&terms, ledger, &[], (unit, unit));
+    let mut panel = ledger_bars(&terms, ledger, None, (unit, unit));
     let decimals = ledger_decimals(ledger, unit);
     let written = |(place, term): (&(f64, String), &LedgerTerm)| {
         let joule = (term.energy)(ledger);
@@ -175,7 +175,7 @@ mod tests {
     #[test]
     fn the_bars_are_as_long_as_their_energies() {
         let ledger = LiveLedger { work_j: 2e-3, impact_j: 1e-3, damping_j: 1e-9, ..LiveLedger::default() };
-        let panel = ledger_bars(&LedgerTerm::ALL, &ledger, &[(1, ledger)], (1e-3, 2e-3));
+        let panel = ledger_bars(&LedgerTerm::ALL, &ledger, Some(&ledger), (1e-3, 2e-3));
         let bars = panel.layers.iter().filter_map(|layer| match &layer.marks {
             Marks::Bars(rows, _) => Some((layer.role, rows[0])),
             _ => None,

@@ -7,24 +7,31 @@ use super::drawn::Drawn;
 use super::figure::Point;
 use super::quantity::Quantity;
 use super::role::Role;
-use super::sweep::distinct;
-use super::swept::{Cut, Overlay, SweepPicture, View, ascending, cells, drawn, label, marks};
+use super::sweep::{are_few, distinct};
+use super::swept::{
+    Cut, NOT_SETTLED, OF_DOTS, Overlay, SweepPicture, View, ascending, cells, drawn, is_transient, label,
+    marks,
+};
+use super::walked::OF_WALK;
 use crate::numeric::short;
 use crate::study::{Grid, Table, first_crossing_edge, label_and_unit, line_meets};
 
 /// Largest number of columns or rows of a map in which cells are marked by dots.
 const MAX_DOTS: usize = 110;
 
-/// The columns from which the dots are.
-const OF_DOTS: [&str; 2] = ["settled", "steady"];
-
 /// The columns besides those of the fields that the picture of a sweep of this grid takes from its rows, the
-/// quantity first. Without the others it has no dots.
+/// quantity first. Without the others it marks neither transients nor hysteresis.
 #[doc(hidden)]
 pub fn shown_columns<'a>(quantity: &'a str, view: &View, grid: &Grid) -> Vec<&'a str> {
     let lengths: Vec<usize> = grid.axes().iter().map(|axis| axis.values.len()).collect();
-    let has_dots = *view != View::Surface && matches!(lengths[..], [a, b] if a.max(b) <= MAX_DOTS);
-    [quantity].into_iter().chain(OF_DOTS.into_iter().filter(|_| has_dots)).collect()
+    let (has_dots, has_walk) = match lengths[..] {
+        [_] => (true, true),
+        [a, b] => (*view != View::Surface && (are_few(a, b) || are_few(b, a) || a.max(b) <= MAX_DOTS), false),
+        _ => (false, false),
+    };
+    let of_dots = OF_DOTS.into_iter().filter(|_| has_dots);
+    let more = of_dots.chain(OF_WALK.into_iter().filter(|_| has_walk)).filter(|name| *name != quantity);
+    [quantity].into_iter().chain(more).collect()
 }
 
 /// Height of a horizontal cut, and width of a vertical one, relative to the map.
@@ -86,18 +93,9 @@ pub(super) fn cells_panel(
 /// these columns, or if there are too many cells for dots.
 fn transients(rows: &Table, (x, y): (&str, &str), cells: &Cells) -> Vec<Point> {
     let names = [x, y].map(|name| rows.numbers(name).unwrap_or_default());
-    let words = [OF_DOTS[0], OF_DOTS[1], "regime"].map(|name| rows.words(name));
     let lengths = [cells.across.values.len(), cells.up.values.len()];
-    if words.iter().any(|words| words.is_empty()) || lengths.iter().any(|length| *length > MAX_DOTS) {
-        return Vec::new();
-    }
-    let [settled, steady, regime] = words;
-    let is_transient = |row: &usize| {
-        // the regime of a motion with one well has no word
-        let is_irregular = ["irregular", ""].contains(&regime[*row]);
-        settled[*row] == "false" && !(is_irregular && steady[*row] == "true")
-    };
-    (0..rows.rows()).filter(is_transient).map(|row| (names[0][row], names[1][row])).collect()
+    let shown = 0..if lengths.iter().any(|length| *length > MAX_DOTS) { 0 } else { rows.rows() };
+    shown.filter(|row| is_transient(rows, *row)).map(|row| (names[0][row], names[1][row])).collect()
 }
 
 /// The quantity as height and colour over two fields.
@@ -131,7 +129,7 @@ pub(super) fn map(picture: &SweepPicture, (x, y): (&str, &str), cuts: &[Cut]) ->
     for (a, b) in transients.iter().filter(|at| panel.contains(**at)) {
         drawn.put("transient", &[*a, *b], &[]);
     }
-    panel.layer_if_any(Role::Transient, "not settled yet", Marks::Cloud(transients));
+    panel.layer_if_any(Role::Transient, NOT_SETTLED, Marks::Cloud(transients));
     lines.draw(&mut panel);
     lines.record(&mut drawn);
     let (mut below, mut beside) = (Vec::new(), Vec::new());

@@ -53,6 +53,7 @@ mod sweep;
 mod swept;
 mod thinned;
 mod threshold;
+mod walked;
 mod well;
 
 use std::path::Path;
@@ -71,7 +72,7 @@ pub use cells::{Cell, Cells, Colours};
 pub use chart::{Chart, Column, Layer, Marks, Note, Panel, Side};
 pub use comparison::{compared_name, comparison_chart, comparison_title, three_digits};
 pub use curve::{contact_chart, curve_chart, force_panel, zero_of_energy};
-pub use distance::{distance_chart, distance_ends, distance_panel};
+pub use distance::distance_chart;
 pub use figure::{Area, Figure, Shape, Text};
 pub use font::{HACK, INTER, width as text_width};
 pub use frame::Frame;
@@ -84,7 +85,6 @@ pub use names::{
 };
 pub use over_field::{can_show_over_field, escape_chart, exponents_chart};
 pub use over_time::OverTime;
-pub use page::Room;
 pub use png::PaintError;
 pub use portrait::portrait_panel;
 pub use quantity::{RMS, quantities, suited_unit, words_of};
@@ -100,8 +100,9 @@ pub use spectrum::{SpectrumQuantity, spectrum_chart};
 pub use style::{BLACK, Ink, TICK, Theme, is_fine, viridis};
 pub use surface::{MAX_SURFACE_CELLS, SurfaceFrame};
 pub use sweep::{MAX_PICTURE_CELLS, NoPicture, can_show, sweep_about, sweep_chart};
-pub use swept::{Cut, Overlay, SweepPicture, View};
+pub use swept::{Cut, NOT_SETTLED, Overlay, SweepPicture, View};
 pub use threshold::{can_show_thresholds, threshold_chart};
+pub use walked::{Walk, WalkedRun};
 pub use well::{TippedPotential, well_chart, well_panel};
 
 words! {

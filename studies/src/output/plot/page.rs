@@ -18,8 +18,6 @@ const SUBTITLE_LINE: f64 = 36.0;
 /// Line height of the legend, and the room after it.
 const ROW: f64 = 38.0;
 const AFTER_LEGEND: f64 = 10.0;
-/// Room between the row of a title and a legend below it.
-const UNDER_TITLE: f64 = 6.0;
 /// Width of a sample in the legend.
 const SAMPLE: f64 = 44.0;
 /// Distance from a sample to its text.
@@ -30,8 +28,6 @@ const BETWEEN_ENTRIES: f64 = 38.0;
 const MIN_HEIGHT: f64 = 230.0;
 /// The same in a pane of the window.
 const MIN_PANE_HEIGHT: f64 = 90.0;
-/// The same in a pane that is aligned with others.
-const MIN_ALIGNED_HEIGHT: f64 = 20.0;
 /// Free space around a pane of the window.
 const PANE: f64 = 16.0;
 /// Height below which a pane has no subtitle.
@@ -110,28 +106,6 @@ impl Lines {
     }
 }
 
-/// Margins in a pane of the window whose pictures are aligned one above the other.
-#[doc(hidden)]
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Room {
-    /// From the left edge to the frames, independent of their numbers.
-    pub left: f64,
-    /// From the left edge to the legend.
-    pub legend: f64,
-    /// From the left edge to a legend that is too wide for the row of the titles and stands in rows below it.
-    pub below: f64,
-    /// To the right of the legend.
-    pub beside: f64,
-    /// Between the legend and the frames.
-    pub between: f64,
-}
-
-/// Largest share of the height of such a pane for its legend, and for one of two rows. Entries for which
-/// there is no room are left out, the last ones first.
-const LEGEND_SHARE: (f64, f64) = (1.0 / 6.0, 0.3);
-/// Height below which the horizontal axis of such a pane has no name.
-pub(super) const NAMELESS: f64 = 340.0;
-
 /// An entry of a legend, with its place relative to the upper left corner of the legend.
 struct Entry<'a> {
     sample: Sample,
@@ -158,15 +132,14 @@ impl Chart {
         let above = 38.0 + captions.iter().map(|(lines, step, ..)| lines.across(*step)).sum::<f64>();
         let below = 24.0 + style::FOOTER_LINE * footer.len() as f64;
         let named = self.entries(theme);
-        let legend = Legend::new(&named, room, 0.0);
+        let legend = Legend::new(&named, room);
         let mut grid = Grid::new(self, theme.is_narrow());
         let around = if sheet.is_some_and(|sheet| !sheet.titled) { 0.0 } else { above + below };
         let asked = match sheet {
             None => style::SIZE.1.into(),
             Some(sheet) => sheet.height_mm.map_or(PROPORTION * width + around, |mm| mm / sheet.unit_mm()),
         };
-        let body =
-            grid.fit((edge, width - edge), asked - around - legend.height, MIN_HEIGHT, None) + legend.height;
+        let body = grid.fit((edge, width - edge), asked - around - legend.height, MIN_HEIGHT) + legend.height;
         let height = above + body + below;
         let mut figure = Figure::new(theme, (width, height), (above, height - below));
         figure.origin = caption.origin.clone();
@@ -189,39 +162,25 @@ impl Chart {
     }
 
     /// The chart in this width and height, for a pane of the window: with the subtitle as the only caption,
-    /// and without it in a low pane. `room` are the margins of a pane that is aligned with others.
-    pub fn pane(&self, (width, height): (f64, f64), theme: &Theme, room: Option<&Room>) -> Figure {
+    /// and without it in a low pane.
+    pub fn pane(&self, (width, height): (f64, f64), theme: &Theme) -> Figure {
         let named = self.entries(theme);
-        let margin = if room.is_some() { 0.0 } else { PANE };
-        let mut left = room.map_or(PANE, |room| room.legend);
-        let beside = room.map_or(0.0, |room| room.beside);
-        let mut legend = Legend::new(&named, width - left - margin, beside);
-        let mut top = 0.0;
-        if let Some(room) = room {
-            if room.below < left && !legend.is_one_row(width - left - margin - beside) {
-                (left, top) = (room.below, ROW + UNDER_TITLE);
-                legend = Legend::new(&named, width - left - margin, 0.0);
-            }
-            legend = legend.within(height - top);
-            top += 0.5 * AFTER_LEGEND;
-        }
+        let legend = Legend::new(&named, width - 2.0 * PANE);
         let is_low = height < LOW_PANE;
         let has_subtitle = !is_low && !self.subtitle.is_empty();
         let subtitle = if has_subtitle { &self.subtitle } else { "" };
         let subtitle = wrapped_to(subtitle, style::TICK, false, width - 2.0 * PANE, MAX_LINES);
-        let edge = if is_low || room.is_some() { 0.0 } else { 0.5 * PANE };
-        let above = top + edge + if has_subtitle { SUBTITLE_LINE * subtitle.len() as f64 } else { 0.0 };
-        let between = room.map_or(0.0, |room| room.between - 0.5 * AFTER_LEGEND);
-        let below = above + legend.height + between;
+        let edge = if is_low { 0.0 } else { 0.5 * PANE };
+        let above = edge + if has_subtitle { SUBTITLE_LINE * subtitle.len() as f64 } else { 0.0 };
+        let below = above + legend.height;
         let mut grid = Grid::new(self, width < style::NARROW);
-        let least = room.map_or(MIN_PANE_HEIGHT, |_| MIN_ALIGNED_HEIGHT);
-        grid.fit((margin, width - margin), height - below - edge, least, room);
+        grid.fit((PANE, width - PANE), height - below - edge, MIN_PANE_HEIGHT);
         let mut figure = Figure::new(theme, (width, height), (0.0, height));
         for (i, line) in subtitle.iter().enumerate() {
-            let at = (PANE, top + edge + SUBTITLE_LINE * (i as f64 + 0.75));
+            let at = (PANE, edge + SUBTITLE_LINE * (i as f64 + 0.75));
             figure.text(Text::new(line, at, style::TICK, theme.soft));
         }
-        legend.draw(&mut figure, (left, above), theme);
+        legend.draw(&mut figure, (PANE, above), theme);
         grid.place(below).for_each(|slot| slot.draw(&mut figure, theme));
         figure
     }
@@ -267,15 +226,15 @@ struct Legend<'a> {
 }
 
 impl<'a> Legend<'a> {
-    /// These entries in rows no wider than `room`, of which the first one leaves some free `beside` it.
-    fn new(named: &'a [(Sample, String)], room: f64, beside: f64) -> Self {
+    /// These entries in rows no wider than `room`.
+    fn new(named: &'a [(Sample, String)], room: f64) -> Self {
         let (mut left, mut row) = (0.0, 0);
         let mut entries = Vec::new();
         for (sample, words) in named {
             let share = ((room - SAMPLE - GAP) / font::width(words, style::TICK, false)).min(1.0);
             let size = share * style::TICK;
             let width = SAMPLE + GAP + font::width(words, size, false);
-            if left > 0.0 && left + width > room + 0.5 - if row == 0 { beside } else { 0.0 } {
+            if left > 0.0 && left + width > room + 0.5 {
                 (left, row) = (0.0, row + 1);
             }
             entries.push(Entry { sample: *sample, words, size, left, row });
@@ -283,24 +242,6 @@ impl<'a> Legend<'a> {
         }
         let height = if entries.is_empty() { 0.0 } else { ROW * (row as f64 + 1.0) + AFTER_LEGEND };
         Self { entries, height }
-    }
-
-    /// Whether it is a row of full letters that is no wider than `room`.
-    fn is_one_row(&self, room: f64) -> bool {
-        let fits = |entry: &Entry| {
-            let width = SAMPLE + GAP + font::width(entry.words, style::TICK, false);
-            entry.row == 0 && entry.left + width <= room + 0.5
-        };
-        self.entries.iter().all(fits)
-    }
-
-    /// The legend within this height; an empty one has the height of a row.
-    fn within(mut self, height: f64) -> Self {
-        let bottom = |row: usize| ROW * (row as f64 + 1.0);
-        let room = |row: usize| height * if row > 1 { LEGEND_SHARE.0 } else { LEGEND_SHARE.1 };
-        self.entries.retain(|entry| entry.row == 0 || bottom(entry.row) <= room(entry.row));
-        self.height = bottom(self.entries.last().map_or(0, |entry| entry.row)) + AFTER_LEGEND;
-        self
     }
 
     /// Draws it with its upper left corner at a place.

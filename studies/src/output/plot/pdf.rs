@@ -12,7 +12,7 @@ use pdf_writer::{Content, Filter, Finish, Name, Pdf, Rect, Ref, Str, TextStr};
 use skrifa::GlyphId;
 use xmp_writer::XmpWriter;
 
-use super::figure::{Area, Figure, Point, Shape, Text};
+use super::figure::{Area, Figure, Point, Shape, Text, oriented};
 use super::font::{Face, UNITS};
 use super::style::Ink;
 use super::subset::subset;
@@ -58,7 +58,11 @@ pub fn pdf(figure: &Figure) -> Vec<u8> {
     let (x, y) = (move_by.0 as f32, move_by.1 as f32);
     sheet.content.transform([scale as f32, 0.0, 0.0, -scale as f32, x, y]);
     sheet.content.set_line_cap(LineCapStyle::RoundCap).set_line_join(LineJoinStyle::RoundJoin);
-    figure.shapes.iter().skip(1).for_each(|shape| sheet.paint(shape));
+    let shapes = figure.shapes.get(1..).unwrap_or_default();
+    // neighbouring polygons of one colour, as those of a band, leave no seam if they are one path
+    let is_one =
+        |a: &Shape, b: &Shape| matches!((a, b), (Shape::Polygon(_, a), Shape::Polygon(_, b)) if a == b);
+    shapes.chunk_by(is_one).for_each(|shapes| sheet.paint(shapes));
 
     let mut pdf = Pdf::new();
     pdf.catalog(CATALOG).pages(PAGES).metadata(METADATA);
@@ -179,8 +183,9 @@ impl Sheet {
         self.drawing = Some((ink, width));
     }
 
-    fn paint(&mut self, shape: &Shape) {
-        match shape {
+    /// Paints a shape, or several polygons of one colour.
+    fn paint(&mut self, shapes: &[Shape]) {
+        match &shapes[0] {
             Shape::Rect(Area { left, top, right, bottom }, ink) => {
                 self.fill(*ink);
                 let [left, top, right, bottom] = [*left, *top, *right, *bottom].map(rounded);
@@ -191,10 +196,15 @@ impl Sheet {
                 self.outline(points);
                 self.content.stroke();
             }
-            Shape::Polygon(points, ink) => {
+            Shape::Polygon(_, ink) => {
                 self.fill(*ink);
-                self.outline(points);
-                self.content.close_path().fill_nonzero();
+                for shape in shapes {
+                    if let Shape::Polygon(points, _) = shape {
+                        self.outline(&oriented(points));
+                        self.content.close_path();
+                    }
+                }
+                self.content.fill_nonzero();
             }
             // a line of no length with round ends (ISO 32000-1, 8.4.3.3)
             Shape::Disc(centre, radius, ink) => {

@@ -333,8 +333,7 @@ pub fn measured_chart(trace: &Trace, found: &Comparison, inset: Option<(f64, f64
         _ => "x_m",
     };
     let scaled = |times: &[f64], values: &[f64]| -> Vec<Point> {
-        let pairs = times.iter().zip(values).map(|(t, value)| (*t, value * scale));
-        pairs.filter(|point| point.1.is_finite()).collect()
+        times.iter().zip(values).map(|(t, value)| (*t, value * scale)).collect()
     };
     let computed = scaled(column("t_s"), column(name));
     let measured = scaled(&found.times, &found.measured);

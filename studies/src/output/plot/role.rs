@@ -58,6 +58,8 @@ pub enum Role {
     Hysteresis,
     /// One of several kinds without a colour of their own, such as an attractor.
     Kind(usize),
+    /// The same kind where it is not sure, paler.
+    Unsure(usize),
     /// An event of a branch, or of a motion, by its place.
     Event(usize),
     /// An unstable motion.
@@ -116,8 +118,8 @@ pub enum Role {
     Past(f64),
     /// An impact of that age, which turns the velocity round.
     Jump(f64),
-    /// A pinned motion by the place of its letter.
-    Pin(usize),
+    /// The motion with which the present one is compared.
+    Compared,
     /// The mass at rest.
     Resting,
     /// The frame.
@@ -135,9 +137,6 @@ pub enum Role {
     /// Energy that damping took.
     Taken,
 }
-
-/// Dash and gap of the pinned motions, by which they can be distinguished.
-const PINS: [(f64, f64); 3] = [(22.0, 8.0), (4.5, 9.0), (11.0, 8.0)];
 
 /// Strength of the oldest part of a motion that fades.
 const FAINTEST: f64 = 0.12;
@@ -224,6 +223,10 @@ impl Theme {
                 halo: Some(style::WHITE),
                 ..marked(style::KINDS[place % style::KINDS.len()], KINDS[(place + 2 * (place / 4)) % 4])
             },
+            Role::Unsure(place) => {
+                let kind = self.look(Role::Kind(place));
+                Look { ink: kind.ink.over(self.paper, style::PALER), ..kind }
+            }
             Role::Event(place) => marked(self.soft, EVENTS[place % 4]),
             Role::UnstableMotion => dashed(self.unstable),
             Role::Release => Look { width: style::GUIDE, halo: Some(style::BLACK), ..dashed(style::WHITE) },
@@ -262,7 +265,7 @@ impl Theme {
             Role::Apart => Look { dash: Some(style::SHORT_DASH), ..fine(self.shaking) },
             Role::Past(age) => fine(self.faded(self.ink, age)),
             Role::Jump(age) => Look { dash: Some(style::SHORT_DASH), ..fine(self.faded(self.impact, age)) },
-            Role::Pin(place) => Look { dash: Some(PINS[place % PINS.len()]), ..of(self.second) },
+            Role::Compared => Look { dash: Some((22.0, 8.0)), ..of(self.second) },
         }
     }
 
@@ -281,13 +284,5 @@ mod tests {
         let [kink, stable] = [Role::Kink, Role::Stable].map(|role| Theme::LIGHT.look(role));
         // the distance of the edge of a diamond, and the outline of a disc
         assert!(1.25 * kink.size / 2.0_f64.sqrt() + 2.0 > stable.size + 5.0);
-    }
-
-    /// A dash of one pin is at least twice as long as that of the next.
-    #[test]
-    fn the_dashes_of_the_pins_can_be_told_apart() {
-        let mut lengths = PINS.map(|(dash, _)| dash);
-        lengths.sort_by(f64::total_cmp);
-        assert!(lengths.windows(2).all(|pair| pair[1] >= 2.0 * pair[0]), "{lengths:?}");
     }
 }

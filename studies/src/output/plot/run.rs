@@ -169,8 +169,8 @@ impl Seen<'_> {
             RunPanel::Power => {
                 let power = &self.power[shown];
                 let (per_watt, watt) = suited_unit("W", power.iter().copied());
-                let known = power.iter().filter(|power| power.is_finite()).map(|power| power * per_watt);
-                let up = PlotAxis::around(known.chain([0.0]), 0.08, &label(watt));
+                let watts = power.iter().map(|power| power * per_watt);
+                let up = PlotAxis::around(watts.chain([0.0]), 0.08, &label(watt));
                 self.quantity(kind, (self.power, per_watt), up, 1.0)
             }
             RunPanel::Energy => self.energy(),
@@ -207,8 +207,7 @@ impl Seen<'_> {
     fn quantity(&self, kind: RunPanel, (values, scale): (&[f64], f64), up: PlotAxis, height: f64) -> Panel {
         let Self { trace, .. } = *self;
         let pairs = self.rows(trace.shown_from).map(|i| (self.t[i], values[i] * scale));
-        let marks = Marks::Trace(pairs.filter(|pair| pair.1.is_finite()).collect());
-        let line = Layer::new(kind.role(trace.has_load), "", marks);
+        let line = Layer::new(kind.role(trace.has_load), "", Marks::Trace(pairs.collect()));
         Panel { height, ..kind.over_time(up, vec![line], &self.beside()) }
     }
 
@@ -244,8 +243,7 @@ impl Seen<'_> {
             panel.layer(Role::Barrier, "top of the barrier", Marks::Horizontals(vec![barrier * scale]));
         }
         let scaled = |points: Vec<Point>| {
-            let points = points.into_iter().map(|(t, energy)| (t, energy * scale));
-            Marks::Trace(points.filter(|point| point.1.is_finite()).collect())
+            Marks::Trace(points.into_iter().map(|(t, energy)| (t, energy * scale)).collect())
         };
         panel.layer(Role::Total, "potential and kinetic energy", scaled(total));
         panel.layer(Role::Potential, "potential energy", scaled(potential));

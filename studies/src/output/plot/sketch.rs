@@ -37,8 +37,6 @@ const LABELLED: (f64, f64) = (420.0, 180.0);
 /// A part that a reader may ask about.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum DrawnPart {
-    /// The bulge of the flexures, as text.
-    Bulge,
     /// A spring beside the flexures.
     Spring,
     /// Magnets.
@@ -130,8 +128,8 @@ impl<'a> Pen<'a> {
         Self { of, frame, theme, figure, kept, parts, feet, top, bottom, zero, along, mass, stops, outlined }
     }
 
-    /// Draws all of it, with these words at the mass.
-    pub fn draw(mut self, mass: &str) -> Sketch {
+    /// Draws all of it, with these words at the mass and at the flexures.
+    pub fn draw(mut self, mass: &str, flexures: Option<&str>) -> Sketch {
         let area = self.area();
         let lines = self.flexure_lines();
         let has_flexures = self.of.flexures.is_some();
@@ -159,11 +157,10 @@ impl<'a> Pen<'a> {
             self.arrow(place);
         }
         self.scale_bar();
-        if let Some(words) = self.of.bulge() {
+        if let Some(words) = flexures {
             let place = (area.left + 26.0, self.bottom - 11.0);
-            let text = self.text(&words, place, Align::Left, Edge::Bottom);
-            let place = self.write([Text { ink: self.theme.ink, ..text }]);
-            self.parts.extend(place.map(|place| (DrawnPart::Bulge, place)));
+            let text = self.text(words, place, Align::Left, Edge::Bottom);
+            self.write([Text { ink: self.theme.ink, ..text }]);
         }
         if area.right - area.left >= LABELLED.0 && area.bottom - area.top >= LABELLED.1 {
             for texts in labels.into_iter().chain(self.names(mass)) {
@@ -359,7 +356,10 @@ mod tests {
                     for push in [-1.0, -0.3, 0.3, 1.0] {
                         let of = Assembly { push, ..of.clone() };
                         let about = format!("{preset} at {x} with {push} in {width} x {height}");
-                        check(&about, &of.sketch(&frame, &Theme::LIGHT, "mass: drag me"));
+                        check(
+                            &about,
+                            &of.sketch(&frame, &Theme::LIGHT, "mass: drag me", of.bulge().as_deref()),
+                        );
                     }
                 }
             }

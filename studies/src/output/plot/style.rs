@@ -54,6 +54,8 @@ pub const FRAME: f64 = 2.0;
 pub const GRID: f64 = 1.2;
 /// Half the size of a marker.
 pub const MARKER: f64 = 9.0;
+/// Strength of the colour of what is not sure.
+pub const PALER: f64 = 0.45;
 /// Distance between the lines of a hatching, and their width.
 pub const HATCH: (f64, f64) = (11.0, 1.6);
 pub const WALL: f64 = 30.0;

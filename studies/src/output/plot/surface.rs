@@ -4,6 +4,7 @@ use super::axis::PlotAxis;
 use super::cells::{Cell, Cells};
 use super::figure::{Align, Area, Figure, Point, Text, distance};
 use super::font;
+use super::page::{Lines, wrapped};
 use super::projection::{AXIS_EDGES, BACK_EDGES, BoxPlace, Face, SIDES, faces, placed, wall_lines};
 use super::style::{self, Ink, Theme, viridis};
 
@@ -12,6 +13,54 @@ pub const MAX_SURFACE_CELLS: u64 = 60_000;
 
 /// Room for the numbers left and right of the box.
 const BESIDE: (f64, f64) = (130.0, 30.0);
+/// Room below the box for the numbers, and with a line of the labels.
+const UNDER: (f64, f64) = (70.0, 100.0);
+/// Distance of the two labels below the box.
+const BETWEEN: f64 = 24.0;
+/// Height of a further line of a label.
+const LINE: f64 = 38.0;
+/// Distance of a label from the box below it.
+const GAP: f64 = 14.0;
+/// Length by which the label of the height may be longer than its axis.
+const BEYOND: f64 = 40.0;
+
+/// The labels of the three axes in lines, all of the full size.
+#[derive(Default)]
+pub struct Labels {
+    x: Lines,
+    y: Lines,
+    /// That of the height in lines above the box; none if it stands upright beside its axis.
+    z: Lines,
+}
+
+impl Labels {
+    /// The labels of these axes about a box in an area of this width and height.
+    pub fn new([x, y, z]: [&PlotAxis; 3], (width, height): (f64, f64)) -> Self {
+        let view = SurfaceFrame::within(Area::new(0.0, 0.0, width, height), [x, y, z]);
+        let [right, left] = [RIGHT, LEFT].map(|at| view.place(at));
+        let lines = |axis: &PlotAxis, room: f64| Lines {
+            lines: wrapped(&axis.label, style::AXIS, false, room),
+            size: style::AXIS,
+        };
+        let upright = left.1 - view.place((0.0, 1.0, 1.0)).1 + BEYOND;
+        let fits = font::width(&z.label, style::AXIS, false) <= upright;
+        let z = if fits { Lines::default() } else { lines(z, width) };
+        // both stand below the same edge of the canvas
+        let half = 0.5 * (right.0 - left.0) - BETWEEN;
+        Self { x: lines(x, half), y: lines(y, half), z }
+    }
+
+    /// The room that they take above and below the box.
+    pub fn room(&self) -> (f64, f64) {
+        let below = self.x.lines.len().max(self.y.lines.len()).max(1);
+        (self.z.across(LINE), UNDER.1 + LINE * (below - 1) as f64)
+    }
+}
+
+/// The corners of the floor at which the axes begin and end.
+const NEAR: BoxPlace = (0.0, 0.0, 0.0);
+const RIGHT: BoxPlace = (1.0, 0.0, 0.0);
+const LEFT: BoxPlace = (0.0, 1.0, 0.0);
 
 /// A box in projection with three axes: to the right, to the back and upward.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,6 +76,12 @@ pub struct SurfaceFrame {
 }
 
 impl SurfaceFrame {
+    /// The box with these axes in an area with its numbers.
+    fn within(Area { left, top, right, bottom }: Area, [x, y, z]: [&PlotAxis; 3]) -> Self {
+        let area = Area::new(left + BESIDE.0, top, right - BESIDE.1, bottom);
+        Self { area, x: x.with_ticks(6), y: y.with_ticks(6), z: z.with_ticks(5) }
+    }
+
     /// Position on the canvas of a point in the box, with coordinates from 0 to 1.
     fn place(&self, at: BoxPlace) -> Point {
         placed(self.area, at)
@@ -117,8 +172,7 @@ impl SurfaceFrame {
     }
 
     /// The edges that carry ticks, their numbers and labels.
-    fn axes(&self, figure: &mut Figure, theme: &Theme) {
-        let (near, right, left) = ((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0));
+    fn axes(&self, figure: &mut Figure, labels: &Labels, theme: &Theme) {
         for line in AXIS_EDGES {
             self.line(figure, line, style::FRAME, theme.ink);
         }
@@ -153,41 +207,40 @@ impl SurfaceFrame {
             let at = (x - style::TICK_LENGTH - 7.0, y + 0.5 * style::TICK * font::CAPITAL);
             figure.text(text(words, at, style::TICK, Align::Right));
         }
-        let (low, high) = (self.place(left), self.place((0.0, 1.0, 1.0)));
-        let beside = (low.0 - style::TICK_LENGTH - 25.0 - self.z.widest_number()).max(style::AXIS);
-        let fitted =
-            |words: &str, room: f64| style::AXIS * (room / font::width(words, style::AXIS, false)).min(1.0);
-        let size = fitted(&self.z.label, low.1 - high.1 + 40.0);
-        let middle = (beside, 0.5 * (low.1 + high.1));
-        figure.text(Text { upright: true, ..text(&self.z.label, middle, size, Align::Centre) });
-        let ([near, right, left], under) = ([near, right, left].map(|at| self.place(at)), 70.0);
-        let room = 0.5 * (right.0 - left.0) - 24.0;
-        for (label, (from, to)) in [(&self.x.label, (near, right)), (&self.y.label, (left, near))] {
-            let at = (0.5 * (from.0 + to.0), self.area.bottom + under);
-            figure.text(text(label, at, fitted(label, room), Align::Centre));
+        let [near, right, left] = [NEAR, RIGHT, LEFT].map(|at| self.place(at));
+        let count = labels.z.lines.len();
+        for (i, line) in labels.z.lines.iter().enumerate() {
+            let at = (self.area.left - BESIDE.0, self.area.top - GAP - LINE * (count - 1 - i) as f64);
+            figure.text(text(line, at, style::AXIS, Align::Left));
+        }
+        if count == 0 {
+            let beside = (left.0 - style::TICK_LENGTH - 25.0 - self.z.widest_number()).max(style::AXIS);
+            let middle = (beside, 0.5 * (left.1 + self.place((0.0, 1.0, 1.0)).1));
+            figure.text(Text { upright: true, ..text(&self.z.label, middle, style::AXIS, Align::Centre) });
+        }
+        for (label, (from, to)) in [(&labels.x, (near, right)), (&labels.y, (left, near))] {
+            for (i, line) in label.lines.iter().enumerate() {
+                let at = (0.5 * (from.0 + to.0), self.area.bottom + UNDER.0 + LINE * i as f64);
+                figure.text(text(line, at, style::AXIS, Align::Centre));
+            }
         }
     }
 }
 
-/// Draws the surface of `cells` over the axes in `area`, below which there is room for the numbers.
+/// Draws the surface of `cells` over the axes in `area`, about which there is room for the labels.
 pub fn draw(
     figure: &mut Figure,
     area: Area,
-    (x, y, z): (&PlotAxis, &PlotAxis, &PlotAxis),
+    axes: [&PlotAxis; 3],
+    labels: &Labels,
     cells: &Cells,
     theme: &Theme,
 ) {
-    let Area { left, top, right, bottom } = area;
-    let view = SurfaceFrame {
-        area: Area::new(left + BESIDE.0, top, right - BESIDE.1, bottom),
-        x: x.with_ticks(6),
-        y: y.with_ticks(6),
-        z: z.with_ticks(5),
-    };
+    let view = SurfaceFrame::within(area, axes);
     view.walls(figure, theme);
     view.holes(figure, cells, theme);
     skin(figure, &view, cells, theme);
-    view.axes(figure, theme);
+    view.axes(figure, labels, theme);
     figure.surface = Some(view);
 }
 

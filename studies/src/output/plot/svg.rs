@@ -1,6 +1,6 @@
 //! Painting of a list of shapes as SVG: paths, and text as text.
 
-use super::figure::{Align, Area, Figure, Point, Shape, Text};
+use super::figure::{Align, Area, Figure, Point, Shape, Text, oriented};
 use super::style::Ink;
 use crate::numeric::short;
 
@@ -75,7 +75,7 @@ fn path(svg: &mut String, shapes: &[Shape], brush: Brush) {
                 *svg += &format!("M{left} {top}H{right}V{bottom}H{left}z");
             }
             Shape::Polygon(points, _) => {
-                polygon(svg, points);
+                line(svg, oriented(points).iter());
                 svg.push('z');
             }
             Shape::Line(points, ..) => line(svg, points.iter()),
@@ -84,13 +84,6 @@ fn path(svg: &mut String, shapes: &[Shape], brush: Brush) {
         }
     }
     *svg += "\"/>\n";
-}
-
-/// A polygon with a fixed orientation, so that overlapping parts of a path leave no hole.
-fn polygon(svg: &mut String, points: &[Point]) {
-    let ends = points.iter().zip(points.iter().cycle().skip(1));
-    let area: f64 = ends.map(|(a, b)| a.0 * b.1 - b.0 * a.1).sum();
-    if area < 0.0 { line(svg, points.iter().rev()) } else { line(svg, points.iter()) }
 }
 
 /// A line through points in relative coordinates.

@@ -3,11 +3,15 @@
 use super::axis::PlotAxis;
 use super::cells::{Cell, Cells, Colours};
 use super::chart::{Chart, Column, Layer, Marks, Panel};
+use super::drawn::as_numbers;
 use super::map::{cells_panel, map, surface};
 use super::quantity::{Quantity, quantities, words_of};
 use super::role::Role;
 use super::surface::MAX_SURFACE_CELLS;
-use super::swept::{SweepPicture, View, ascending, cells, drawn, marks, of_each, spans, swept_axis};
+use super::swept::{
+    NOT_SETTLED, SweepPicture, View, ascending, cells, drawn, is_transient, marks, of_each, spans, swept_axis,
+};
+use super::walked::{Walk, WalkedRun};
 use crate::numeric::short;
 use crate::scene::{Scene, Start, find_name};
 use crate::study::{DIRECTION, Direction, Grid, SUMMARY_FIELDS, Table};
@@ -116,9 +120,6 @@ const FEW: usize = 6;
 /// Smallest ratio of the number of values of the other field to these.
 const MANY: usize = 3;
 
-/// Distance above which two lines are visibly separate, as a share of the vertical axis.
-const VISIBLE: f64 = 2e-3;
-
 /// The picture of a sweep: a line over one field; over two fields a map, or one line per value of a field
 /// with few values.
 ///
@@ -184,12 +185,17 @@ pub fn sweep_chart(picture: &SweepPicture) -> Result<Chart, NoPicture> {
 pub(super) fn few_lines<'a>(rows: &Table, grid: &'a Grid) -> Option<(&'a str, &'a str)> {
     let [a, b] = grid.columns() else { return None };
     let count = |name: &str| distinct(rows.numbers(name).unwrap_or_default()).len();
-    let few = |of: &str, beside: &str| count(of) <= FEW && count(beside) >= MANY * count(of);
+    let few = |of: &str, beside: &str| are_few(count(of), count(beside));
     match (few(b, a), few(a, b)) {
         (true, _) => Some((a, b)),
         (false, true) => Some((b, a)),
         _ => None,
     }
+}
+
+/// Whether a field of `few` values is shown as lines over another one of `many` values.
+pub(super) fn are_few(few: usize, many: usize) -> bool {
+    few <= FEW && many >= MANY * few
 }
 
 /// The values in ascending order, each once.
@@ -241,16 +247,14 @@ fn lines(picture: &SweepPicture, x: &str, each: &[SeriesLine]) -> Chart {
         let all: Vec<usize> = lines.iter().flat_map(|line| line.order.iter().copied()).collect();
         let missing = all.iter().copied().filter(|row| quantity.cells[*row] == Cell::Missing);
         panel.layer_if_any(Role::Missing, quantity.missing(rows), spans(places, missing));
-        if let (true, [up, down @ SeriesLine { role: Role::Down, .. }]) = (joined, lines) {
-            let both = up.order.iter().zip(&down.order);
-            let between: Vec<[f64; 3]> =
-                both.map(|(&a, &b)| [places[a], quantity.values[a], quantity.values[b]]).collect();
-            let apart = |row: &[f64; 3]| (panel.y.share(row[1]) - panel.y.share(row[2])).abs() > VISIBLE;
-            if between.iter().any(apart) {
-                panel.layer(Role::Hysteresis, "hysteresis", Marks::Band(between));
-            }
-        }
-        for SeriesLine { order, name, role } in lines {
+        let way = |place: usize| {
+            let order = lines.get(place).map_or(&[][..], |line| line.order.as_slice());
+            WalkedRun::of_rows(rows, x, &quantity, order)
+        };
+        let both = joined && matches!(lines, [_, SeriesLine { role: Role::Down, .. }]);
+        let walk = if both { Walk::new([way(0), way(1)]) } else { Walk::default() };
+        panel.layer_if_any(Role::Hysteresis, "hysteresis", Marks::Spans(walk.differing.clone()));
+        for (place, SeriesLine { order, name, role }) in lines.iter().enumerate() {
             if !joined {
                 panel.heading.clone_from(name);
                 continue;
@@ -259,15 +263,28 @@ fn lines(picture: &SweepPicture, x: &str, each: &[SeriesLine]) -> Chart {
                 let band = order.iter().map(|&row| [places[row], low[row], high[row]]).collect();
                 panel.layer(Role::Around, "95 % of the draws", Marks::Band(band));
             }
-            let points = order.iter().map(|&row| (places[row], quantity.values[row])).collect();
+            let points = match (rows.column(DIRECTION), both) {
+                (Some(_), true) => walk.line(place),
+                (Some(_), false) => Walk::new([way(place), Vec::new()]).line(0),
+                (None, _) => order.iter().map(|&row| (places[row], quantity.values[row])).collect(),
+            };
             panel.layer(if name.is_empty() { Role::Joined } else { *role }, name, Marks::Path(points));
         }
         let marks = marks(&all, places, &quantity, panel.y.low, rows);
         panel.draw(Role::Motion, Marks::Regimes(marks, joined));
+        let transients = all.iter().filter(|row| is_transient(rows, **row));
+        let transients = transients.map(|&row| (places[row], quantity.values[row])).collect();
+        panel.layer_if_any(Role::Transient, NOT_SETTLED, Marks::Cloud(transients));
         panel
     };
     let panels = each.chunks(if joined { each.len() } else { 1 }).map(panel_of).collect();
-    Chart::stack(panels, "", drawn(picture, &[(x, ranges.x)]).table())
+    let mut drawn = drawn(picture, &[(x, ranges.x)]);
+    let values = rows.column(picture.quantity).and_then(as_numbers).unwrap_or_default();
+    let is_seen = |row: &usize| ranges.x.is_none_or(|(a, b)| (a..=b).contains(&places[*row]));
+    for row in (0..rows.rows()).filter(is_seen).filter(|row| is_transient(rows, *row)) {
+        drawn.put("transient", &[places[row], values.get(row).copied().unwrap_or(f64::NAN)], &[]);
+    }
+    Chart::stack(panels, "", drawn.table())
 }
 
 /// One of several lines over a field: its rows in ascending order, its name and its role.

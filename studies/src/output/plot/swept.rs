@@ -127,6 +127,22 @@ pub(super) fn drawn(picture: &SweepPicture, ranges: &[(&str, Option<(f64, f64)>)
     drawn
 }
 
+/// The columns by which a transient is told.
+pub(super) const OF_DOTS: [&str; 2] = ["settled", "steady"];
+
+/// The legend entry of transients.
+#[doc(hidden)]
+pub const NOT_SETTLED: &str = "not settled yet";
+
+/// Whether the motion of a row may be a transient; false if the rows lack the columns that tell it.
+pub(super) fn is_transient(rows: &Table, row: usize) -> bool {
+    let word = |name: &str| rows.words(name).get(row).copied();
+    let ([settled, steady], regime) = (OF_DOTS.map(word), word("regime"));
+    // the regime of a motion with one well has no word
+    let is_irregular = regime.is_none_or(|regime| ["irregular", ""].contains(&regime));
+    settled == Some("false") && steady.is_some() && !(is_irregular && steady == Some("true"))
+}
+
 pub(super) fn label(rows: &Table, name: &str) -> String {
     rows.column(name).map_or_else(|| name.to_owned(), Column::label)
 }

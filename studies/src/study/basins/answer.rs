@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::Basins;
-use super::rounds::{Fate, Kind, Way};
+use super::rounds::{Fate, Kind};
 use super::stroboscopic::final_state;
 use crate::dynamics::{MapState, Model, Outcome, Place, Regime, Request, Summary};
 use crate::numeric::decimals;
@@ -185,7 +185,7 @@ enum Key {
 impl Basins {
     /// The results so far; `None` if cancelled.
     pub fn answer(&self, task: &Task) -> Option<Answer> {
-        let after: Vec<Option<(Key, Way)>> =
+        let after: Vec<Option<(Key, u32)>> =
             (0..self.rounds.releases.len()).map(|place| self.after(place as u32)).collect();
         // each with the first row that goes to it and the number of such rows
         let mut keys: Vec<(Key, usize, u64)> = Vec::new();
@@ -193,8 +193,10 @@ impl Basins {
         let mut rows = Vec::with_capacity(self.rounds.fates.len());
         for (row, fate) in self.rounds.fates.iter().enumerate() {
             let key = match *fate {
-                Fate::Kind(kind, way) => Some((Key::Kind(kind), way)),
-                Fate::Release(place, way) => after[place as usize].map(|(key, more)| (key, way.and(more))),
+                Fate::Kind(kind, periods) => Some((Key::Kind(kind), periods)),
+                Fate::Release(place, periods) => {
+                    after[place as usize].map(|(key, more)| (key, periods.saturating_add(more)))
+                }
                 Fate::NotRun | Fate::Outside | Fate::Lost { .. } | Fate::Undecided => None,
             };
             let end = match *fate {
@@ -205,14 +207,14 @@ impl Basins {
             lost += u64::from(matches!(end, Fate::Lost { .. }));
             spent += u64::from(end == Fate::Lost { spent: true });
             undecided += u64::from(end == Fate::Undecided);
-            rows.push(key.map(|(key, way)| {
+            rows.push(key.map(|(key, periods)| {
                 let known = keys.iter().position(|(known, ..)| *known == key);
                 let place = known.unwrap_or_else(|| {
                     keys.push((key, row, 0));
                     keys.len() - 1
                 });
                 keys[place].2 += 1;
-                (place as u32 + 1, way.periods)
+                (place as u32 + 1, periods)
             }));
         }
         let run = self.rounds.fates.iter().filter(|fate| **fate != Fate::NotRun).count() as u64;
@@ -233,29 +235,30 @@ impl Basins {
                 share: Shares::of(starts, inside),
             });
         }
-        Some(Answer { attractors, rows, sure: Vec::new(), outside, lost, spent, undecided })
+        Some(Answer { attractors, rows, sure: self.sure(), outside, lost, spent, undecided })
     }
 
-    /// The sequence of releases from `release` on, and the fate that ends it: none of them, or one once more.
-    pub(super) fn chain(&self, release: u32) -> (Vec<(u32, Way)>, Fate) {
-        let (mut passed, mut at, mut way) = (Vec::new(), release, Way::default());
+    /// The sequence of releases from `release` on, each with the forcing periods up to it, and the fate that
+    /// ends it: none of them, or one once more.
+    pub(super) fn chain(&self, release: u32) -> (Vec<(u32, u32)>, Fate) {
+        let (mut passed, mut at, mut periods) = (Vec::new(), release, 0_u32);
         loop {
-            if passed.iter().any(|(known, _): &(u32, Way)| *known == at) {
-                return (passed, Fate::Release(at, way));
+            if passed.iter().any(|(known, _): &(u32, u32)| *known == at) {
+                return (passed, Fate::Release(at, periods));
             }
-            passed.push((at, way));
+            passed.push((at, periods));
             match self.rounds.releases[at as usize].next {
-                Fate::Release(next, more) => (at, way) = (next, way.and(more)),
+                Fate::Release(next, more) => (at, periods) = (next, periods.saturating_add(more)),
                 other => return (passed, other),
             }
         }
     }
 
-    /// The attractor reached after a release, and the length of the motion to it.
-    fn after(&self, release: u32) -> Option<(Key, Way)> {
+    /// The attractor reached after a release, and the number of forcing periods up to it.
+    fn after(&self, release: u32) -> Option<(Key, u32)> {
         let (passed, end) = self.chain(release);
         match end {
-            Fate::Kind(kind, more) => Some((Key::Kind(kind), passed.last()?.1.and(more))),
+            Fate::Kind(kind, more) => Some((Key::Kind(kind), passed.last()?.1.saturating_add(more))),
             Fate::Release(again, _) => {
                 let begin = passed.iter().position(|(known, _)| *known == again)?;
                 let least = passed[begin..].iter().map(|(known, _)| *known).min()?;

@@ -8,12 +8,14 @@
 //!   ellipse around it from which all motions go to the orbit (see `orbit`). A motion that repeats only
 //!   proposes an orbit, so that a transient near a saddle is followed further. (Datseris and Wagemakers
 //!   (2022) also recognise a motion by its return to known ones, on a grid of cells.)
-//! - Neither happens for a thousand periods. A `Verdict` then says whether the motion is irregular. Around
-//!   the first such motions the study looks for a region that no motion leaves (see `region`); later motions
-//!   that enter it need not be followed further.
+//! - Neither happens for a thousand periods. A `Verdict` then says whether the motion is irregular. When the
+//!   first such motion is met, the study looks for regions that no motion leaves (see `region`); motions that
+//!   enter one need not be followed further.
 //!
-//! All starts use the scales of the start farthest from the barrier, and the known attractors change only
-//! between rounds, so that the result has the same bits for any number of batches and threads.
+//! The answer of a start depends on no other start. All use the scales of a mass at rest in the middle; an
+//! orbit has the same ellipses whichever start proposes it, and a start that comes before its orbit is known
+//! is followed again; regions come from starts of their own; and each start may take the same work. Known
+//! attractors change only between rounds, so that the result has the same bits for any number of threads.
 
 mod answer;
 mod orbit;
@@ -32,7 +34,6 @@ use crate::study::{Levels, STRIDES};
 pub use answer::{Answer, Attractor, Shares};
 use rounds::{PATIENCE, Rounds};
 pub use starts::{EvenRange, Starts, StartsError};
-use stroboscopic::Effort;
 
 /// Why a scene has no basins.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -85,7 +86,10 @@ pub struct Basins {
     done: usize,
     room: (f64, f64),
     rounds: Rounds,
-    effort: Effort,
+    /// Units of work that a forcing period takes.
+    work_of_a_period: f64,
+    /// The model at a finer tolerance, if the answers are to be checked.
+    finer: Option<Model>,
 }
 
 impl Basins {
@@ -100,26 +104,19 @@ impl Basins {
             return Err(NoBasins::NoLoss);
         }
         let electrical = if let Start::At { electrical, .. } = scene.start { electrical } else { 0.0 };
-        let ((low, high), v) = starts.extent();
-        let at = |x_mm: f64, v_m_per_s: f64, excitation: &Excitation| {
-            let start = Start::At { x_mm, v_m_per_s, electrical };
+        let at_rest = |excitation: &Excitation| {
+            let (left, right) = mechanism.curve.domain();
+            let [left_stop, right_stop] = scene.stops.positions_mm();
+            let left = left_stop.map_or(left * 1e3, |stop| stop.max(left * 1e3));
+            let right = right_stop.map_or(right * 1e3, |stop| stop.min(right * 1e3));
+            let start = Start::At { x_mm: 0.0_f64.max(left).min(right), v_m_per_s: 0.0, electrical };
             let scene = Scene { start, excitation: excitation.clone(), ..scene.clone() };
             Model::build(&scene, Arc::clone(&mechanism)).map_err(NoBasins::Faults)
         };
-        let (left, right) = mechanism.curve.domain();
-        let within = |x_mm: f64| x_mm.clamp(left * 1e3, right * 1e3);
-        let [left_stop, right_stop] = scene.stops.positions_mm();
-        let (left_stop, right_stop) =
-            (left_stop.unwrap_or(f64::NEG_INFINITY), right_stop.unwrap_or(f64::INFINITY));
-        let between = |x_mm: f64| x_mm.max(left_stop).min(right_stop);
-        let middle = at(between(within(0.0)), 0.0, &scene.excitation)?;
-        let excitation = shaken(scene, &middle);
-        let excitation = excitation.as_ref().unwrap_or(&scene.excitation);
-        let reference = middle.crossing_level().or(mechanism.landscape.crossing_position());
-        let reference = 1e3 * reference.unwrap_or(0.0);
-        let (low, high) = (between(within(low)), between(within(high)));
-        let far = if reference - low > high - reference { low } else { high };
-        let model = at(far, v, excitation)?;
+        let mut model = at_rest(&scene.excitation)?;
+        if let Some(excitation) = shaken(scene, &model) {
+            model = at_rest(&excitation)?;
+        }
         if !model.repeats() {
             return Err(NoBasins::NoPeriod);
         }
@@ -127,14 +124,23 @@ impl Basins {
             return Err(NoBasins::KeepsCharge);
         }
         let stops = model.stop_positions();
+        let (left, right) = mechanism.curve.domain();
         let room = (stops.0.unwrap_or(left).max(left), stops.1.unwrap_or(right).min(right));
         let (levels, rounds) = (starts.levels(), Rounds::new(starts.count()));
-        let effort = Effort::of_starts(starts.count());
-        let basins = Self { model, starts, levels, done: 0, room, rounds, effort };
+        let (steps, _) = cost_of_a_period(&model);
+        let work_of_a_period = steps * model.cost_of_a_step(model.tolerance()).0 as f64;
+        let basins = Self { model, starts, levels, done: 0, room, rounds, work_of_a_period, finer: None };
         if !(0..basins.starts.count()).any(|row| is_inside(room, basins.starts.at(row).0)) {
             return Err(basins.beyond());
         }
         Ok(basins)
+    }
+
+    /// The same map, of which each start is followed once more to see whether its answer is
+    /// [sure](crate::questions::Basins).
+    #[must_use]
+    pub fn checked(self) -> Self {
+        Self { finer: Some(sure::other(&self.model)), ..self }
     }
 
     fn beyond(&self) -> NoBasins {
@@ -155,7 +161,7 @@ impl Basins {
         &self.starts
     }
 
-    /// The model of their motions; its own start is the farthest one.
+    /// The model of their motions; its own start is the middle, at rest.
     pub fn model(&self) -> &Model {
         &self.model
     }
@@ -172,17 +178,21 @@ impl Basins {
 
     /// Approximate number of steps and CPU time in s of a forcing period, measured in a run of the model.
     pub fn cost_of_a_period(&self) -> (f64, f64) {
-        let period = self.model.forcing_period().unwrap_or(1.0);
-        let time = period.min(MEASURED * self.model.natural_time());
-        let summary = self.model.with_duration(time, 0.0).run(&Request::default()).summary;
-        let periods = summary.outcome.ended_at().unwrap_or(time) / period;
-        (summary.steps as f64 / periods, summary.cpu_s / periods)
+        cost_of_a_period(&self.model)
     }
 
     /// Whether every start has been run.
     pub fn is_whole(&self) -> bool {
         self.done == STRIDES.len()
     }
+}
+
+fn cost_of_a_period(model: &Model) -> (f64, f64) {
+    let period = model.forcing_period().unwrap_or(1.0);
+    let time = period.min(MEASURED * model.natural_time());
+    let summary = model.with_duration(time, 0.0).run(&Request::default()).summary;
+    let periods = summary.outcome.ended_at().unwrap_or(time) / period;
+    (summary.steps as f64 / periods, summary.cpu_s / periods)
 }
 
 /// Whether a displacement in mm lies between limits in m.

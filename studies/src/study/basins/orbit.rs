@@ -45,30 +45,68 @@ const TIMES: [u32; 6] = [1, 2, 4, 8, 16, 32];
 /// Number of doublings of the series of the norm; a contraction by only 1e-9 per period needs half of them.
 const DOUBLINGS: usize = 60;
 
+/// Orbits that no motion can be told by, each by a state.
+#[derive(Debug, Default)]
+pub(super) struct Rejected {
+    pub unstable: Vec<MapState>,
+    /// Those without an ellipse from which all motions go to them.
+    bare: Vec<MapState>,
+}
+
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Found {
+enum Found {
     /// A stable orbit: its states, each with its ellipse.
     Stable(Vec<Capture>),
-    /// An unstable orbit through this state.
-    Unstable(MapState),
+    /// An unstable orbit.
+    Unstable,
     /// No orbit, or none with an ellipse from which all motions go to it.
     Nothing,
 }
 
-/// The orbit of the proposed or twice the proposed period near a state.
-pub(super) fn find(scope: &Stroboscope, period: u32, state: MapState) -> Result<Found> {
-    let first = of_period(scope, period, state)?;
+/// The states of the stable orbit of the proposed or twice the proposed period near a state, each with its
+/// ellipse. What is found depends on the orbit alone, not on the state that proposes it.
+pub(super) fn find(
+    scope: &Stroboscope,
+    period: u32,
+    state: MapState,
+    rejected: &mut Rejected,
+) -> Result<Option<Vec<Capture>>> {
     // shortly after a period doubling the two halves of the doubled orbit are nearly equal
-    if let Found::Unstable(_) = first
-        && let doubled @ Found::Stable(_) = of_period(scope, 2 * period, state)?
-    {
-        return Ok(doubled);
+    for period in [period, 2 * period] {
+        match of_period(scope, period, state, rejected)? {
+            Found::Stable(captures) => return Ok(Some(captures)),
+            Found::Unstable => {}
+            Found::Nothing => break,
+        }
     }
-    Ok(first)
+    Ok(None)
 }
 
-fn of_period(scope: &Stroboscope, period: u32, state: MapState) -> Result<Found> {
+fn of_period(scope: &Stroboscope, period: u32, state: MapState, rejected: &mut Rejected) -> Result<Found> {
     let Some(root) = newton(scope, period, scope.point(state)) else { return Ok(Found::Nothing) };
+    let is_among = |all: &[MapState]| all.iter().any(|other| is_near(scope, *other, scope.state(root), SAME));
+    if is_among(&rejected.unstable) {
+        return Ok(Found::Unstable);
+    }
+    if is_among(&rejected.bare) {
+        return Ok(Found::Nothing);
+    }
+    let found = around(scope, period, root)?;
+    match found {
+        Found::Stable(_) => {}
+        Found::Unstable => rejected.unstable.push(scope.state(root)),
+        Found::Nothing => rejected.bare.push(scope.state(root)),
+    }
+    Ok(found)
+}
+
+/// Whether two states differ by at most this share of the scales.
+pub(super) fn is_near(scope: &Stroboscope, a: MapState, b: MapState, share: f64) -> bool {
+    scope.units().apart(a, b).iter().all(|off| off.abs() <= share)
+}
+
+/// The orbit through a fixed point of the map over `period` forcing periods.
+fn around(scope: &Stroboscope, period: u32, root: Point) -> Result<Found> {
     let after: Vec<(Point, u32)> = (1..=period).map(|periods| (root, periods)).collect();
     let Some(states) = scope.map(&after)?.into_iter().collect::<Option<Vec<Point>>>() else {
         return Ok(Found::Nothing);
@@ -82,7 +120,7 @@ fn of_period(scope: &Stroboscope, period: u32, state: MapState) -> Result<Found>
         let Some((_, jacobian)) = derivative(scope, period, point) else { return Ok(Found::Nothing) };
         let jacobian = Matrix3::from_fn(|i, j| jacobian.rows()[i][j]);
         if lyapunov(&jacobian).is_none() {
-            return Ok(Found::Unstable(scope.state(root)));
+            return Ok(Found::Unstable);
         }
         let Some(capture) = ellipse(scope, period, point, jacobian)? else { return Ok(Found::Nothing) };
         captures.push(capture);

@@ -1,8 +1,9 @@
 //! Rounds of a map of basins: starts are followed in rounds, between which the known attractors are updated.
 
-use super::orbit::{Found, find};
-use super::region::absorbing;
-use super::stroboscopic::{Stroboscope, final_state};
+use super::orbit::{Rejected, find, is_near};
+use super::region::{Irregular, irregular};
+use super::stroboscopic::{START_WORK, Stroboscope, final_state};
+use super::sure::{are_sure, sure_releases};
 use super::{Basins, Starts, is_inside};
 use crate::dynamics::{
     Arrival, Capture, MapState, Outcome, Place, Pursued, Pursuit, Regime, Region, ReleaseIdentity, Side,
@@ -14,37 +15,13 @@ use crate::system::threads::Pool;
 /// Number of forcing periods after which a motion that has reached no known attractor is classified.
 pub(super) const PATIENCE: u64 = settled::PATIENCE as u64;
 
-/// Length of a motion up to its attractor.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub(super) struct Way {
-    pub periods: u32,
-    pub crossings: u32,
-}
-
-impl Way {
-    /// These counts less those of `before`.
-    pub fn since(self, before: Self) -> Self {
-        Self {
-            periods: self.periods.saturating_sub(before.periods),
-            crossings: self.crossings.saturating_sub(before.crossings),
-        }
-    }
-
-    pub fn and(self, next: Self) -> Self {
-        Self {
-            periods: self.periods.saturating_add(next.periods),
-            crossings: self.crossings.saturating_add(next.crossings),
-        }
-    }
-}
-
 /// A motion to follow: that of a start, or its continuation after a number of releases.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Item {
     pub row: usize,
     pub releases: u32,
-    /// The release that it continues, and the length of the motion up to there.
-    pub after: Option<(u32, Way)>,
+    /// The release that it continues, and the number of forcing periods up to there.
+    pub after: Option<(u32, u32)>,
     pub repeats_from: u64,
 }
 
@@ -53,21 +30,19 @@ impl Item {
         Self { row, releases: 0, after: None, repeats_from: 0 }
     }
 
-    /// The length of a pursuit, counted from the release that it continues.
-    pub fn way(&self, periods: u64, crossings: u64) -> Way {
-        let count = |number: u64| u32::try_from(number).unwrap_or(u32::MAX);
-        let whole = Way { periods: count(periods), crossings: count(crossings) };
-        whole.since(self.after.map_or(Way::default(), |(_, before)| before))
+    /// The number of forcing periods of a pursuit since the release that it continues.
+    fn periods(&self, pursued: &Pursued) -> u32 {
+        let whole = u32::try_from(pursued.periods.unwrap_or(PATIENCE)).unwrap_or(u32::MAX);
+        whole.saturating_sub(self.after.map_or(0, |(_, before)| before))
     }
 
-    /// The pursuit of the motion from this state of the circuit, with at most `max_work` units of work.
+    /// The pursuit of the motion from this state of the circuit.
     pub fn pursuit<'a>(
         &self,
         starts: &Starts,
         electrical: f64,
         known: &'a [Capture],
         regions: &'a [Region],
-        max_work: u64,
     ) -> Pursuit<'a> {
         let (x_mm, v) = starts.at(self.row);
         Pursuit {
@@ -77,7 +52,8 @@ impl Item {
             repeats_from: self.repeats_from,
             max_periods: PATIENCE,
             releases: self.releases,
-            max_work,
+            max_work: START_WORK,
+            beside: None,
         }
     }
 }
@@ -86,14 +62,6 @@ impl Item {
 const FIRST_ROUND: usize = 64;
 pub(super) const MAX_ROUND: usize = 8192;
 
-/// Largest number of searches for regions around motions of one kind.
-const MAX_SEARCHES: usize = 4;
-
-/// Motions of one verdict that their exponents may fail to confirm before others are no longer tested.
-const MAX_UNCONFIRMED: usize = 4;
-
-/// Distance below which two proposals count as one, as a share of the scales.
-const SAME_PROPOSAL: f64 = 1e-3;
 /// Distance below which a state lies on an unstable orbit, as a share of the scales.
 const ON_ORBIT: f64 = 1e-6;
 
@@ -106,6 +74,18 @@ pub(super) struct Verdict {
     period: Option<u32>,
 }
 
+impl Verdict {
+    /// The verdict on a motion that has reached its last period and repeats, or is steady without repeating.
+    fn of(&Summary { outcome, steady, regime, side, period, .. }: &Summary) -> Option<Self> {
+        (outcome == Outcome::Done && steady == Some(true)).then_some(Self { regime, side, period })
+    }
+
+    /// The same for one that does not repeat.
+    pub fn of_irregular(summary: &Summary) -> Option<Self> {
+        Self::of(summary).filter(|verdict| verdict.period.is_none())
+    }
+}
+
 /// What is known of the motion of a start. Indices are those of the lists of [`Rounds`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Fate {
@@ -116,10 +96,10 @@ pub(super) enum Fate {
         spent: bool,
     },
     Undecided,
-    /// It reaches this kind of motion.
-    Kind(u32, Way),
-    /// It reaches this release.
-    Release(u32, Way),
+    /// It reaches this kind of motion, after this number of forcing periods.
+    Kind(u32, u32),
+    /// It reaches this release, likewise.
+    Release(u32, u32),
 }
 
 /// A kind of motion that a start reaches without a release.
@@ -135,6 +115,8 @@ pub(super) enum Kind {
 pub(super) struct Release {
     identity: ReleaseIdentity,
     pub next: Fate,
+    /// Whether the motion after it is sure up to its attractor or the next release.
+    pub sure: bool,
 }
 
 #[derive(Debug, Default)]
@@ -147,26 +129,23 @@ pub(super) struct Rounds {
     pub captures: Vec<Capture>,
     /// The orbit of each capture.
     pub orbit_of: Vec<u32>,
-    /// States from which no stable orbit was found.
-    rejected: Vec<MapState>,
-    unstable: Vec<MapState>,
+    /// Orbits that no motion can be told by.
+    rejected: Rejected,
+    /// The irregular motions of the scene, once one was met: each verdict, and whether it was confirmed.
+    irregular: Option<Vec<(Verdict, bool)>>,
     /// Regions around irregular motions.
     pub regions: Vec<Region>,
     /// The kind of each region.
     region_of: Vec<u32>,
-    /// The kind of each search for a region.
-    searches: Vec<u32>,
-    /// Verdicts on motions without a period that the exponent did not confirm.
-    doubted: Vec<Verdict>,
+    /// Whether the motion of each start is sure up to its attractor or its first release.
+    pub sure: Vec<bool>,
     next_round: usize,
-    /// Number of starts that have not been followed.
-    remaining: usize,
 }
 
 impl Rounds {
     pub fn new(starts: usize) -> Self {
         let fates = vec![Fate::NotRun; starts];
-        Self { fates, next_round: FIRST_ROUND, remaining: starts, ..Self::default() }
+        Self { fates, next_round: FIRST_ROUND, sure: vec![false; starts], ..Self::default() }
     }
 
     fn known_kind(&self, kind: Kind) -> Option<u32> {
@@ -184,7 +163,7 @@ impl Rounds {
     fn release(&mut self, identity: ReleaseIdentity) -> (u32, bool) {
         let place = self.known_release(identity);
         if place.is_none() {
-            self.releases.push(Release { identity, next: Fate::NotRun });
+            self.releases.push(Release { identity, next: Fate::NotRun, sure: false });
         }
         (place.unwrap_or(self.releases.len() as u32 - 1), place.is_none())
     }
@@ -193,24 +172,32 @@ impl Rounds {
         self.releases.iter().position(|release| release.identity == identity).map(|place| place as u32)
     }
 
+    /// The fate of an item.
+    pub fn fate(&self, item: &Item) -> Fate {
+        item.after.map_or(self.fates[item.row], |(place, _)| self.releases[place as usize].next)
+    }
+
     /// Records the result of an item; returns the item that continues it, if its fate depends on one.
-    fn note(&mut self, item: Item, pursued: Pursued, scope: &Stroboscope) -> Option<Item> {
-        let way = item.way(pursued.periods.unwrap_or(PATIENCE), pursued.crossings);
-        let fate = match pursued.arrival {
-            Arrival::Captured(which) => Fate::Kind(self.kind(Kind::Orbit(self.orbit_of[which]), None), way),
-            Arrival::Entered(which) => Fate::Kind(self.region_of[which], way),
-            Arrival::Rests(side) => Fate::Kind(self.kind(Kind::Rest(side), None), way),
+    fn note(&mut self, item: Item, pursued: &Pursued, scope: &Stroboscope) -> Option<Item> {
+        let periods = item.periods(pursued);
+        let fate = match &pursued.arrival {
+            Arrival::Captured(which) => {
+                Fate::Kind(self.kind(Kind::Orbit(self.orbit_of[*which]), None), periods)
+            }
+            Arrival::Entered(which) => Fate::Kind(self.region_of[*which], periods),
+            Arrival::Rests(side) => Fate::Kind(self.kind(Kind::Rest(*side), None), periods),
             Arrival::Released(identity) => {
-                let (place, new) = self.release(identity);
-                self.put(item, Fate::Release(place, way));
-                let after = Some((place, item.after.map_or(way, |(_, before)| before.and(way))));
+                let (place, new) = self.release(*identity);
+                self.put(item, Fate::Release(place, periods));
+                let after = Some((place, item.after.map_or(0, |(_, before)| before).saturating_add(periods)));
                 return new.then_some(Item { releases: item.releases + 1, after, repeats_from: 0, ..item });
             }
             Arrival::Repeats { .. } => {
                 return Some(Item { repeats_from: 2 * pursued.periods?, ..item });
             }
-            Arrival::Unsettled(summary) => match self.verdict(&summary, scope) {
-                Ok(verdict) => self.judged(verdict, summary, scope, way),
+            Arrival::Parted => Fate::Undecided,
+            Arrival::Unsettled(summary) => match self.verdict(summary, scope) {
+                Ok(verdict) => self.judged(verdict, summary, scope, periods),
                 Err(fate) => fate,
             },
         };
@@ -220,7 +207,6 @@ impl Rounds {
 
     /// The fate of an item that was followed once more; `None` if its attractor is not among the known ones.
     pub fn known_fate(&self, item: &Item, pursued: &Pursued, scope: &Stroboscope) -> Option<Fate> {
-        let way = item.way(pursued.periods.unwrap_or(PATIENCE), pursued.crossings);
         let kind = match &pursued.arrival {
             Arrival::Captured(which) => self.known_kind(Kind::Orbit(self.orbit_of[*which])),
             Arrival::Entered(which) => Some(self.region_of[*which]),
@@ -230,40 +216,39 @@ impl Rounds {
                 verdict.and_then(|verdict| self.known_kind(Kind::Judged(verdict)))
             }
             Arrival::Released(identity) => {
-                return self.known_release(*identity).map(|place| Fate::Release(place, way));
+                let place = self.known_release(*identity);
+                return place.map(|place| Fate::Release(place, item.periods(pursued)));
             }
-            Arrival::Repeats { .. } => None,
+            Arrival::Repeats { .. } | Arrival::Parted => None,
         };
-        kind.map(|kind| Fate::Kind(kind, way))
+        kind.map(|kind| Fate::Kind(kind, item.periods(pursued)))
     }
 
     /// The verdict on a motion that has reached no known attractor, from the summary of its pursuit, whose
     /// window is its last hundred forcing periods; its fate if it ended early or its attractor is not known.
     fn verdict(&self, summary: &Summary, scope: &Stroboscope) -> Result<Verdict, Fate> {
-        let Summary { outcome, steady, regime, side, period, .. } = *summary;
         let end = final_state(summary);
-        let on_unstable = self.unstable.iter().any(|state| is_near(scope, *state, end, ON_ORBIT));
-        match outcome {
-            Outcome::Done if on_unstable || steady != Some(true) => Err(Fate::Undecided),
-            Outcome::Done => Ok(Verdict { regime, side, period }),
-            _ => Err(Fate::Lost { spent: matches!(outcome, Outcome::StepBudget { .. }) }),
+        let on_unstable = || self.rejected.unstable.iter().any(|state| is_near(scope, *state, end, ON_ORBIT));
+        match summary.outcome {
+            Outcome::Done => Verdict::of(summary).filter(|_| !on_unstable()).ok_or(Fate::Undecided),
+            outcome => Err(Fate::Lost { spent: matches!(outcome, Outcome::StepBudget { .. }) }),
         }
     }
 
-    /// The fate of a motion that was classified. The exponent of the first motion without a period, or of one
-    /// of the next few, must confirm that it is irregular, since it may only settle slowly. An exponent does
-    /// not distinguish it from a long irregular transient, whose length in a double well is random: so a
-    /// motion is called irregular only after a thousand periods without another attractor.
-    fn judged(&mut self, verdict: Verdict, summary: Box<Summary>, scope: &Stroboscope, way: Way) -> Fate {
-        let kind = Kind::Judged(verdict);
-        if verdict.period.is_none() && self.known_kind(kind).is_none() {
-            let doubts = self.doubted.iter().filter(|other| **other == verdict).count();
-            if doubts >= MAX_UNCONFIRMED || !scope.is_irregular(final_state(&summary)) {
-                self.doubted.push(verdict);
+    /// The fate of a motion that was classified. Its exponent, or that of a motion with the same verdict
+    /// among the irregular ones of the scene, must confirm that it is irregular, since it may only settle
+    /// slowly. An exponent does not distinguish it from a long irregular transient, whose length in a double
+    /// well is random: so a motion is called irregular only after a thousand periods without another
+    /// attractor.
+    fn judged(&mut self, verdict: Verdict, summary: &Summary, scope: &Stroboscope, periods: u32) -> Fate {
+        if verdict.period.is_none() {
+            let known = self.irregular.iter().flatten().find(|(known, _)| *known == verdict);
+            let confirmed = known.map(|(_, is_confirmed)| *is_confirmed);
+            if !confirmed.unwrap_or_else(|| scope.is_irregular(final_state(summary))) {
                 return Fate::Undecided;
             }
         }
-        Fate::Kind(self.kind(kind, Some(summary)), way)
+        Fate::Kind(self.kind(Kind::Judged(verdict), Some(Box::new(*summary))), periods)
     }
 
     fn put(&mut self, item: Item, fate: Fate) {
@@ -274,45 +259,38 @@ impl Rounds {
     }
 
     fn propose(&mut self, scope: &Stroboscope, period: u32, state: MapState) -> Result<()> {
-        let known = self.captures.iter().any(|capture| capture.holds(state));
-        let tried = self.rejected.iter().any(|rejected| is_near(scope, *rejected, state, SAME_PROPOSAL));
-        if known || tried {
+        let holds = |all: &[Capture], state| all.iter().any(|capture| capture.holds(state));
+        if holds(&self.captures, state) {
             return Ok(());
         }
-        match find(scope, period, state)? {
-            Found::Stable(captures)
-                if self.captures.iter().any(|capture| capture.holds(captures[0].state)) =>
-            {
-                self.rejected.push(state);
-            }
-            Found::Stable(captures) => {
-                let orbit = self.orbit_of.last().map_or(0, |last| last + 1);
-                self.orbit_of.extend(captures.iter().map(|_| orbit));
-                self.captures.extend(captures);
-            }
-            Found::Unstable(unstable) => {
-                self.unstable.push(unstable);
-                self.rejected.push(state);
-            }
-            Found::Nothing => self.rejected.push(state),
+        let found = find(scope, period, state, &mut self.rejected)?;
+        if let Some(captures) = found.filter(|found| !holds(&self.captures, found[0].state)) {
+            let orbit = self.orbit_of.last().map_or(0, |last| last + 1);
+            self.orbit_of.extend(captures.iter().map(|_| orbit));
+            self.captures.extend(captures);
         }
         Ok(())
     }
 
-    /// Searches for a region around the irregular motion through `state` that an item reaches.
-    fn surround(&mut self, scope: &Stroboscope, item: Item, state: MapState) -> Result<()> {
-        let fate = item.after.map_or(self.fates[item.row], |after| self.releases[after.0 as usize].next);
-        let Fate::Kind(kind, _) = fate else { return Ok(()) };
-        let irregular = matches!(self.kinds[kind as usize].0, Kind::Judged(Verdict { period: None, .. }));
-        let searches = self.searches.iter().filter(|searched| **searched == kind).count();
-        if !irregular || searches >= MAX_SEARCHES || self.is_surrounded(state) {
+    /// Looks for the irregular motions of the scene when the first start has reached one.
+    fn look_for_irregular(&mut self, scope: &Stroboscope, pursued: &[Pursued]) -> Result<()> {
+        let is_irregular = |pursued: &Pursued| match &pursued.arrival {
+            Arrival::Unsettled(summary) => Verdict::of_irregular(summary).is_some(),
+            _ => false,
+        };
+        if self.irregular.is_some() || !pursued.iter().any(is_irregular) {
             return Ok(());
         }
-        self.searches.push(kind);
-        if let Some(region) = absorbing(scope, state, &self.captures)? {
-            self.regions.push(region);
-            self.region_of.push(kind);
+        let mut found = Vec::new();
+        for Irregular { verdict, summary, is_confirmed, regions } in irregular(scope)? {
+            found.push((verdict, is_confirmed));
+            if is_confirmed {
+                let kind = self.kind(Kind::Judged(verdict), Some(summary));
+                self.region_of.extend(regions.iter().map(|_| kind));
+                self.regions.extend(regions);
+            }
         }
+        self.irregular = Some(found);
         Ok(())
     }
 
@@ -321,24 +299,15 @@ impl Rounds {
     }
 }
 
-fn is_near(scope: &Stroboscope, a: MapState, b: MapState, share: f64) -> bool {
-    let units = scope.units().of_state();
-    let off = [a.x - b.x, a.v - b.v, a.electrical - b.electrical];
-    off.iter().zip(units).all(|(off, unit)| off.abs() <= share * unit)
-}
-
 /// Follows items with the attractors known so far, then adds the results; returns the items to follow next.
 fn round(
     rounds: &mut Rounds,
-    scope: &Stroboscope,
+    (scope, finer): (&Stroboscope, Option<&Stroboscope>),
     starts: &Starts,
     items: Vec<Item>,
     task: &Task,
 ) -> Result<Vec<Item>> {
-    let (known, regions) = (rounds.captures.clone(), rounds.regions.clone());
-    let max_work = scope.effort.of_one(rounds.remaining);
-    let pursuit =
-        |item: &Item| item.pursuit(starts, scope.model.start_electrical(), &known, &regions, max_work);
+    let pursuit = |item: &Item| item.pursuit(starts, scope.electrical(), &rounds.captures, &rounds.regions);
     let pursuits: Vec<Pursuit> = items.iter().map(pursuit).collect();
     let tick = |pursuit: &Pursuit| {
         if pursuit.repeats_from == 0 && pursuit.releases == 0 {
@@ -346,38 +315,53 @@ fn round(
         }
     };
     let pursued = scope.pursue(&pursuits, &tick)?;
-    let (mut next, mut proposals, mut unsettled) = (Vec::new(), Vec::new(), Vec::new());
+    let known_regions = rounds.regions.len();
+    rounds.look_for_irregular(scope, &pursued)?;
+    let (mut next, mut proposals, mut arrived) = (Vec::new(), Vec::new(), Vec::new());
     for (item, pursued) in items.into_iter().zip(pursued) {
-        if let Arrival::Repeats { period, state } = pursued.arrival {
-            proposals.push((period, state));
+        match &pursued.arrival {
+            Arrival::Repeats { period, state } => proposals.push((*period, *state)),
+            Arrival::Unsettled(end)
+                if rounds.regions.len() > known_regions && rounds.is_surrounded(final_state(end)) =>
+            {
+                // it is followed again, to learn when it enters the region
+                next.push(Item { repeats_from: Pursuit::NEVER, ..item });
+                continue;
+            }
+            _ => {}
         }
-        if let Arrival::Unsettled(end) = &pursued.arrival
-            && end.outcome == Outcome::Done
-        {
-            unsettled.push((item, final_state(end)));
+        next.extend(rounds.note(item, &pursued, scope));
+        if item.after.is_none() {
+            arrived.push((item, pursued.trail));
         }
-        next.extend(rounds.note(item, pursued, scope));
     }
     for (period, state) in proposals {
         rounds.propose(scope, period, state)?;
     }
-    for (item, state) in &unsettled {
-        rounds.surround(scope, *item, *state)?;
+    if let Some(finer) = finer {
+        arrived.retain(|(item, _)| matches!(rounds.fate(item), Fate::Kind(..) | Fate::Release(..)));
+        for ((item, _), is_sure) in arrived.iter().zip(are_sure(rounds, finer, starts, &arrived)?) {
+            rounds.sure[item.row] = is_sure;
+        }
     }
-    // each is followed again, since it enters the region at a different time
-    next.extend(
-        unsettled.into_iter().filter(|(_, state)| rounds.is_surrounded(*state)).map(|(item, _)| item),
-    );
     task.check_cancelled().map(|()| next)
 }
 
 impl Basins {
     /// Runs the starts of the next level, with a tick for each. False if cancelled; the map is then unusable.
     pub fn run_level(&mut self, pool: &Pool, task: &Task) -> bool {
-        let Self { model, starts, levels, done, room, rounds, effort } = self;
-        let scope = Stroboscope { model, room: *room, pool, cancel: task.cancel, effort };
+        self.level(pool, task).is_ok()
+    }
+
+    fn level(&mut self, pool: &Pool, task: &Task) -> Result<()> {
+        let Self { model, finer, starts, levels, done, room, rounds, work_of_a_period, .. } = self;
+        let of = |model| {
+            let (room, work_of_a_period) = (*room, *work_of_a_period);
+            Stroboscope { model, room, pool, cancel: task.cancel, work_of_a_period }
+        };
+        let (scope, finer) = (of(&*model), finer.as_ref().map(of));
         let mut begin = done.checked_sub(1).map_or(0, |before| levels.ends[before]);
-        let Some(end) = levels.ends.get(*done).copied() else { return true };
+        let Some(end) = levels.ends.get(*done).copied() else { return Ok(()) };
         while begin < end {
             let last = (begin + rounds.next_round).min(end);
             rounds.next_round = (2 * rounds.next_round).min(MAX_ROUND);
@@ -391,13 +375,15 @@ impl Basins {
                 }
             }
             while !items.is_empty() {
-                let Ok(next) = round(rounds, &scope, starts, items, task) else { return false };
-                items = next;
+                items = round(rounds, (&scope, finer.as_ref()), starts, items, task)?;
             }
-            rounds.remaining -= last - begin;
             begin = last;
         }
         *done += 1;
-        true
+        if let Some(finer) = finer.filter(|_| *done == levels.ends.len()) {
+            let sure = sure_releases(rounds, (&scope, &finer), starts)?;
+            rounds.releases.iter_mut().zip(sure).for_each(|(release, sure)| release.sure = sure);
+        }
+        Ok(())
     }
 }

@@ -3,7 +3,7 @@
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
-use crate::numeric::{Decimal, extent};
+use crate::numeric::Decimal;
 use crate::study::{Levels, even_positions};
 
 /// Largest number of starts of one map: minutes on one core if the mass comes to rest on stops, else hours.
@@ -150,13 +150,6 @@ impl Starts {
             true => Levels::of_lengths(vec![self.x_mm.len(), self.v.len()]),
             false => Levels::of_lengths(vec![self.x_mm.len()]),
         }
-    }
-
-    /// Smallest and largest displacement in mm, and largest speed in m/s.
-    pub(super) fn extent(&self) -> ((f64, f64), f64) {
-        let ends = |values: &[f64]| extent(values.iter().copied());
-        let (slow, fast) = ends(&self.v);
-        (ends(&self.x_mm), if -slow > fast { slow } else { fast })
     }
 }
 

@@ -1,6 +1,6 @@
-//! The stroboscopic map of a model, by runs of whole periods, and the budget of work of a map of basins.
+//! The stroboscopic map of a model, by runs of whole periods, and the work that a map of basins may take.
 
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::dynamics::{Arrival, MapState, Model, Outcome, Pursued, Pursuit, Request, Sample, Summary};
 use crate::study::orbit::Units;
@@ -14,13 +14,15 @@ pub(super) type Point = [f64; 3];
 const WITH_DERIVATIVES: u64 = 4;
 
 /// A model, its limits of displacement, and the threads that run it.
+#[derive(Clone, Copy)]
 pub(super) struct Stroboscope<'a> {
     pub model: &'a Model,
     /// Smallest and largest displacement in m that the mass can have.
     pub room: (f64, f64),
     pub pool: &'a Pool,
     pub cancel: &'a AtomicBool,
-    pub effort: &'a Effort,
+    /// Units of work that a forcing period takes.
+    pub work_of_a_period: f64,
 }
 
 impl Stroboscope<'_> {
@@ -39,6 +41,11 @@ impl Stroboscope<'_> {
         MapState { x: x * length, v: v * speed, electrical: w * charge }
     }
 
+    /// The state of the circuit at each start.
+    pub fn electrical(&self) -> f64 {
+        self.model.start_electrical()
+    }
+
     /// Number of coordinates of a point that vary: two, or three beside a circuit.
     pub fn size(&self) -> usize {
         if self.model.has_electrical_state() { 3 } else { 2 }
@@ -51,10 +58,10 @@ impl Stroboscope<'_> {
     }
 
     /// The images of points, each after its number of forcing periods. `None` for motions that begin outside
-    /// the limits, end early or come to rest, and for all if they need more work than is left.
+    /// the limits, end early or come to rest, and for all if they need more work than a search may take.
     pub fn map(&self, starts: &[(Point, u32)]) -> Result<Vec<Option<Point>>> {
         let mut images = vec![None; starts.len()];
-        if !self.effort.has_room_for(starts.iter().map(|(_, periods)| u64::from(*periods)).sum()) {
+        if self.is_beyond(starts.iter().map(|(_, periods)| u64::from(*periods)).sum()) {
             return Ok(images);
         }
         let valid: Vec<usize> = (0..starts.len()).filter(|place| self.has(starts[*place].0)).collect();
@@ -68,6 +75,7 @@ impl Stroboscope<'_> {
                 max_periods: starts[*place].1.into(),
                 releases: 0,
                 max_work: u64::MAX,
+                beside: None,
             })
             .collect();
         for (place, pursued) in valid.into_iter().zip(self.pursue(&pursuits, &|_| ())?) {
@@ -82,9 +90,9 @@ impl Stroboscope<'_> {
     }
 
     /// Stroboscopic states of motions over `periods` forcing periods, without the first `skipped` ones;
-    /// `None` if a motion ends early or they need more work than is left.
+    /// `None` if a motion ends early or they need more work than a search may take.
     pub fn paths(&self, starts: &[MapState], periods: u32, skipped: usize) -> Result<Option<Vec<MapState>>> {
-        if !self.effort.has_room_for(starts.len() as u64 * u64::from(periods)) {
+        if self.is_beyond(starts.len() as u64 * u64::from(periods)) {
             return Ok(None);
         }
         let period = self.period();
@@ -102,9 +110,10 @@ impl Stroboscope<'_> {
         Ok(all.map(|paths| paths.iter().flatten().map(state).collect()))
     }
 
-    /// Whether the motion through a state is irregular by its Lyapunov exponent; false without work left.
+    /// Whether the motion through a state is irregular by its Lyapunov exponent; false if that takes more
+    /// work than a search may.
     pub fn is_irregular(&self, state: MapState) -> bool {
-        if !self.effort.has_room_for(WITH_DERIVATIVES * u64::from(ExponentOptions::PERIODS)) {
+        if self.is_beyond(WITH_DERIVATIVES * u64::from(ExponentOptions::PERIODS)) {
             return false;
         }
         let phase = self.model.drive_phase(0.0).unwrap_or(0.0);
@@ -114,11 +123,9 @@ impl Stroboscope<'_> {
 
     /// The results of pursuits in order, with a `tick` for each.
     pub fn pursue(&self, pursuits: &[Pursuit], tick: &(dyn Fn(&Pursuit) + Sync)) -> Result<Vec<Pursued>> {
-        let period = self.period();
         let work = |next: &dyn Fn(UnderWay) -> Option<usize>| {
             let mut all = Vec::new();
             let mut ended = |place: usize, pursued| {
-                self.effort.add(&pursuits[place], &pursued, period);
                 tick(&pursuits[place]);
                 all.push((place, pursued));
             };
@@ -134,6 +141,11 @@ impl Stroboscope<'_> {
         self.model.forcing_period().unwrap_or(1.0)
     }
 
+    /// Whether so many forcing periods take more work than a search may.
+    fn is_beyond(&self, periods: u64) -> bool {
+        periods as f64 * self.work_of_a_period > SEARCH_WORK
+    }
+
     fn is_cancelled(&self) -> bool {
         self.cancel.load(Ordering::Relaxed)
     }
@@ -143,88 +155,11 @@ pub(super) fn final_state(summary: &Summary) -> MapState {
     MapState { x: summary.final_x, v: summary.final_v, electrical: summary.final_electrical }
 }
 
-/// Units of work for orbits and regions: some ellipses of an orbit of 12 periods that passes a kink.
-const MAP_WORK: u64 = 20_000_000_000;
+/// Units of work that a start may take, about a second of one core: twenty times those of the prototype over
+/// 1000 forcing periods. If a period contains ten thousand oscillations in a well, a map without this limit
+/// would take days. It is the same for each start, so that no answer depends on other starts.
+pub(super) const START_WORK: u64 = 100_000_000;
 
-/// Units of work per start: four times those of the prototype over 1000 forcing periods.
-const START_WORK: u64 = 20_000_000;
-
-/// Number of equal shares of the remaining work that one start may take, since starts differ in work.
-const MAX_SHARES: u64 = 4;
-/// Units of work that a start may take in any case.
-const MIN_START_WORK: u64 = 2_000_000;
-
-/// Budget of work of one map, in the units of a [`Pursuit`].
-///
-/// If a forcing period contains ten thousand oscillations in a well, a map without a budget would take days.
-/// The work allowed for a start depends on what is left between rounds, and therefore not on the number of
-/// threads.
-#[derive(Debug)]
-pub(super) struct Effort {
-    budget: u64,
-    done: AtomicU64,
-    /// Number of forcing periods that this work covered.
-    periods: AtomicU64,
-}
-
-impl Effort {
-    pub fn of_starts(count: usize) -> Self {
-        let budget = MAP_WORK + START_WORK.saturating_mul(count as u64);
-        Self { budget, done: AtomicU64::new(0), periods: AtomicU64::new(0) }
-    }
-
-    /// Adds the work of a pursuit; `period` is the forcing period in s.
-    pub fn add(&self, pursuit: &Pursuit, pursued: &Pursued, period: f64) {
-        let ended = || match &pursued.arrival {
-            Arrival::Unsettled(summary) => summary.outcome.ended_at().map(|at| (at / period) as u64),
-            _ => None,
-        };
-        let periods = pursued.periods.or_else(ended).unwrap_or(pursuit.max_periods);
-        self.done.fetch_add(pursued.work, Ordering::Relaxed);
-        self.periods.fetch_add(periods, Ordering::Relaxed);
-    }
-
-    fn left(&self) -> u64 {
-        self.budget.saturating_sub(self.done.load(Ordering::Relaxed))
-    }
-
-    /// Units of work allowed for each start while `remaining` starts are still to be followed.
-    pub fn of_one(&self, remaining: usize) -> u64 {
-        (MAX_SHARES * (self.left() / remaining.max(1) as u64)).max(MIN_START_WORK)
-    }
-
-    /// Whether the work left is enough for `periods` more forcing periods of average work.
-    pub fn has_room_for(&self, periods: u64) -> bool {
-        let (done, before) = (self.done.load(Ordering::Relaxed), self.periods.load(Ordering::Relaxed));
-        done as f64 / before.max(1) as f64 * periods as f64 <= self.left() as f64
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_start_may_take_some_shares_of_what_is_left_and_a_search_what_fits() {
-        let effort = Effort::of_starts(100);
-        assert_eq!(effort.of_one(100), MAX_SHARES * (MAP_WORK / 100 + START_WORK));
-        assert!(effort.has_room_for(u64::MAX), "nothing is known of the work of a period yet");
-        let pursuit = Pursuit {
-            start: (0.0, 0.0).into(),
-            known: &[],
-            regions: &[],
-            repeats_from: 0,
-            max_periods: 1000,
-            releases: 0,
-            max_work: u64::MAX,
-        };
-        let arrival = Arrival::Captured(0);
-        let pursued = |work| Pursued { arrival: arrival.clone(), periods: Some(1000), crossings: 0, work };
-        effort.add(&pursuit, &pursued(MAP_WORK), 1.0);
-        // 2e7 units a period, and 2e9 are left
-        assert!(effort.has_room_for(100) && !effort.has_room_for(101));
-        effort.add(&pursuit, &pursued(MAP_WORK), 1.0);
-        assert!(!effort.has_room_for(1));
-        assert_eq!(effort.of_one(3), MIN_START_WORK);
-    }
-}
+/// Units of work of one search for an ellipse or a region: those of all circles around an orbit of 12 periods
+/// of the prototype, over the largest multiple of its period.
+const SEARCH_WORK: f64 = 2e9;

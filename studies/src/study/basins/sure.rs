@@ -1,153 +1,121 @@
-//! Sure answers of a map of basins: those that do not change at ten times the error of the integration.
+//! Sure answers of a map of basins: those that the error of the integration cannot change.
 //!
-//! The attractor of a start near a basin boundary, or with a long irregular transient, depends on the
-//! integration error. Such a start is followed once more at another tolerance. It may reach the same
-//! attractor by chance, but hardly after the same number of crossings and periods.
+//! Each start is followed once more at a much finer tolerance. The difference of the two runs is the error of
+//! the first one, grown as the motion makes it grow. Near the stable manifold of a saddle, which is an edge
+//! between basins, the motion leaves the saddle with a speed proportional to its distance from that edge, and
+//! so does the error: where the motion has left, their ratio is that of the difference to the scales. If it
+//! stays small up to the arrival, the start is farther from the edge than the error, on whichever side. Two
+//! runs that go astray alike would have to make equal errors at tolerances that differ a thousandfold.
 
 use std::collections::BTreeMap;
 
-use super::rounds::{Fate, Item, Kind, MAX_ROUND, PATIENCE, Way};
+use super::rounds::{Fate, Item, MAX_ROUND, Rounds};
 use super::stroboscopic::Stroboscope;
-use super::{Answer, Basins};
-use crate::dynamics::{Place, Pursuit};
-use crate::scene::TOLERANCES;
-use crate::study::{Result, Task};
-use crate::system::threads::Pool;
+use super::{Basins, Starts};
+use crate::dynamics::{Beside, MapState, Model, Pursuit, Trail};
+use crate::study::Result;
 
-/// Factor on the tolerance for the second run of a start, or its inverse if that is beyond the largest one.
-const FACTOR: f64 = 10.0;
+/// Factor on the tolerance for the second run of a start, or its inverse if that is below the finest.
+const FACTOR: f64 = 1e-3;
 
-impl Basins {
-    /// The rows that [`check`](Self::check) follows once more: in a grid those whose neighbours (up to eight)
-    /// do not all reach the same attractor after the same number of periods, otherwise all. Precondition: the
-    /// map is complete.
-    pub fn rows_to_check(&self, answer: &Answer) -> Vec<usize> {
-        let rows = &answer.rows;
-        let settled = (0..rows.len()).filter(|row| rows[*row].is_some());
-        let Some((x_mm, v)) = self.starts.axes() else { return settled.collect() };
-        let around = |place: usize, count: usize| place.saturating_sub(1)..(place + 2).min(count);
-        let alike = |row: &usize| {
-            let (across, up) = (row / v.len(), row % v.len());
-            let mut near = around(across, x_mm.len())
-                .flat_map(|column| around(up, v.len()).map(move |place| column * v.len() + place));
-            near.all(|neighbour| rows[neighbour] == rows[*row])
-        };
-        let is_line = x_mm.len() == 1 || v.len() == 1;
-        settled.filter(|row| is_line || !alike(row)).collect()
+/// The finest tolerance at which the error is that of the method and not of rounding.
+const FINEST: f64 = 1e-14;
+
+/// Difference of the two runs of a start up to which they go together, as a share of the scales.
+const TOGETHER: f64 = 0.1;
+
+/// The model at the tolerance of the second runs.
+pub(super) fn other(model: &Model) -> Model {
+    let finer = FACTOR * model.tolerance();
+    model.with_tolerance(if finer < FINEST { model.tolerance() / FACTOR } else { finer })
+}
+
+/// Whether motions, each with its states, go together with their runs in `scope` up to the same end.
+pub(super) fn are_sure(
+    rounds: &Rounds,
+    scope: &Stroboscope,
+    starts: &Starts,
+    motions: &[(Item, Trail)],
+) -> Result<Vec<bool>> {
+    let [x, v, electrical] = scope.units().of_state().map(|unit| TOGETHER * unit);
+    let within = MapState { x, v, electrical };
+    let pursuits: Vec<Pursuit> = motions
+        .iter()
+        .map(|(item, trail)| Pursuit {
+            repeats_from: Pursuit::NEVER,
+            beside: Some(Beside { trail, within }),
+            ..item.pursuit(starts, scope.electrical(), &rounds.captures, &rounds.regions)
+        })
+        .collect();
+    let again = scope.pursue(&pursuits, &|_| ())?;
+    let is_same = |(item, again): (&Item, _)| match (rounds.fate(item), rounds.known_fate(item, again, scope))
+    {
+        (Fate::Kind(kind, _), Some(Fate::Kind(other, _))) => kind == other,
+        (Fate::Release(place, _), Some(Fate::Release(other, _))) => place == other,
+        _ => false,
+    };
+    Ok(motions.iter().map(|(item, _)| item).zip(&again).map(is_same).collect())
+}
+
+/// Whether the motion after each release is sure, as the continuation of a sure start.
+pub(super) fn sure_releases(
+    rounds: &Rounds,
+    (scope, other): (&Stroboscope, &Stroboscope),
+    starts: &Starts,
+) -> Result<Vec<bool>> {
+    let mut sure = vec![false; rounds.releases.len()];
+    let mut tried = sure.clone();
+    // for each release, the continuation of a start that reaches it
+    let mut next: BTreeMap<u32, Item> = BTreeMap::new();
+    for (row, fate) in rounds.fates.iter().enumerate().filter(|(row, _)| rounds.sure[*row]) {
+        if let Fate::Release(place, periods) = *fate {
+            let after = Some((place, periods));
+            next.entry(place).or_insert_with(|| Item { releases: 1, after, ..Item::of_start(row) });
+        }
     }
-
-    /// Marks the answers that are sure, with a tick for each start that is followed once more; false if
-    /// cancelled.
-    ///
-    /// A start is sure if at ten times the tolerance it reaches the same attractor after the same number of
-    /// crossings and, unless that is the only attractor in one of two wells, the same number of periods; or
-    /// if it is not among [`rows_to_check`](Self::rows_to_check). If it reaches a release, everything after
-    /// the release must be sure as well.
-    pub fn check(&self, answer: &mut Answer, pool: &Pool, task: &Task) -> bool {
-        let finer = FACTOR * self.model.tolerance() > TOLERANCES.1;
-        let factor = if finer { 1.0 / FACTOR } else { FACTOR };
-        let model = self.model.with_tolerance(factor * self.model.tolerance());
-        let Self { room, effort, .. } = self;
-        let scope = Stroboscope { model: &model, room: *room, pool, cancel: task.cancel, effort };
-        let mut sure = vec![true; answer.rows.len()];
-        let items: Vec<Item> = self.rows_to_check(answer).into_iter().map(Item::of_start).collect();
+    while !next.is_empty() {
+        let items: Vec<Item> = std::mem::take(&mut next).into_values().collect();
         for part in items.chunks(MAX_ROUND) {
-            let Ok(fates) = self.follow_again(&scope, part, &|| (task.tick)()) else { return false };
-            for (item, again) in part.iter().zip(fates) {
-                let first = self.rounds.fates[item.row];
-                let alone = self.is_alone(answer, item.row);
-                sure[item.row] = self.is_same(first, Way::default(), again, alone);
-            }
-        }
-        let Ok(releases) = self.sure_releases(&scope, answer, &sure) else { return false };
-        let chains: Vec<bool> = (0..releases.len())
-            .map(|place| self.chain(place as u32).0.iter().all(|(passed, _)| releases[*passed as usize]))
-            .collect();
-        for (row, sure) in sure.iter_mut().enumerate() {
-            if let Fate::Release(place, _) = self.rounds.fates[row] {
-                *sure &= chains[place as usize];
-            }
-        }
-        answer.sure = sure;
-        true
-    }
-
-    /// For each release, whether the motion after it is sure, as the continuation of a sure start.
-    fn sure_releases(&self, scope: &Stroboscope, answer: &Answer, sure: &[bool]) -> Result<Vec<bool>> {
-        let mut known = vec![false; self.rounds.releases.len()];
-        // for each release, the continuation of a start that reaches it
-        let mut next: BTreeMap<u32, Item> = BTreeMap::new();
-        for (row, fate) in self.rounds.fates.iter().enumerate().filter(|(row, _)| sure[*row]) {
-            if let Fate::Release(place, way) = *fate {
-                let item = || Item { releases: 1, after: Some((place, way)), ..Item::of_start(row) };
-                next.entry(place).or_insert_with(item);
-            }
-        }
-        let mut tried = vec![false; known.len()];
-        while !next.is_empty() {
-            let items: Vec<Item> = std::mem::take(&mut next).into_values().collect();
-            for part in items.chunks(MAX_ROUND) {
-                for (item, again) in part.iter().zip(self.follow_again(scope, part, &|| ())?) {
-                    let Some((place, before)) = item.after else { continue };
-                    tried[place as usize] = true;
-                    let first = self.rounds.releases[place as usize].next;
-                    let same = self.is_same(first, before, again, self.is_alone(answer, item.row));
-                    known[place as usize] = same;
-                    if let Fate::Release(following, way) = first
-                        && same
-                        && !tried[following as usize]
-                    {
-                        let after = Some((following, before.and(way)));
-                        next.insert(following, Item { releases: item.releases + 1, after, ..*item });
-                    }
+            let pursuit = |item: &Item| Pursuit {
+                repeats_from: Pursuit::NEVER,
+                ..item.pursuit(starts, scope.electrical(), &rounds.captures, &rounds.regions)
+            };
+            let pursuits: Vec<Pursuit> = part.iter().map(pursuit).collect();
+            let trails = scope.pursue(&pursuits, &|_| ())?.into_iter().map(|pursued| pursued.trail);
+            let motions: Vec<(Item, Trail)> = part.iter().copied().zip(trails).collect();
+            for (item, is_sure) in part.iter().zip(are_sure(rounds, other, starts, &motions)?) {
+                let Some((place, before)) = item.after else { continue };
+                tried[place as usize] = true;
+                sure[place as usize] = is_sure;
+                if let Fate::Release(following, periods) = rounds.releases[place as usize].next
+                    && is_sure
+                    && !tried[following as usize]
+                {
+                    let after = Some((following, before.saturating_add(periods)));
+                    next.insert(following, Item { releases: item.releases + 1, after, ..*item });
                 }
             }
-            next.retain(|place, _| !tried[*place as usize]);
         }
-        Ok(known)
+        next.retain(|place, _| !tried[*place as usize]);
     }
+    Ok(sure)
+}
 
-    /// The fates of items that are followed again in `scope`; `None` if not known.
-    fn follow_again(
-        &self,
-        scope: &Stroboscope,
-        items: &[Item],
-        tick: &(dyn Fn() + Sync),
-    ) -> Result<Vec<Option<Fate>>> {
-        let (known, regions) = (&self.rounds.captures, &self.rounds.regions);
-        let max_work = scope.effort.of_one(items.len());
-        let endless = |item: &Item| Item { repeats_from: Pursuit::NEVER, ..*item };
-        let pursuits: Vec<Pursuit> = items
-            .iter()
-            .map(|item| {
-                endless(item).pursuit(&self.starts, scope.model.start_electrical(), known, regions, max_work)
-            })
+impl Basins {
+    /// Whether the answer of each row is sure, with everything after the releases that it reaches; empty
+    /// unless the map is checked and whole.
+    pub(super) fn sure(&self) -> Vec<bool> {
+        if self.finer.is_none() || !self.is_whole() {
+            return Vec::new();
+        }
+        let releases = &self.rounds.releases;
+        let chains: Vec<bool> = (0..releases.len())
+            .map(|place| self.chain(place as u32).0.iter().all(|(passed, _)| releases[*passed as usize].sure))
             .collect();
-        let all = scope.pursue(&pursuits, &|_| tick())?;
-        Ok(items.iter().zip(&all).map(|(item, end)| self.rounds.known_fate(item, end, scope)).collect())
-    }
-
-    /// Whether the second run of a motion agrees with the first one after `before`; if its attractor is
-    /// `alone` in its well, equal numbers of crossings suffice.
-    fn is_same(&self, first: Fate, before: Way, again: Option<Fate>, alone: bool) -> bool {
-        match (first, again) {
-            (Fate::Kind(kind, way), Some(Fate::Kind(other, now))) if kind == other => {
-                let judged = matches!(self.rounds.kinds[kind as usize].0, Kind::Judged(_));
-                let longest = way.periods.max(now.periods).saturating_add(before.periods);
-                // the counts of an irregular motion that was followed to the end have no meaning
-                let ended = judged && u64::from(longest) >= PATIENCE;
-                ended || way.crossings == now.crossings && (alone || way.periods == now.periods)
-            }
-            (Fate::Release(place, way), Some(Fate::Release(other, now))) => place == other && way == now,
-            _ => false,
-        }
-    }
-
-    /// Whether the attractor of a row is the only one on its side of the barrier between two wells.
-    fn is_alone(&self, answer: &Answer, row: usize) -> bool {
-        let wells = self.model.mechanism().landscape.equilibria.iter().filter(|place| place.stable).count();
-        let side = answer.rows[row].and_then(|(number, _)| answer.attractors[number as usize - 1].side);
-        let beside = || answer.attractors.iter().filter(|other| other.side == side).count();
-        wells == 2 && matches!(side, Some(Place::Left | Place::Right)) && beside() == 1
+        let after = |row: usize| match self.rounds.fates[row] {
+            Fate::Release(place, _) => chains[place as usize],
+            _ => true,
+        };
+        (0..self.rounds.fates.len()).map(|row| self.rounds.sure[row] && after(row)).collect()
     }
 }

@@ -2,13 +2,14 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
+use super::seeds::{Sample, Seeds};
 use super::{BestQuestion, DesignRange, NoBest, Optimum, Tried};
 use crate::dynamics::{Model, Outcome, Request, Run, Summary};
 use crate::mechanics::{BuildError, Mechanism};
 use crate::scene::{Fault, FieldPath, Scene, check, is_whole};
 use crate::study::Task;
-use crate::study::settled::{followed, followed_until, settled_within, shared_runs, widened};
-use crate::system::threads::Pool;
+use crate::study::settled::{followed, followed_until, runs_from, settled_within, widened};
+use crate::system::threads::{Pool, Queue};
 
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Judged {
@@ -36,8 +37,31 @@ impl Judged {
 /// A varied design: the values of its fields, and those of the fields that vary.
 pub(super) type Design = (Vec<f64>, Vec<f64>);
 
-/// The summary of a run, or what is wrong with its scene.
-type Ran = Result<Box<Summary>, Vec<Fault>>;
+/// What a run comes to: the maximised number and those of the constraints, each missing where the run has no
+/// such number; `None` if the run does not reach its end.
+pub type Results = Option<Vec<Option<f64>>>;
+
+/// The results of a run, or what is wrong with its scene.
+type Ran = Result<Results, Vec<Fault>>;
+
+/// A run of a search: a design in one of the environments.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DesignRun<'a> {
+    /// The values of the fields of the design.
+    pub at: &'a [f64],
+    /// Those of the fields that vary; empty for the design itself.
+    pub varied: &'a [f64],
+    /// Index of the environment.
+    pub environment: usize,
+}
+
+/// Where the results of runs are kept, so that they need not be computed again. All threads use it.
+pub trait Memory: Sync {
+    /// The results of a run, if they are known.
+    fn recall(&self, run: DesignRun<'_>) -> Option<Results>;
+    /// Keeps the results of a run that has ended.
+    fn keep(&self, run: DesignRun<'_>, results: &Results);
+}
 
 pub(super) struct Evaluator<'a> {
     pub question: &'a BestQuestion,
@@ -45,16 +69,25 @@ pub(super) struct Evaluator<'a> {
     pub over: Vec<DesignRange>,
     pub pool: &'a Pool,
     task: &'a Task<'a>,
+    memory: Option<&'a dyn Memory>,
     paths: Vec<FieldPath>,
     varied: Vec<FieldPath>,
     /// The mechanism of each environment's scene, if it could be built.
     mechanisms: Vec<Option<Arc<Mechanism>>>,
     /// The designs that were judged so far, without those that vary.
     tried: Mutex<Vec<Tried>>,
+    sample: Sample,
+    /// Those with a value, where their values in the environments are needed.
+    of_each: Mutex<Vec<Optimum>>,
 }
 
 impl<'a> Evaluator<'a> {
-    pub fn new(question: &'a BestQuestion, pool: &'a Pool, task: &'a Task<'a>) -> Result<Self, NoBest> {
+    pub fn new(
+        question: &'a BestQuestion,
+        pool: &'a Pool,
+        task: &'a Task<'a>,
+        memory: Option<&'a dyn Memory>,
+    ) -> Result<Self, NoBest> {
         let mut mechanisms: Vec<Option<Arc<Mechanism>>> = Vec::new();
         for (i, base) in question.environments.iter().enumerate() {
             let same = |other: &usize| question.environments[*other].scene.mechanism == base.scene.mechanism;
@@ -76,10 +109,13 @@ impl<'a> Evaluator<'a> {
             over: question.over.iter().map(known).collect(),
             pool,
             task,
+            memory,
             paths: question.over.iter().map(|range| path(&range.field)).collect(),
-            varied: question.vary.iter().map(|variation| path(&variation.field)).collect(),
+            varied: question.vary.iter().map(|tolerance| path(&tolerance.field)).collect(),
             mechanisms,
             tried: Mutex::default(),
+            sample: Sample::new(question),
+            of_each: Mutex::default(),
         })
     }
 
@@ -104,26 +140,34 @@ impl<'a> Evaluator<'a> {
             Tried { at: at.clone(), value, keeps }
         });
         self.tried.lock().unwrap_or_else(PoisonError::into_inner).extend(tried);
+        if self.sample.is_averaged() {
+            let optima = designs.iter().zip(&judged).filter_map(|(at, judged)| judged.optimum(at));
+            self.of_each.lock().unwrap_or_else(PoisonError::into_inner).extend(optima);
+        }
         Ok(judged)
+    }
+
+    /// What the best design owes to the seeds of noises.
+    pub fn seeds(&self, best: &Optimum) -> Seeds {
+        self.sample.seeds(best, &self.of_each.lock().unwrap_or_else(PoisonError::into_inner))
     }
 
     /// The value of a design from runs that are followed for twice as long, if a motion has not repeated by
     /// the end of its run under a drive that does; NaN if it then has no value.
     pub fn later(&self, at: &[f64]) -> Result<Option<f64>, NoBest> {
         let model = |environment: usize| self.model((at, &[]), environment).map(widened);
-        let run = |environment: usize, longer: f64| -> Ran {
+        let run = |environment: usize, longer: f64| -> Result<Summary, Vec<Fault>> {
             let model = model(environment)?;
             let until = longer * self.question.until_settled.unwrap_or_else(|| followed_until(&model));
-            let summary = settled_within(&model, Some(until), self.task.cancel);
-            summary.map(Box::new).ok_or_else(Vec::new)
+            settled_within(&model, Some(until), self.task.cancel).ok_or_else(Vec::new)
         };
         let environments = 0..self.question.environments.len();
         let is_open = |environment: usize| {
             model(environment).is_ok_and(|model| model.repeats())
                 && run(environment, 1.0).is_ok_and(|summary| summary.settled == Some(false))
         };
-        let runs =
-            environments.clone().any(is_open).then(|| environments.map(|each| run(each, 2.0)).collect());
+        let later = |environment: usize| run(environment, 2.0).map(|summary| self.results(&summary));
+        let runs = environments.clone().any(is_open).then(|| environments.map(later).collect());
         self.check_cancelled()?;
         Ok(runs.map(|runs: Vec<Ran>| match self.judged(&runs) {
             Judged::Value(value, _) | Judged::Broken(_, _, value) => value,
@@ -153,15 +197,38 @@ impl<'a> Evaluator<'a> {
             (self.task.tick)();
             ran
         };
+        let run_of = |job: usize| {
+            let (at, varied) = design(job / each);
+            DesignRun { at, varied, environment: job % each }
+        };
         let model = |job: usize| {
-            let model = self.model(design(job / each), job % each).map_err(|faults| ticked(Err(faults)))?;
-            let (model, request) = followed(model, self.question.until_settled);
+            let run = run_of(job);
+            if let Some(results) = self.memory.and_then(|memory| memory.recall(run)) {
+                return Err(ticked(Ok(results)));
+            }
+            let model = self.model((run.at, run.varied), run.environment);
+            let (model, request) =
+                followed(model.map_err(|faults| ticked(Err(faults)))?, self.question.until_settled);
             Ok((model, Request { ledger, ..request }))
         };
-        let summary = |run: &Run| ticked(Ok(Box::new(run.summary)));
-        let runs = shared_runs(Some(self.pool), self.task, count * each, model, summary);
-        let summaries = runs.ok_or(NoBest::Cancelled)?;
-        Ok(summaries.chunks(each).map(|runs| self.judged(runs)).collect())
+        let ended = |job: usize, run: &Run| {
+            let results = self.results(&run.summary);
+            let is_whole = !matches!(run.summary.outcome, Outcome::Cancelled { .. });
+            if let Some(memory) = self.memory.filter(|_| is_whole) {
+                memory.keep(run_of(job), &results);
+            }
+            ticked(Ok(results))
+        };
+        let queue = Queue::new(count * each, self.pool.count());
+        let runs = runs_from(Some(self.pool), self.task, &|under_way| queue.take(under_way), model, ended);
+        let runs = runs.ok_or(NoBest::Cancelled)?;
+        Ok(runs.chunks(each).map(|runs| self.judged(runs)).collect())
+    }
+
+    fn results(&self, summary: &Summary) -> Results {
+        let constraints = self.question.subject_to.iter().map(|constraint| constraint.of);
+        let fields = std::iter::once(self.question.maximise).chain(constraints);
+        (summary.outcome == Outcome::Done).then(|| fields.map(|field| field.number(summary)).collect())
     }
 
     fn model(&self, (at, varied): (&[f64], &[f64]), environment: usize) -> Result<Model, Vec<Fault>> {
@@ -186,18 +253,18 @@ impl<'a> Evaluator<'a> {
 
     /// The result of one design from its runs in all environments.
     fn judged(&self, runs: &[Ran]) -> Judged {
-        let summaries = match runs.iter().map(Result::as_ref).collect::<Result<Vec<_>, _>>() {
-            Ok(summaries) => summaries,
+        let runs = match runs.iter().map(Result::as_ref).collect::<Result<Vec<_>, _>>() {
+            Ok(runs) => runs,
             Err(faults) => return Judged::Invalid(faults.clone()),
         };
-        if summaries.iter().any(|summary| summary.outcome != Outcome::Done) {
+        let Some(runs) = runs.into_iter().map(Option::as_deref).collect::<Option<Vec<_>>>() else {
             return Judged::Missing;
-        }
+        };
         let (mut broken, mut results) = (0.0, Vec::new());
-        for constraint in &self.question.subject_to {
+        for (number, constraint) in (1..).zip(&self.question.subject_to) {
             let mut furthest: Option<(f64, f64)> = None;
-            for summary in &summaries {
-                let Some(result) = constraint.of.number(summary) else { return Judged::Missing };
+            for run in &runs {
+                let Some(result) = run[number] else { return Judged::Missing };
                 let over =
                     if constraint.at_most { result - constraint.limit } else { constraint.limit - result };
                 if furthest.is_none_or(|(largest, _)| over > largest) {
@@ -209,8 +276,7 @@ impl<'a> Evaluator<'a> {
             broken += over.max(0.0) / unit;
             results.push(result);
         }
-        let of_each: Option<Vec<f64>> =
-            summaries.iter().map(|summary| self.question.maximise.number(summary)).collect();
+        let of_each: Option<Vec<f64>> = runs.iter().map(|run| run[0]).collect();
         let Some(of_each) = of_each else { return Judged::Missing };
         let weights = self.question.environments.iter().map(|environment| environment.weight);
         let sum: f64 = of_each.iter().zip(weights.clone()).map(|(value, weight)| value * weight).sum();

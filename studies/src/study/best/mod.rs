@@ -6,7 +6,9 @@
 //! is narrower than the step of the scan may be missed.
 
 mod evaluate;
+mod plan;
 mod search;
+mod seeds;
 mod varied;
 mod words;
 
@@ -16,6 +18,9 @@ use super::{SummaryField, Table, Task};
 use crate::scene::{Fault, Files, Scene};
 use crate::system::threads::Pool;
 use evaluate::Evaluator;
+pub use evaluate::{DesignRun, Memory, Results};
+use plan::{Part, Plan};
+pub use seeds::Seeds;
 pub use varied::SAMPLES;
 pub use words::{names, place, quantity};
 
@@ -70,14 +75,16 @@ pub struct Environment {
     pub files: Files,
 }
 
-/// A field that varies about its value: within a tolerance ([`best`]) or with a deviation (`Draws`).
+/// A field with a manufacturing tolerance, within which every value is as likely.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Variation {
+pub struct Tolerance {
     /// Dotted path of the field.
     pub field: String,
-    /// The tolerance or the standard deviation: a share of the value, or in the field's unit.
-    pub by: f64,
-    /// Whether it is a share.
+    /// Least deviation from the value: a share of it, or in the field's unit.
+    pub low: f64,
+    /// Largest deviation.
+    pub high: f64,
+    /// Whether they are shares.
     pub relative: bool,
 }
 
@@ -93,8 +100,8 @@ pub struct BestQuestion {
     pub subject_to: Vec<Constraint>,
     /// The environments, at least one.
     pub environments: Vec<Environment>,
-    /// Fields that vary about the design.
-    pub vary: Vec<Variation>,
+    /// Fields that vary about the design, each within its tolerance.
+    pub vary: Vec<Tolerance>,
     /// Seed of the samples of the fields that vary.
     pub seed: u64,
     /// Time in s up to which runs may continue until they repeat; by default 1000 periods beyond the run.
@@ -151,10 +158,15 @@ pub struct BestDesign {
     /// For each field, the distance below and above at which the value has fallen by a tenth or a constraint
     /// is violated, with the other fields fixed; `None` if this does not happen within its range.
     pub margins: Vec<[Option<f64>; 2]>,
+    /// The longest steps in which each margin was looked for, the resolution near the optimum: a narrower dip
+    /// may be missed.
+    pub margin_steps: Vec<[f64; 2]>,
     /// Which fields are best at an end of their range.
     pub at_border: Vec<bool>,
-    /// Resolution of each field.
+    /// Resolution of each field: the place is exact to it, but under a noise, where `seeds` say how far.
     pub resolution: Vec<f64>,
+    /// What the place and its value owe to the seeds of the noises that the environments have.
+    pub seeds: Seeds,
     /// The value under variation; if nothing varies, the value itself.
     pub spread: Spread,
     /// The design with the largest worst case among those inward of the optimum along the first field.
@@ -189,7 +201,9 @@ pub enum NoBest {
 
 impl BestDesign {
     /// One row: the fields, `maximised,value,margin_low,margin_high,worst,quantile_5`, the margins of further
-    /// fields, the design stepped back in the first field, and the value in each of several environments.
+    /// fields, the design stepped back in the first field, the value in each of several environments, the
+    /// steps in which the margins were looked for, and under noise the standard error of the value and the
+    /// interval of each field.
     pub fn table(&self, question: &BestQuestion) -> Table {
         let names = names(question);
         let (row, back) = ([self], [self.stepped_back.as_ref()]);
@@ -214,39 +228,57 @@ impl BestDesign {
             .each("back_worst", &back, |back| Some((*back)?.1.worst))
             .each("back_quantile_5", &back, |back| Some((*back)?.1.quantile_5));
         let each = self.optimum.of_each.iter().enumerate().filter(|_| question.environments.len() > 1);
-        each.fold(table, |table, (i, value)| table.each(&format!("value_{}", i + 1), &row, |_| *value))
+        table =
+            each.fold(table, |table, (i, value)| table.each(&format!("value_{}", i + 1), &row, |_| *value));
+        for (i, (name, [low, high])) in names.iter().zip(&self.margin_steps).enumerate() {
+            let of = if i == 0 { String::new() } else { format!(".{name}") };
+            table = table.each(&format!("margin_low_step{of}"), &row, |_| *low);
+            table = table.each(&format!("margin_high_step{of}"), &row, |_| *high);
+        }
+        if let Seeds::Averaged { standard_error, intervals, .. } = &self.seeds {
+            table = table.each("standard_error", &row, |_| *standard_error);
+            for (name, [low, high]) in names.iter().zip(intervals) {
+                table = table.each(&format!("{name}_low"), &row, |_| *low);
+                table = table.each(&format!("{name}_high"), &row, |_| *high);
+            }
+        }
+        table
     }
 }
 
-/// Searches for the best design. `preview` gets the best design of the coarse scan, then the best design
-/// before margins and samples are computed. The result is the same for any number of threads.
+/// Searches for the best design. `memory` keeps the results of its runs; `plan` gets the number of runs that
+/// are left to do, as far as it is known, at the beginning and whenever it changes; `preview` the best design
+/// of the coarse scan, then the best design before margins and samples are computed. The result is the same
+/// for any number of threads.
 pub fn best(
     question: &BestQuestion,
     pool: &Pool,
     task: &Task,
+    memory: Option<&dyn Memory>,
+    plan: &(dyn Fn(u64) + Sync),
     preview: &mut dyn FnMut(&Optimum),
 ) -> Result<BestDesign, NoBest> {
-    let evaluator = Evaluator::new(question, pool, task)?;
-    let found = search::search(&evaluator, preview)?;
-    let margins = search::margins(&evaluator, &found)?;
-    let (spread, stepped_back) = varied::robust(&evaluator, &found, &margins)?;
+    let evaluator = Evaluator::new(question, pool, task, memory)?;
+    let mut plan = Plan::new(&evaluator, plan);
+    let found = search::search(&evaluator, &mut plan, preview)?;
+    let margins = search::margins(&evaluator, &mut plan, &found)?;
+    let (spread, stepped_back) = varied::robust(&evaluator, &mut plan, &found, &margins)?;
+    plan.is_at(Part::Samples, 0);
     let border = |(range, at): (&DesignRange, &f64)| *at <= range.low || *at >= range.high;
+    let seeds = evaluator.seeds(&found.optimum);
     Ok(BestDesign {
+        seeds,
         at_border: evaluator.over.iter().zip(&found.optimum.at).map(border).collect(),
         resolution: evaluator.over.iter().map(search::resolution).collect(),
         later: evaluator.later(&found.optimum.at)?,
         optimum: found.optimum,
         flat: found.flat,
-        margins,
+        margins: margins.iter().map(|sides| sides.map(|side| side.margin)).collect(),
+        margin_steps: margins.iter().map(|sides| sides.map(|side| side.step)).collect(),
         spread,
         stepped_back,
         tried: evaluator.into_tried(),
     })
-}
-
-/// Number of runs of the scan of the whole range.
-pub fn scan_runs(question: &BestQuestion) -> u64 {
-    scan_places(question) * question.environments.len() as u64
 }
 
 /// Number of designs of the scan of the whole range.

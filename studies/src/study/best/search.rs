@@ -2,6 +2,7 @@
 //! distances at which its value falls or a constraint is violated.
 
 use super::evaluate::{Evaluator, Judged};
+use super::plan::{Part, Plan};
 use super::{DesignRange, NoBest, Optimum};
 use crate::numeric::round::{ONE_TWO_FIVE, round_down};
 use crate::study::bisection::multiple;
@@ -11,7 +12,7 @@ use crate::study::grid::places;
 const COARSE: usize = 4;
 
 /// Number of best designs that are refined, since the scan may miss the maximum of a narrow window.
-const REFINED: usize = 5;
+pub(super) const REFINED: usize = 5;
 
 /// Numbers of intervals on each side of the middle in a refinement, for one to four fields.
 const SIDES: [usize; 4] = [4, 2, 1, 1];
@@ -58,7 +59,11 @@ fn highest(places: &[Vec<f64>], judged: &[Judged]) -> Option<Optimum> {
     optima.reduce(|best, next| if next.value > best.value { next } else { best })
 }
 
-pub(super) fn search(evaluator: &Evaluator, preview: &mut dyn FnMut(&Optimum)) -> Result<Found, NoBest> {
+pub(super) fn search(
+    evaluator: &Evaluator,
+    plan: &mut Plan,
+    preview: &mut dyn FnMut(&Optimum),
+) -> Result<Found, NoBest> {
     let over = &evaluator.over;
     let lengths: Vec<usize> = over.iter().map(|range| range.intervals + 1).collect();
     let coarse = |node: &Vec<usize>| node.iter().all(|index| index.is_multiple_of(COARSE));
@@ -71,6 +76,7 @@ pub(super) fn search(evaluator: &Evaluator, preview: &mut dyn FnMut(&Optimum)) -
                 part.push(place(over, &node));
             }
         }
+        plan.is_at(Part::Scan, (lengths.iter().product::<usize>() - places.len()) as u64);
         judged.extend(evaluator.judge(&part)?);
         places.extend(part);
         if let Some(best) = highest(&places, &judged).filter(|_| first) {
@@ -97,7 +103,7 @@ pub(super) fn search(evaluator: &Evaluator, preview: &mut dyn FnMut(&Optimum)) -
         }
     }
     let starts = begins.iter().filter_map(|i| judged[*i].optimum(&places[*i])).collect();
-    let refined = refine(evaluator, starts)?.into_iter();
+    let refined = refine(evaluator, plan, starts)?.into_iter();
     let best = refined.fold(best, |best, next| if next.value > best.value { next } else { best });
     preview(&best);
     Ok(Found { optimum: best, flat: all_equal })
@@ -111,17 +117,20 @@ struct Closer {
 }
 
 /// Scans a box around each design, moves it to its best design and shrinks it, down to the resolution.
-fn refine(evaluator: &Evaluator, starts: Vec<Optimum>) -> Result<Vec<Optimum>, NoBest> {
+fn refine(evaluator: &Evaluator, plan: &mut Plan, starts: Vec<Optimum>) -> Result<Vec<Optimum>, NoBest> {
     let over = &evaluator.over;
     let sides = SIDES[over.len() - 1];
     let mut half: Vec<f64> = over.iter().map(DesignRange::step).collect();
+    let mut left = most_refined(over, starts.len());
     let closer = |best: Optimum| Closer { tried: vec![best.at.clone()], best };
     let mut boxes: Vec<Closer> = starts.into_iter().map(closer).collect();
     let grid: Vec<Vec<usize>> = indices(&vec![2 * sides + 1; over.len()]).collect();
     loop {
         // the boxes are scanned together, so that no thread is idle
         let places: Vec<Vec<Vec<f64>>> = boxes.iter().map(|area| around(area, over, &grid, &half)).collect();
+        plan.is_at(Part::Refinement, left);
         let judged = evaluator.judge(&places.concat())?;
+        left = left.saturating_sub((boxes.len() * (grid.len() - 1)) as u64);
         let mut rest = judged.as_slice();
         for (area, places) in boxes.iter_mut().zip(places) {
             let (judged, after) = rest.split_at(places.len());
@@ -131,16 +140,33 @@ fn refine(evaluator: &Evaluator, starts: Vec<Optimum>) -> Result<Vec<Optimum>, N
             }
             area.tried.extend(places);
         }
-        let finest = half.iter().zip(over).all(|(half, range)| half / sides as f64 <= resolution(range));
-        // with one interval on each side the maximum may lie anywhere in the box, so that it is only halved
-        let smaller = if sides == 1 { 0.5 } else { 1.0 / sides as f64 };
-        for (half, range) in half.iter_mut().zip(over) {
-            *half = (*half * smaller).max(resolution(range));
-        }
-        if finest || sides == 1 && half.iter().zip(over).all(|(half, range)| *half <= resolution(range)) {
+        if !smaller(&mut half, over) {
             return Ok(boxes.into_iter().map(|area| area.best).collect());
         }
     }
+}
+
+/// Makes a box smaller; `false` if it was the last one.
+fn smaller(half: &mut [f64], over: &[DesignRange]) -> bool {
+    let sides = SIDES[over.len() - 1];
+    let finest = half.iter().zip(over).all(|(half, range)| half / sides as f64 <= resolution(range));
+    // with one interval on each side the maximum may lie anywhere in the box, so that it is only halved
+    let smaller = if sides == 1 { 0.5 } else { 1.0 / sides as f64 };
+    for (half, range) in half.iter_mut().zip(over) {
+        *half = (*half * smaller).max(resolution(range));
+    }
+    !finest && (sides > 1 || half.iter().zip(over).any(|(half, range)| *half > resolution(range)))
+}
+
+/// The most designs that a refinement around so many places can run.
+pub(super) fn most_refined(over: &[DesignRange], places: usize) -> u64 {
+    let mut half: Vec<f64> = over.iter().map(DesignRange::step).collect();
+    let of_box = (2 * SIDES[over.len() - 1] as u64 + 1).pow(over.len() as u32) - 1;
+    let mut boxes = 1;
+    while smaller(&mut half, over) {
+        boxes += 1;
+    }
+    boxes * of_box * places as u64
 }
 
 /// The untried places of a box on a grid of indices, `half` to each side.
@@ -183,20 +209,60 @@ fn none(places: &[Vec<f64>], judged: &[Judged]) -> NoBest {
 /// Relative fall of the value that ends the margin.
 const FALL: f64 = 0.1;
 
-/// Number of outward steps per step of the scan.
+/// Least number of outward steps per step of the scan.
 const FINER: f64 = 4.0;
+
+/// Number of outward steps of one resolution, from which on a step is this part of the distance: a margin is
+/// as exact for its size as a place is for its range.
+const NEAR: f64 = 64.0;
 
 /// Number of designs that are evaluated together.
 const TOGETHER: usize = 16;
 
-/// The margins of each field, below and above.
-pub(super) fn margins(evaluator: &Evaluator, found: &Found) -> Result<Vec<[Option<f64>; 2]>, NoBest> {
-    let side = |field: usize, way: f64| side(evaluator, found, field, way);
-    (0..evaluator.over.len()).map(|field| Ok([side(field, -1.0)?, side(field, 1.0)?])).collect()
+/// How far a field may move in one direction.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Side {
+    /// The smallest tried distance at which the value has fallen; `None` if it does not within the range.
+    pub margin: Option<f64>,
+    /// The longest step up to there, or to the end of the range: a narrower dip may be missed.
+    pub step: f64,
 }
 
-/// The smallest distance in the direction `way` (-1 or 1) at which the value has fallen; every step is tried.
-fn side(evaluator: &Evaluator, found: &Found, field: usize, way: f64) -> Result<Option<f64>, NoBest> {
+/// The sides of each field, below and above.
+pub(super) fn margins(
+    evaluator: &Evaluator,
+    plan: &mut Plan,
+    found: &Found,
+) -> Result<Vec<[Side; 2]>, NoBest> {
+    let tried =
+        |field: usize| [-1.0, 1.0].map(|way| outward(&evaluator.over[field], found.optimum.at[field], way));
+    let tried: Vec<[Vec<f64>; 2]> = (0..evaluator.over.len()).map(tried).collect();
+    let mut left: u64 = tried.as_flattened().iter().map(|values| values.len() as u64).sum();
+    let mut side = |field: usize, values: &[f64]| {
+        plan.is_at(Part::Margins, left);
+        left -= values.len() as u64;
+        side(evaluator, found, field, values)
+    };
+    let sides = tried.iter().enumerate();
+    sides.map(|(field, [low, high])| Ok([side(field, low)?, side(field, high)?])).collect()
+}
+
+/// The values that are tried from `middle` in the direction `way` (-1 or 1) to the end of the range.
+pub(super) fn outward(range: &DesignRange, middle: f64, way: f64) -> Vec<f64> {
+    let (end, finest) = (if way > 0.0 { range.high } else { range.low }, resolution(range));
+    let longest = (range.step() / FINER).max(finest);
+    let (mut values, mut last) = (Vec::new(), middle);
+    while (end - last) * way > 0.0 {
+        let step = ((last - middle).abs() / NEAR).clamp(finest, longest);
+        let next = rounded(range, last + way * step);
+        // a range of a few last digits has no steps
+        last = if next == last { end } else { next };
+        values.push(last);
+    }
+    values
+}
+
+fn side(evaluator: &Evaluator, found: &Found, field: usize, values: &[f64]) -> Result<Side, NoBest> {
     let range = &evaluator.over[field];
     let (best, middle) = (&found.optimum, found.optimum.at[field]);
     let floor = best.value - FALL * best.value.abs();
@@ -206,21 +272,11 @@ fn side(evaluator: &Evaluator, found: &Found, field: usize, way: f64) -> Result<
         at[field] = value;
         at
     };
-    let (step, end) = (range.step() / FINER, if way > 0.0 { range.high } else { range.low });
-    let mut values: Vec<f64> = Vec::new();
-    for i in 1.. {
-        let value = rounded(range, middle + way * step * f64::from(i));
-        if values.last() != Some(&value) && value != middle {
-            values.push(value);
-        }
-        if (end - value) * way <= 0.0 {
-            break;
-        }
-    }
-    let mut inside = middle;
+    let (mut inside, mut longest) = (middle, resolution(range));
     for part in values.chunks(TOGETHER) {
         let judged = evaluator.judge(&part.iter().map(|value| at(*value)).collect::<Vec<_>>())?;
         for (value, design) in part.iter().zip(&judged) {
+            longest = longest.max(multiple((value - inside).abs(), resolution(range)));
             if holds(design) {
                 inside = *value;
                 continue;
@@ -231,8 +287,9 @@ fn side(evaluator: &Evaluator, found: &Found, field: usize, way: f64) -> Result<
                 if holds(&evaluator.judge(&[at(middle)])?[0]) { inside = middle } else { outside = middle }
             }
             // a multiple of the resolution, except at an end of the range
-            return Ok(Some(multiple((outside - middle).abs(), resolution(range))));
+            let margin = Some(multiple((outside - middle).abs(), resolution(range)));
+            return Ok(Side { margin, step: longest });
         }
     }
-    Ok(None)
+    Ok(Side { margin: None, step: longest })
 }

@@ -4,8 +4,9 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
 use super::evaluate::{Design, Evaluator};
-use super::search::{Found, rounded};
-use super::{NoBest, Optimum, Spread, Variation};
+use super::plan::{Part, Plan};
+use super::search::{Found, Side, rounded};
+use super::{NoBest, Optimum, Spread, Tolerance};
 
 /// Number of samples of the fields that vary.
 pub const SAMPLES: usize = 200;
@@ -23,8 +24,9 @@ const MIN_REACH: f64 = 16.0;
 /// field, away from the nearer margin; `None` if that is the optimum itself, or if nothing varies.
 pub(super) fn robust(
     evaluator: &Evaluator,
+    plan: &mut Plan,
     found: &Found,
-    margins: &[[Option<f64>; 2]],
+    margins: &[[Side; 2]],
 ) -> Result<(Spread, Option<(Optimum, Spread)>), NoBest> {
     let best = &found.optimum;
     if evaluator.question.vary.is_empty() {
@@ -32,11 +34,12 @@ pub(super) fn robust(
     }
     let range = &evaluator.over[0];
     // inward is away from the nearer margin
-    let [low, high] = margins[0].map(|margin| margin.unwrap_or(f64::INFINITY));
+    let [low, high] = margins[0].map(|side| side.margin.unwrap_or(f64::INFINITY));
     let way = if high <= low { -1.0 } else { 1.0 };
-    let shift = |variation: &Variation| {
-        let size = if variation.relative { best.at[0].abs() } else { 1.0 };
-        if variation.field == range.field { variation.by * size } else { 0.0 }
+    let shift = |tolerance: &Tolerance| {
+        let size = if tolerance.relative { best.at[0].abs() } else { 1.0 };
+        let furthest = tolerance.low.abs().max(tolerance.high.abs());
+        if tolerance.field == range.field { furthest * size } else { 0.0 }
     };
     let shifts: f64 = evaluator.question.vary.iter().map(shift).sum();
     let reach = (3.0 * shifts).max(MIN_REACH * range.step());
@@ -52,6 +55,7 @@ pub(super) fn robust(
             places.push(at);
         }
     }
+    plan.is_at(Part::Samples, LEAST_SAMPLES);
     let judged = evaluator.judge(&places[1..])?;
     let back = places[1..].iter().zip(&judged).filter_map(|(at, design)| design.optimum(at));
     let mut all: Vec<Sampled> =
@@ -72,6 +76,7 @@ pub(super) fn robust(
             let back = (ahead > 0).then(|| (all[ahead].at.clone(), all[ahead].spread()));
             return Ok((first, back));
         }
+        plan.is_at(Part::Samples, (SAMPLES - known) as u64);
         let next = &order[known..(2 * known).min(SAMPLES)];
         evaluate(evaluator, &mut all[ahead..=ahead], next)?;
     }
@@ -79,6 +84,10 @@ pub(super) fn robust(
 
 /// Number of samples that are evaluated together for a design.
 const TOGETHER: usize = 8;
+
+/// The least number of designs that are run where something varies: those inward, all samples of the optimum
+/// and of one of them, and some of the others.
+pub(super) const LEAST_SAMPLES: u64 = (PLACES + 2 * SAMPLES + (PLACES - 1) * TOGETHER) as u64;
 
 /// A design with its samples; the deviations are the same for all designs.
 struct Sampled {
@@ -96,9 +105,11 @@ impl Sampled {
         let mut uniform = || (random.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
         let nominal = evaluator.values_of_varied(&at.at);
         let mut sample = || {
-            let vary = evaluator.question.vary.iter().zip(&nominal).map(|(variation, value)| {
-                let by = if variation.relative { variation.by * value } else { variation.by };
-                value + by * (2.0 * uniform() - 1.0)
+            let vary = evaluator.question.vary.iter().zip(&nominal).map(|(tolerance, value)| {
+                let size = if tolerance.relative { *value } else { 1.0 };
+                let middle = 0.5 * (tolerance.low + tolerance.high) * size;
+                let half = 0.5 * (tolerance.high - tolerance.low) * size;
+                value + (middle + half * (2.0 * uniform() - 1.0))
             });
             vary.collect()
         };

@@ -1,6 +1,6 @@
 //! Sentences about the result of `best`.
 
-use super::{BestDesign, BestQuestion, SAMPLES};
+use super::{BestDesign, BestQuestion, SAMPLES, Seeds};
 use crate::numeric::short;
 use crate::scene::column_names;
 use crate::study::label_and_unit;
@@ -13,7 +13,21 @@ impl BestDesign {
         let at = place(&names, &self.optimum.at);
         let mean = if question.environments.len() > 1 { "the mean of " } else { "" };
         let value = |number: f64| quantity(number, maximised);
-        let mut lines = vec![format!("{mean}{maximised} is largest at {at}: {}", value(self.optimum.value))];
+        let error = match &self.seeds {
+            Seeds::Averaged { count, standard_error, .. } => {
+                format!(" with a standard error of {} from {count} seeds", value(*standard_error))
+            }
+            Seeds::None | Seeds::Alone => String::new(),
+        };
+        let largest = format!("{mean}{maximised} is largest at {at}: {}{error}", value(self.optimum.value));
+        let mut lines = vec![largest];
+        if self.seeds == Seeds::Alone {
+            lines.push(
+                "the noise has one seed: place and value are those of this seed, and how far those of others \
+                 lie is not known; several seeds say, such as --environment excitation.seed=1,2,3,4,5,6,7,8"
+                    .to_owned(),
+            );
+        }
         if self.flat {
             lines.push(format!("{maximised} is the same wherever it was looked, so that no place is better"));
         }
@@ -35,10 +49,22 @@ impl BestDesign {
             };
             let [low, high] = self.margins[i];
             let (low, high) = (side(low, "below", range.low), side(high, "above", range.high));
+            let steps = self.margin_steps[i].map(|step| quantity(step, name));
             let broken = if question.subject_to.is_empty() { "" } else { ", or a constraint broken," };
             lines.push(format!(
-                "{name}: a tenth of it is lost{broken} {low}, and {high}; located to {resolution}"
+                "{name}: a tenth of it is lost{broken} {low}, and {high}, tried in steps of up to {} below \
+                 and {} above",
+                steps[0], steps[1]
             ));
+            lines.push(match &self.seeds {
+                Seeds::Averaged { intervals, .. } => format!(
+                    "{name}: the seeds leave the best value between {} and {} (95 %)",
+                    in_unit(&intervals[i][0].to_string(), name),
+                    in_unit(&intervals[i][1].to_string(), name)
+                ),
+                Seeds::None => format!("{name}: located to {resolution}"),
+                Seeds::Alone => format!("{name}: located to {resolution} for this seed"),
+            });
             if self.at_border[i] && !self.flat {
                 lines.push(format!("{name} is best at an end of its range: a wider range may hold better"));
             }

@@ -40,7 +40,8 @@ pub fn probable_threshold_table(
 ) -> Result<Table, NoThresholds> {
     cells.check(pool, task, |scene, mechanism| {
         let prepared = prepared(&from_rest(scene), 0, chance.within);
-        faults(&prepared, mechanism, &cells.files, scan, |model| escape_fault(model, &prepared))
+        let tried = (&*scan.field, &*scan.values);
+        faults(&prepared, mechanism, &cells.files, tried, |model| escape_fault(model, &prepared))
     })?;
     let first = |scene: &Scene, built: Built, run: u64| {
         let found = match built {

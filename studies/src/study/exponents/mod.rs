@@ -193,8 +193,8 @@ pub struct Exponents {
     pub second: Estimate,
     /// The smallest one beside a circuit; otherwise `None`.
     pub third: Option<Estimate>,
-    /// Their sum in 1/s from the determinants of the derivatives. NaN if areas contract so much in a forcing
-    /// period that a determinant, the difference of two products, is lost in rounding.
+    /// Their sum in 1/s from the determinants of the derivatives. NaN if volumes contract so much in a
+    /// forcing period, more than about exp(10000)-fold, that a determinant is lost in rounding.
     pub sum: f64,
     /// Their sum in 1/s from damping and impacts; `None` with compliant stops, whose loss varies.
     pub exact_sum: Option<f64>,

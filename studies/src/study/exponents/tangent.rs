@@ -5,14 +5,23 @@ use crate::dynamics::{Event, EventKind, Jacobian, MapState, Model, Outcome, Pass
 use crate::numeric::elementary;
 use crate::study::orbit::Units;
 
-/// Share of its two products below which a determinant is lost in rounding, which is about 1e-15 of the
-/// products. (The error of the integration is relative to the determinant itself, about the tolerance.)
-const LOST: f64 = 1e-12;
-
-/// Share below which the determinant of a period is computed as the product of those of its parts. Near the
-/// top of a barrier all perturbations turn into the unstable direction and grow up to 1e6-fold in a period.
+/// Share of its products below which a determinant has lost digits in rounding, which is about 1e-15 of the
+/// products: it is then computed as the product of those of shorter parts of the period. (The error of the
+/// integration is relative to the determinant itself, about the tolerance.) Near the top of a barrier all
+/// perturbations turn into the unstable direction and grow up to 1e6-fold in a period; strong damping and a
+/// fast circuit contract many powers of ten.
 const FEW_LEFT: f64 = 1e-4;
+
+/// Number of parts of such a period.
 const PARTS: u32 = 8;
+
+/// How often a part is halved, to a 512th of a period. A step of the integration contracts volumes hardly
+/// more than a part that is halved no further, so that the parts cost about as much as the steps do.
+const HALVINGS: u32 = 6;
+
+/// The share for the shortest parts, below which a determinant is lost: its logarithm has an error of 1e-6
+/// there. With [`HALVINGS`], volumes may contract exp(10000)-fold in a period.
+const LOST: f64 = 1e-9;
 
 /// The stroboscopic map of a model, with perturbations in units of its scales.
 pub(super) struct Tangent {
@@ -98,14 +107,22 @@ impl Tangent {
 
     /// The same for a period, from its parts; NaN if one of them is lost in rounding.
     fn by_parts(&self, mut state: MapState) -> f64 {
-        let share = 1.0 / f64::from(PARTS);
-        let parts = (0..PARTS).map(|part| {
-            let span = (f64::from(part) * share, f64::from(part + 1) * share);
-            let (passage, derivative) = self.map.pass_part_with_jacobian(state, span);
-            state = (&passage).into();
-            self.logarithm(&passage, &derivative, share, LOST).unwrap_or(f64::NAN)
-        });
-        parts.sum()
+        let end = |part: u32| f64::from(part) / f64::from(PARTS);
+        let parts = (0..PARTS).map(|part| self.of_part(&mut state, (end(part), end(part + 1)), HALVINGS));
+        parts.sum::<Option<f64>>().unwrap_or(f64::NAN)
+    }
+
+    /// The same for a part of a period, which is halved up to so many times; moves `state` to its end.
+    fn of_part(&self, state: &mut MapState, (from, to): (f64, f64), halvings: u32) -> Option<f64> {
+        let (passage, derivative) = self.map.pass_part_with_jacobian(*state, (from, to));
+        let least = if halvings == 0 { LOST } else { FEW_LEFT };
+        if let Some(logarithm) = self.logarithm(&passage, &derivative, to - from, least) {
+            *state = (&passage).into();
+            return Some(logarithm);
+        }
+        let (halvings, half) = (halvings.checked_sub(1)?, 0.5 * (from + to));
+        let first = self.of_part(state, (from, half), halvings)?;
+        Some(first + self.of_part(state, (half, to), halvings)?)
     }
 
     pub fn pass_many(&self, state: MapState, periods: u32) -> Result<Passed, NoExponents> {

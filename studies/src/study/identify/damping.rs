@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use super::clipped::{Clipped, clipped};
+use super::outliers::without_outliers;
 use super::peaks::{Peak, peaks};
 use super::{Identified, Identity, Unidentified, noise, reach, turns, with_interval};
 use crate::numeric::regression::{least_squares, student};
@@ -37,7 +38,8 @@ const CLEAR: f64 = 1.5;
 pub fn damping(times: &[f64], channel: &Channel) -> Result<Identified, Unidentified> {
     let flat = clipped(&channel.values);
     let begin = flat.map_or(0, |flat| flat.last + 1);
-    let (times, values) = (&times[begin..], &channel.values[begin..]);
+    let (times, values, off) = without_outliers(&times[begin..], &channel.values[begin..]);
+    let (times, values) = (&times[..], &values[..]);
     let noise = noise(values);
     let back = reach(values, noise);
     let all = turns(values, back);
@@ -70,7 +72,7 @@ pub fn damping(times: &[f64], channel: &Channel) -> Result<Identified, Unidentif
         rows: table(&rows, &format!("amplitude{}", channel.quantity.ending())),
         fitted: whole.lines(),
         summary: vec![whole.ratio, whole.frequency, whole.natural, whole.rate],
-        remarks: remarks(&rows, &whole, channel, times, flat, sparse),
+        remarks: off.into_iter().chain(remarks(&rows, &whole, channel, times, flat, sparse)).collect(),
     })
 }
 

@@ -3,6 +3,7 @@
 mod clipped;
 mod damping;
 mod force;
+mod outliers;
 mod peaks;
 mod restitution;
 mod rests;
@@ -136,10 +137,15 @@ pub enum Unidentified {
     #[error(
         "no turning point is an impact: at none does the velocity jump by more than noise (of standard \
          deviation {0}) and a smooth turn explain. Impacts show where the flights after them hold \
-         {ENOUGH} samples: sample faster, cut the record by --from and --to, or give the places of the stops \
-         by --left-mm and --right-mm"
+         {ENOUGH} samples: sample faster, or cut the record by --from and --to"
     )]
     NoImpact(String),
+    /// Contacts, and those of them at which samples are missing.
+    #[error(
+        "{0} contacts with a stop, but at {1} of them samples are missing: record without gaps, or cut the \
+         record by --from and --to"
+    )]
+    Missing(usize, usize),
     /// The rebounds are too short.
     #[error(
         "the rebounds hold at most {longest} samples at {rate} a second, and {ENOUGH} are needed: take \
@@ -185,9 +191,27 @@ pub enum Unidentified {
 pub(super) fn noise(values: &[f64]) -> f64 {
     /// Median magnitude over standard deviation of normal numbers.
     const NORMAL: f64 = 0.674_489_750_196_081_7;
+    noise_by(values, 0.5, NORMAL)
+}
+
+/// The same for a record with so many impacts that they are in more than half of the third differences, whose
+/// lower quartile they leave as it is.
+pub(super) fn noise_between_impacts(values: &[f64]) -> f64 {
+    /// Lower quartile of the magnitude over standard deviation of normal numbers.
+    const NORMAL: f64 = 0.318_639_363_964_375_1;
+    noise_by(values, 0.25, NORMAL)
+}
+
+/// The noise whose third differences have the observed quantile of this share.
+fn noise_by(values: &[f64], share: f64, normal: f64) -> f64 {
     let third = |window: &[f64]| (window[3] - 3.0 * window[2] + 3.0 * window[1] - window[0]).abs();
-    let Some(size) = median(values.windows(4).map(third).collect()) else { return 0.0 };
-    let random = size / (NORMAL * 20_f64.sqrt());
+    let mut thirds: Vec<f64> = values.windows(4).map(third).collect();
+    if thirds.is_empty() {
+        return 0.0;
+    }
+    let place = (share * thirds.len() as f64) as usize;
+    let size = *thirds.select_nth_unstable_by(place, f64::total_cmp).1;
+    let random = size / (normal * 20_f64.sqrt());
     let steps = values.windows(2).map(|pair| (pair[1] - pair[0]).abs());
     let still = steps.clone().filter(|step| *step == 0.0).count();
     let least = steps.filter(|step| *step > 0.0).fold(f64::INFINITY, f64::min);

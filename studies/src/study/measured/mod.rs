@@ -12,7 +12,7 @@ use crate::dynamics::{Model, Request, Sample};
 use crate::mechanics::Mechanism;
 use crate::numeric::{alignment, short};
 use crate::scene::{Channel, Quantity, Scene, Timing};
-use numbers::{assembled, rms, statistics};
+use numbers::{assembled, percent, rms, statistics};
 
 /// A measured motion, and how it is aligned with a run.
 #[derive(Debug, Clone, Copy)]
@@ -51,7 +51,7 @@ pub struct Comparison {
     pub computed: Vec<f64>,
     /// The shift in s.
     pub shift: f64,
-    /// RMS of the difference in SI, and in percent of the measured RMS.
+    /// RMS of the difference in SI, and in percent of the measured RMS; NaN if that is 0.
     pub rms: (f64, f64),
     /// Remarks, each a sentence.
     pub remarks: Vec<String>,
@@ -179,7 +179,7 @@ pub fn compare(
     }
     let computed: Vec<f64> = samples.iter().map(of).collect();
     let table = numbers::table(scene, model, motion.channel.quantity, &times, &measured, &computed);
-    let rms = (rms_apart, 100.0 * rms_apart / rms(&measured));
+    let rms = (rms_apart, percent(rms_apart, rms(&measured)));
     let quantity = motion.channel.quantity;
     Ok(Comparison { table, quantity, times, measured, computed, shift, rms, remarks })
 }
@@ -202,7 +202,7 @@ pub struct ForceComparison {
     pub measured: Vec<f64>,
     /// The computed one.
     pub computed: Vec<f64>,
-    /// RMS of the difference in N, and in percent of the measured RMS.
+    /// RMS of the difference in N, and in percent of the measured RMS; NaN if that is 0.
     pub rms: (f64, f64),
     /// Position in m of the largest difference, and the difference (computed minus measured) in N.
     pub largest: (f64, f64),
@@ -260,7 +260,7 @@ pub fn compare_force(
     }
     Ok(ForceComparison {
         table: assembled(&rows, rms_apart, of_measured),
-        rms: (rms_apart, 100.0 * rms_apart / of_measured),
+        rms: (rms_apart, percent(rms_apart, of_measured)),
         largest: (positions[worst], apart[worst]),
         positions,
         measured,

@@ -60,9 +60,9 @@ pub(super) fn statistics(unit: &'static str, measured: &[f64], computed: &[f64])
 /// The table of these rows; `rms_difference` and the largest difference are in percent of the RMS measured.
 pub(super) fn assembled(rows: &[Row], rms_difference: f64, of_measured: f64) -> Table {
     let difference = |row: &Row| if row.0 == "rms_difference" { rms_difference } else { row.3 - row.2 };
-    let percent = |row: &Row| {
+    let in_percent = |row: &Row| {
         let of_rms = matches!(row.0, "rms_difference" | "largest_difference");
-        100.0 * difference(row) / if of_rms { of_measured } else { row.2.abs() }
+        percent(difference(row), if of_rms { of_measured } else { row.2.abs() })
     };
     Table::new()
         .each("quantity", rows, |row| row.0)
@@ -70,7 +70,13 @@ pub(super) fn assembled(rows: &[Row], rms_difference: f64, of_measured: f64) -> 
         .each("measured", rows, |row| row.2)
         .each("computed", rows, |row| row.3)
         .each("difference", rows, difference)
-        .each("difference_percent", rows, percent)
+        .each("difference_percent", rows, in_percent)
+}
+
+/// A difference in percent of a size; NaN, which is an empty cell, of 0.
+pub(super) fn percent(difference: f64, of: f64) -> f64 {
+    let percent = 100.0 * difference / of;
+    if percent.is_finite() { percent } else { f64::NAN }
 }
 
 /// Displacement in m at which a crossing counts, as in a summary; `None` without a barrier.

@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicBool;
 
 use nalgebra::{Const, DimMin, SMatrix, SVector, Vector3, Vector4};
 
-use super::{Orbit, allowed, map_of};
+use super::{Orbit, SAME, allowed, map_of};
 use crate::dynamics::{Event, EventKind, Jacobian, MapState, Model, Outcome, Passage, Side, StroboscopicMap};
 use crate::study::Family;
 
@@ -170,9 +170,9 @@ where
 
 /// Data that all points of a branch share.
 ///
-/// A point is a fixed point of the corrector's map: for motions that equal their mirror images it is the
-/// mirrored map over half a period. Its multipliers are roots of those over the period; -1 breaks the
-/// symmetry.
+/// A point is a fixed point of the corrector's map: for motions that equal their mirror images, at values of
+/// the field at which the scene does too, it is the mirrored map over half a period. Its multipliers are
+/// roots of those over the period; -1 breaks the symmetry.
 #[derive(Clone, Copy)]
 pub(super) struct Corrector<'a> {
     pub family: &'a Family<'a>,
@@ -185,9 +185,24 @@ pub(super) struct Corrector<'a> {
 }
 
 impl Corrector<'_> {
-    /// The stroboscopic map at a value of the field; `None` if the value makes no valid scene.
+    /// The model at a value of the field; `None` if the value makes no valid scene or, where the map is
+    /// mirrored, one whose mirror image is another scene.
+    pub fn model(&self, value: f64) -> Option<Model> {
+        let model = self.family.model(value).ok()?;
+        (!self.mirrored || model.mirrors_in_half_a_period()).then_some(model)
+    }
+
+    /// The stroboscopic map of that model.
     pub fn map(&self, value: f64) -> Option<StroboscopicMap<'_>> {
-        map_of(&self.family.model(value).ok()?, self.phase, self.cancel)
+        map_of(&self.model(value)?, self.phase, self.cancel)
+    }
+
+    /// Whether an orbit equals its mirror image, and the scenes next to this value equal theirs.
+    pub fn keeps_mirrored(&self, orbit: &Orbit, value: f64) -> bool {
+        let mirrored = Self { mirrored: true, ..*self };
+        let has_map = |share: f64| mirrored.model(value + share * self.units.range).is_some();
+        let off = || Self::asymmetry(&mirrored.map(value)?, orbit);
+        [-DIFFERENCE, DIFFERENCE].into_iter().any(has_map) && off().is_some_and(|off| off.amax() <= SAME)
     }
 
     /// Number of forcing periods of the map of the corrector.

@@ -2,9 +2,9 @@
 
 use nalgebra::Vector4;
 
-use super::SAME;
 use super::corrector::{Corrector, Point};
-use crate::dynamics::Multiplier;
+use super::{Orbit, SAME};
+use crate::dynamics::{EventKind, Multiplier};
 use crate::numeric::elementary;
 
 words! {
@@ -39,9 +39,15 @@ const HALVINGS: i32 = 20;
 const MAX_EVALUATIONS: usize = 80;
 
 /// Whether two motions touch the stops in a different order or number.
-pub(super) fn differ(a: &Point, b: &Point) -> bool {
-    let contacts = |point: &Point| {
-        let all = point.orbit.contacts().into_iter();
+pub(super) fn differ(a: &Orbit, b: &Orbit) -> bool {
+    differ_above(a, b, 0.0)
+}
+
+/// The same without impacts that are slower than this speed in m/s.
+pub(super) fn differ_above(a: &Orbit, b: &Orbit, speed: f64) -> bool {
+    let contacts = |orbit: &Orbit| {
+        let all = orbit.contacts().into_iter();
+        let all = all.filter(|event| event.kind != EventKind::Impact || event.v_in.abs() >= speed);
         all.map(|event| (event.kind, event.side)).collect::<Vec<_>>()
     };
     let (a, b) = (contacts(a), contacts(b));

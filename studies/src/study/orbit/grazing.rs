@@ -44,7 +44,7 @@ pub(super) const FINEST: Accuracy = Accuracy { change: 0.0, step: 1e-15 };
 const AT_ONCE: f64 = 1e-4;
 
 /// Speed of an impact, in the units, below which it is the touch itself: half its square is about [`EXACT`].
-const GENTLEST: f64 = 1e-4;
+pub(super) const GENTLEST: f64 = 1e-4;
 
 /// Accuracy of the grazing orbit in the units: of the state at the stop, of the return, and of the last step.
 pub(super) const EXACT: f64 = 1e-9;
@@ -159,7 +159,7 @@ fn openings(corrector: &Corrector, map: &StroboscopicMap, near: &Point, t: f64) 
 
 impl<'a> Maps<'a> {
     fn of(corrector: &'a Corrector<'a>, value: f64) -> Option<Self> {
-        let model = corrector.family.model(value).ok()?;
+        let model = corrector.model(value)?;
         let map = |model: &Model| map_of(model, corrector.phase, corrector.cancel);
         Some(Self { corrector, with: map(&model)?, without: map(&model.without_stops())? })
     }

@@ -9,6 +9,7 @@
 //! [`orbit`] finds the orbit near the settled motion of a run, [`orbit_near`] the one near a state;
 //! [`branch()`] follows it over a field.
 
+mod begin;
 mod corrector;
 mod events;
 mod grazing;
@@ -18,14 +19,14 @@ mod walk;
 
 use std::sync::atomic::AtomicBool;
 
-use nalgebra::{Matrix3, Vector3, Vector4};
+use nalgebra::Vector4;
 
-use super::{Cancelled, Family, Table, Task, Values, settled};
+use super::{Cancelled, Family, Table, Task, Values};
 use crate::dynamics::{
-    CircuitState, Event, EventKind, Jacobian, MapState, Model, Multiplier, Outcome, Passage, Regime,
-    StroboscopicMap,
+    CircuitState, Event, EventKind, Jacobian, MapState, Model, Multiplier, Outcome, Passage, StroboscopicMap,
 };
 use crate::scene::column_names;
+pub use begin::{Begin, begun, orbit};
 use corrector::Corrector;
 pub(super) use corrector::Units;
 pub use events::BranchEvent;
@@ -43,11 +44,12 @@ const CLOSE: f64 = 1e-9;
 /// Step, as a share of the scales, at which the method has converged.
 const SMALLEST_STEP: f64 = 1e-13;
 
-/// Number of strobes of a motion without a period that are searched for a near return.
-const STROBES: usize = 400;
-
 /// Distance below which two states belong to the same orbit, as a share of the scales.
 const SAME: f64 = 1e-6;
+
+/// Largest distance of a motion from its state after its period, as a share of the scales, per stretching of
+/// the map by the state: a hundred times that at which the points of a branch are accepted.
+const RETURN: f64 = 1e-8;
 
 /// Largest tolerance at which the map is computed. It is close to rounding, since derivatives by a field are
 /// difference quotients and events on a branch are located to 1e-8.
@@ -89,12 +91,27 @@ pub enum NoOrbit {
     /// The orbit found has not the requested period, but this shorter one in forcing periods.
     #[error("near the motion of the run is only one of period {0}")]
     Shorter(u32),
+    /// The motion found does not come back to its state.
+    #[error("the motion found does not repeat when it is integrated over its whole period")]
+    Unrepeated,
     /// The run does not settle on a motion that repeats.
     #[error(
         "the run comes to no motion that repeats after at most 12 forcing periods; name a period, or start \
          elsewhere"
     )]
     NotSettled,
+    /// No start leads to the motion that is meant.
+    #[error(
+        "no motion of period {period} with impacts = {impacts} was found from {starts} starts; give its state"
+    )]
+    NotFound {
+        /// Number of starts tried.
+        starts: u32,
+        /// Its period in forcing periods.
+        period: u32,
+        /// Its impacts.
+        impacts: u64,
+    },
     /// It was cancelled.
     #[error("it was cancelled")]
     Cancelled,
@@ -164,6 +181,21 @@ impl Orbit {
         let hits = |event: &Event| matches!(event.kind, EventKind::Impact | EventKind::Contact);
         let all = self.contacts().into_iter().filter(hits);
         all.map(|event| event.v_in.abs()).reduce(f64::min)
+    }
+
+    /// Whether the motion from the state comes back to it after the period, with the contacts that the orbit
+    /// has. The map is that of the phase of its state.
+    fn comes_back(&self, map: &StroboscopicMap) -> bool {
+        let passage = map.pass(self.state, self.period);
+        let units = Units::of(map.model(), 1.0);
+        let rows = self.jacobian.in_units(units.of_state());
+        let stretch =
+            rows.rows().as_flattened().iter().fold(1.0, |largest: f64, slope| largest.max(slope.abs()));
+        let off = largest(units.apart(self.state, (&passage).into()));
+        let (is_done, slowest) = (passage.outcome == Outcome::Done, grazing::GENTLEST * units.speed);
+        // rounding decides whether a motion touches a stop that it grazes
+        let again = Self { passage, ..self.clone() };
+        is_done && off <= RETURN * stretch && !events::differ_above(self, &again, slowest)
     }
 
     /// One row: period, state, multipliers and what happens on the motion.
@@ -236,15 +268,7 @@ fn largest(change: [f64; 3]) -> f64 {
 /// The step of Newton's method to a fixed point of a map with these derivatives, which is `off` at present:
 /// (1 - J) step = off. `None` where the matrix is singular.
 pub(super) fn newton_step(jacobian: &Jacobian, off: [f64; 3]) -> Option<[f64; 3]> {
-    if jacobian.size() == 3 {
-        let rows = jacobian.rows();
-        let matrix = Matrix3::from_fn(|i, j| if i == j { 1.0 - rows[i][j] } else { -rows[i][j] });
-        return matrix.lu().solve(&Vector3::from(off)).map(Into::into);
-    }
-    let [[a, b], [c, d]] = jacobian.of_motion();
-    let determinant = (1.0 - a) * (1.0 - d) - b * c;
-    let (x, v) = ((1.0 - d) * off[0] + b * off[1], c * off[0] + (1.0 - a) * off[1]);
-    Some([x / determinant, v / determinant, 0.0])
+    jacobian.newton_step(off)
 }
 
 /// The same orbit with its shortest period.
@@ -256,53 +280,18 @@ fn shortest(map: &StroboscopicMap, orbit: Orbit) -> Result<Orbit, NoOrbit> {
         if passage.outcome != Outcome::Done {
             return Err(ended(passage.outcome));
         }
-        if largest(units.apart(orbit.state, (&passage).into())) <= SAME {
+        let off = largest(units.apart(orbit.state, (&passage).into()));
+        if off <= CLOSE {
             return Ok(Orbit { period, passage, jacobian, ..orbit });
+        }
+        // near a doubling both orbits exist
+        if off <= SAME
+            && let Ok(shorter) = orbit_near(map, orbit.state, period)
+        {
+            return Ok(shorter);
         }
     }
     Ok(orbit)
-}
-
-/// The periodic orbit near the settled motion of a run of `model`, at a phase of the drive in forcing
-/// periods; with the period `period`, if given.
-///
-/// Precondition: the drive repeats.
-pub fn orbit(model: &Model, phase: f64, period: Option<u32>, cancel: &AtomicBool) -> Result<Orbit, NoOrbit> {
-    let (Some(map), Some(forcing)) = (map_of(model, phase, cancel), model.forcing_period()) else {
-        return Err(NoOrbit::NotSettled);
-    };
-    let summary = settled(model, cancel).ok_or(NoOrbit::Cancelled)?;
-    if summary.outcome != Outcome::Done {
-        return Err(NoOrbit::Ended(summary.outcome));
-    }
-    // a mass at rest has the period 1
-    let still = (summary.regime == Regime::Rest).then_some(1);
-    let periods = period.or(summary.period).or(still).ok_or(NoOrbit::NotSettled)?;
-    let since = (summary.window.1.max(summary.settles_at.unwrap_or(0.0)) / forcing).ceil();
-    let (x, v) = model.start();
-    let start = MapState { x, v, electrical: model.start_electrical() };
-    let until = map.first_strobe() + since * forcing;
-    let run = StroboscopicMap::over(model, until).cancelled_by(cancel).pass(start, 1);
-    let state = MapState::from(&run);
-    let guess = if summary.period.or(still).is_some() { state } else { closest_return(&map, state, periods) };
-    let orbit = orbit_near(&map, guess, periods)?;
-    match period {
-        Some(period) if orbit.period != period => Err(NoOrbit::Shorter(orbit.period)),
-        _ => Ok(orbit),
-    }
-}
-
-/// The stroboscopic state after `from` with the closest return after `periods`.
-fn closest_return(map: &StroboscopicMap, from: MapState, periods: u32) -> MapState {
-    let units = Units::of(map.model(), 1.0);
-    let next = |state: &MapState| {
-        let passage = map.pass(*state, 1);
-        (passage.outcome == Outcome::Done).then(|| MapState::from(&passage))
-    };
-    let states: Vec<_> = std::iter::successors(Some(from), next).take(STROBES + periods as usize).collect();
-    let returns = states.iter().zip(states.iter().skip(periods as usize));
-    let far = |(a, b): (&MapState, &MapState)| Vector3::from(units.apart(*b, *a)).norm();
-    returns.min_by(|a, b| far(*a).total_cmp(&far(*b))).map_or(from, |(state, _)| *state)
 }
 
 /// The table with the columns of [`Orbit::table`], one row per orbit.
@@ -378,6 +367,8 @@ pub struct Branch {
     pub end: BranchEnd,
     /// Pairs of values between which contacts with the stops or the stability change without a located event.
     pub unlocated: Vec<(f64, f64)>,
+    /// Values of events at which another branch begins that was searched for and not found.
+    pub unbegun: Vec<f64>,
 }
 
 impl Branch {
@@ -411,6 +402,8 @@ pub struct BranchOptions {
     pub phase: f64,
     /// Period of the first orbit in forcing periods; `None` for that of the settled motion.
     pub period: Option<u32>,
+    /// Which motion the first orbit is.
+    pub begin: Begin,
     /// Longest step, as a share of the range of a field and of the scales of the state.
     pub step: f64,
     /// Largest number of orbits.
@@ -425,12 +418,12 @@ impl BranchOptions {
 
     /// The default steps from an orbit of this period, with states at a phase in forcing periods.
     pub fn new(phase: f64, period: Option<u32>) -> Self {
-        Self { phase, period, step: Self::STEP, count: Self::COUNT }
+        Self { phase, period, begin: Begin::Run, step: Self::STEP, count: Self::COUNT }
     }
 }
 
 /// The branch of periodic orbits of a family over `field`, from one value towards another. It begins at the
-/// settled motion of a run at the first value.
+/// settled motion of a run at the first value, or at that which `options` name.
 ///
 /// Ticks once per orbit. Errors concern the first orbit only.
 pub fn branch(
@@ -441,14 +434,13 @@ pub fn branch(
     task: &Task,
 ) -> Result<Branch, NoOrbit> {
     task.unless_cancelled(|| {
-        let BranchOptions { phase, period, .. } = *options;
+        let BranchOptions { phase, period, begin, .. } = *options;
         let model = family.model(from).map_err(|_| NoOrbit::NotConverged)?;
-        let first = orbit(&model, phase, period, task.cancel)?;
+        let first = begun(&model, phase, period, begin, task.cancel)?;
         let units = Units::of(&model, (to - from).abs());
-        let map = map_of(&model, phase, task.cancel).ok_or(NoOrbit::NotConverged)?;
-        let mirrored = Corrector::asymmetry(&map, &first).is_some_and(|off| off.amax() <= SAME);
         let periods = first.period;
-        let corrector = Corrector { family, phase, periods, mirrored, units, cancel: task.cancel };
+        let corrector = Corrector { family, phase, periods, mirrored: false, units, cancel: task.cancel };
+        let corrector = Corrector { mirrored: corrector.keeps_mirrored(&first, from), ..corrector };
         let upwards = Vector4::w() * (to - from).signum();
         let point =
             corrector.correct(corrector.at(first.state, from), &upwards).ok_or(NoOrbit::NotConverged)?;

@@ -6,13 +6,14 @@ use std::sync::atomic::AtomicBool;
 use nalgebra::{Matrix3, Vector4};
 
 use super::corrector::{Corrector, Point};
-use super::events::BranchEvent;
+use super::events::{BranchEvent, characteristic};
 use super::walk::{Directed, Walk};
 use super::{Branch, BranchOptions, NoOrbit, SAME, Units, map_of};
 use crate::study::{Family, Task};
 
-/// Distances of the first motion of a branch from the event, in the units, in the order of trial.
-const DISTANCES: [f64; 4] = [1e-2, 3e-3, 1e-3, 3e-2];
+/// Distances of the first motion of a branch from the event, in the units, in the order of trial. In a
+/// cascade of doublings each branch comes to its own doubling sooner than the one before.
+const DISTANCES: [f64; 7] = [1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 3e-2];
 
 /// Share of that distance by which the first motion must differ from those of the branch left.
 const AWAY: f64 = 0.1;
@@ -46,13 +47,19 @@ pub fn switched(
             let end = all.len();
             for number in begin..end {
                 for place in 0..all[number].values.len() {
-                    for (corrector, first) in
-                        starts(family, &all, (number, place), range, options, task.cancel)
-                    {
+                    let begun = starts(family, &all, (number, place), range, options, task.cancel);
+                    if begun.is_none() {
+                        let value = all[number].values[place];
+                        all[number].unbegun.push(value);
+                    }
+                    for (corrector, first) in begun.into_iter().flatten() {
                         let model = family.model(first.0.value).map_err(|_| NoOrbit::NotConverged)?;
                         let field = &all[number].field;
                         let walk = Walk::new(corrector, field, range, &model, first, *options);
-                        all.push(walk.run_out(task)?);
+                        match walk.run_out(task) {
+                            Err(NoOrbit::Unrepeated) => {}
+                            found => all.push(found?),
+                        }
                     }
                 }
             }
@@ -62,7 +69,8 @@ pub fn switched(
     })
 }
 
-/// The branches that begin at a row of a branch, if that is an event at which no other branch begins or ends.
+/// The branches that begin at a row of a branch, if that is an event at which no other branch begins or ends;
+/// `None` if one begins there and is not found.
 fn starts<'a>(
     family: &'a Family<'a>,
     all: &[Branch],
@@ -70,14 +78,14 @@ fn starts<'a>(
     range: (f64, f64),
     options: &BranchOptions,
     cancel: &'a AtomicBool,
-) -> Vec<Start<'a>> {
+) -> Option<Vec<Start<'a>>> {
     let from = &all[number];
     let (orbit, value) = (&from.orbits[place], from.values[place]);
     let is_flip = from.events[place] == Some(BranchEvent::Flip);
     if !is_flip && from.events[place] != Some(BranchEvent::Symmetry) {
-        return Vec::new();
+        return Some(Vec::new());
     }
-    let Ok(model) = family.model(value) else { return Vec::new() };
+    let model = family.model(value).ok()?;
     let units = Units::of(&model, (range.1 - range.0).abs());
     let (phase, periods) = (options.phase, orbit.period);
     let base = Corrector { family, phase, periods, mirrored: !is_flip, units, cancel };
@@ -88,9 +96,9 @@ fn starts<'a>(
             .any(|((orbit, value), _)| (base.at(orbit.state, *value) - at).amax() <= AT_ONCE)
     });
     if is_known {
-        return Vec::new();
+        return Some(Vec::new());
     }
-    let Some((base, point)) = cleared(base, at) else { return Vec::new() };
+    let (base, point) = cleared(base, at)?;
     let sideways = |up: f64| Some((base, (point.clone(), base.tangent(&point, &(Vector4::w() * up))?)));
     let is_symmetric = |place: usize| {
         let (orbit, value) = (from.orbits.get(place)?, from.values.get(place)?);
@@ -98,11 +106,11 @@ fn starts<'a>(
         Some(Corrector::asymmetry(&map, orbit)?.amax() <= SAME)
     };
     let beside = [place.wrapping_sub(1), place + 1].into_iter().find_map(is_symmetric);
-    match beside {
+    Some(match beside {
         // motions that are not their own mirror images meet the branch of those that are
         Some(false) if !is_flip => [-1.0, 1.0].into_iter().filter_map(sideways).collect(),
-        _ => begun(&base, &point, is_flip).into_iter().collect(),
-    }
+        _ => vec![begun(&base, &point, is_flip)?],
+    })
 }
 
 /// The point of an event, at a phase of the drive away from impacts.
@@ -126,15 +134,20 @@ fn begun<'a>(base: &Corrector<'a>, point: &Point, is_flip: bool) -> Option<Start
     let across = (direction - along * direction.dot(&along)).try_normalize(0.0)?;
     let periods = if is_flip { 2 * base.periods } else { base.periods };
     let corrector = Corrector { periods, mirrored: false, ..*base };
+    // where the branch begins, its map is that of the event twice
+    let twice =
+        point.by_state.after(&point.by_state).characteristic(-1.0, point.determinant * point.determinant);
     DISTANCES.into_iter().find_map(|distance| {
-        let first = corrector.correct(point.at + across * distance, &across)?;
+        let first = corrector.correct(point.at + direction * distance, &across)?;
         let map = corrector.map(first.value)?;
         let off = match is_flip {
             true => corrector.halfway(&map, &first.orbit)?,
             false => Corrector::asymmetry(&map, &first.orbit)?,
         };
         let is_near = (first.at - point.at).norm() <= 3.0 * distance;
+        let is_before_its_flip = characteristic(&first, -1.0) * twice > 0.0;
         let onward = corrector.tangent(&first, &across)?;
-        (is_near && off.norm() > AWAY * distance).then_some((corrector, (first, onward)))
+        (is_near && is_before_its_flip && off.norm() > AWAY * distance)
+            .then_some((corrector, (first, onward)))
     })
 }

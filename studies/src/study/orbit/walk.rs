@@ -17,6 +17,9 @@ const SHORTEST: f64 = 1e-9;
 /// Step below which a change of the orbit is accepted although its event was not located.
 const UNLOCATED: f64 = 1e-6;
 
+/// Shorter steps in a row after which the branch ends: rounding, grown by the map, lets none be longer.
+const CRAWL: usize = 400;
+
 /// Cosine of the largest angle between the tangents at both ends of a step, and between step and tangent.
 const STRAIGHT: f64 = 0.9;
 
@@ -45,6 +48,13 @@ struct Stretch {
     /// The point at its end; `None` if the branch ends at the last event.
     next: Option<Directed>,
     is_last: bool,
+}
+
+/// A row of the branch before it is added, with its state at the phase of the rows.
+struct Row {
+    event: Option<BranchEvent>,
+    orbit: Orbit,
+    value: f64,
 }
 
 pub(super) struct Walk<'a> {
@@ -89,6 +99,7 @@ impl<'a> Walk<'a> {
             events: Vec::new(),
             end: BranchEnd::Points,
             unlocated: Vec::new(),
+            unbegun: Vec::new(),
         };
         let mut walk = Self {
             branch,
@@ -102,18 +113,22 @@ impl<'a> Walk<'a> {
             at: first.clone(),
             corrector,
         };
-        walk.add(None, &first.0, None);
+        walk.row(None, &first.0, None).into_iter().for_each(|row| walk.add(row));
         walk
     }
 
     /// Walks until the branch ends, and returns it with its end.
     pub fn run_out(mut self, task: &Task) -> Result<Branch, NoOrbit> {
+        if self.rows.is_empty() {
+            return Err(NoOrbit::Unrepeated);
+        }
         self.branch.end = self.end(task)?;
         Ok(self.branch)
     }
 
     fn end(&mut self, task: &Task) -> Result<BranchEnd, NoOrbit> {
         let mut step = FIRST.min(self.options.step);
+        let mut crawled = 0;
         while self.branch.values.len() < self.options.count {
             task.check_cancelled()?;
             (task.tick)();
@@ -132,17 +147,19 @@ impl<'a> Walk<'a> {
                 }
                 Some(Stretch { events: Vec::new(), next: Some(next), is_last: beyond.is_some() })
             });
-            if let Some(mut stretch) = stretch {
+            let found = stretch.and_then(|stretch| Some((self.rows_of(&stretch)?, stretch)));
+            if let Some((mut rows, mut stretch)) = found {
                 let is_half = |event: &(BranchEvent, Point, _)| event.1.orbit.period < self.corrector.periods;
                 let joins = stretch.events.iter().position(is_half);
                 if let Some(place) = joins {
                     // beyond it the motions are the same ones half their period later
                     stretch.events.truncate(place + 1);
+                    rows.truncate(place + 1);
                     stretch.next = None;
                 }
                 let grazes = stretch.events.iter().any(|event| event.0 == BranchEvent::Grazing);
                 let is_last = stretch.is_last;
-                let goes_on = self.go_along(stretch);
+                let goes_on = self.go_along(rows, stretch.next);
                 let ends = [
                     (self.meets, BranchEnd::Closed),
                     (joins.is_some(), BranchEnd::Joined),
@@ -152,6 +169,10 @@ impl<'a> Walk<'a> {
                 ];
                 if let Some((_, end)) = ends.into_iter().find(|(is_end, _)| *is_end) {
                     return Ok(end);
+                }
+                crawled = if step < UNLOCATED { crawled + 1 } else { 0 };
+                if crawled == CRAWL {
+                    return Ok(BranchEnd::Lost);
                 }
                 step = if grazes && !self.compliant {
                     PAST_A_GRAZING[0].min(self.options.step)
@@ -241,7 +262,7 @@ impl<'a> Walk<'a> {
     /// this is not a bifurcation.
     fn touches_otherwise(&self, next: &Point) -> bool {
         let point = &self.at.0;
-        differ(point, next) && !(point.forgets() && next.forgets())
+        differ(&point.orbit, &next.orbit) && !(point.forgets() && next.forgets())
     }
 
     /// The stretch to a point up to which the map is smooth.
@@ -306,7 +327,7 @@ impl<'a> Walk<'a> {
         let near = grazing.beside(beside, least)?;
         let onward = self.corrector.tangent(&near, along)?;
         let near = (near, onward);
-        if differ(point, &near.0) || !self.follows(&near) {
+        if differ(&point.orbit, &near.0.orbit) || !self.follows(&near) {
             return None;
         }
         Some(self.smooth(&near, false)?.events)
@@ -325,7 +346,7 @@ impl<'a> Walk<'a> {
             let Some(far) = directed(distance) else { continue };
             // the derivatives of two very slow impacts are lost in rounding
             let near = nearest.clone().or_else(|| directed(0.1 * distance)).unwrap_or_else(|| far.clone());
-            if differ(&near.0, &far.0) {
+            if differ(&near.0.orbit, &far.0.orbit) {
                 continue;
             }
             if let Some(events) = between(&self.corrector, &near.0, &near.1, &far.0, &far.1) {
@@ -336,31 +357,39 @@ impl<'a> Walk<'a> {
         (Vec::new(), nearest)
     }
 
-    /// Adds the rows of a stretch and goes to its end; false where the branch ends at its last event.
-    fn go_along(&mut self, stretch: Stretch) -> bool {
-        for (event, point, row) in &stretch.events {
+    /// The rows of a stretch; `None` if the motion of one does not come back to its state.
+    fn rows_of(&self, stretch: &Stretch) -> Option<Vec<Row>> {
+        let rows = stretch.events.iter().map(|(event, point, row)| self.row(Some(*event), point, *row));
+        rows.chain(stretch.next.iter().map(|(point, _)| self.row(None, point, None))).collect()
+    }
+
+    /// The row of a point, with its state at the phase of the rows if known.
+    fn row(&self, event: Option<BranchEvent>, point: &Point, state: Option<MapState>) -> Option<Row> {
+        let moved = || self.corrector.at_phase(&point.orbit, point.value, self.options.phase);
+        let known = state.map(|state| Orbit { state, ..point.orbit.clone() });
+        let (orbit, value) = (known.or_else(moved)?, point.value);
+        let rows = Corrector { mirrored: false, phase: self.options.phase, ..self.corrector };
+        // from a grazing state rounding decides whether the motion strikes the stop; `Touch` has checked it
+        let comes_back =
+            event == Some(BranchEvent::Grazing) || rows.map(value).is_some_and(|map| orbit.comes_back(&map));
+        comes_back.then_some(Row { event, orbit, value })
+    }
+
+    /// Adds rows and goes to the point after them; false where there is none, and the branch ends.
+    fn go_along(&mut self, rows: Vec<Row>, next: Option<Directed>) -> bool {
+        for row in rows {
             if !self.meets {
-                self.add(Some(*event), point, *row);
+                self.add(row);
             }
         }
-        let Some(next) = stretch.next else { return false };
-        if !self.meets {
-            self.add(None, &next.0, None);
-        }
+        let Some(next) = next else { return false };
         self.at = next;
         true
     }
 
-    /// Adds a row, with its state at the phase of the rows if known; without an event at a motion met before.
-    fn add(&mut self, event: Option<BranchEvent>, point: &Point, state: Option<MapState>) {
-        let orbit = match state {
-            Some(state) => Orbit { state, ..point.orbit.clone() },
-            None => {
-                let orbit = self.corrector.at_phase(&point.orbit, point.value, self.options.phase);
-                orbit.unwrap_or_else(|| point.orbit.clone())
-            }
-        };
-        let at = self.corrector.at(orbit.state, point.value);
+    /// Adds a row; without an event at a motion met before.
+    fn add(&mut self, Row { event, orbit, value }: Row) {
+        let at = self.corrector.at(orbit.state, value);
         let far = self.rows.last().map_or(0.0, |(last, far)| far + (at - last).norm());
         // the branch comes to the same motion again only at an event, and not beside it
         let left = self.rows.iter().take_while(|(_, along)| far - along > self.options.step);
@@ -368,10 +397,10 @@ impl<'a> Walk<'a> {
         let event = event.filter(|_| !self.meets);
         self.rows.push((at, far));
         // a motion at an end is off it by the rounding of the unit
-        let far = |end: f64| (point.value - end).abs();
+        let far = |end: f64| (value - end).abs();
         let is_at = |end: &f64| far(*end) <= AT_AN_END * (self.corrector.units.range + end.abs() * 1e-3);
         let end = self.range.into_iter().find(|end| event.is_none() && is_at(end));
-        self.branch.values.push(end.unwrap_or(point.value));
+        self.branch.values.push(end.unwrap_or(value));
         self.branch.orbits.push(orbit);
         self.branch.events.push(event);
     }

@@ -2,8 +2,9 @@
 
 use std::ops::Range;
 
+use super::Motion;
+use super::drift::{Drift, Stop, stop_at, stops, unexplained};
 use super::meeting::{Meeting, Sides};
-use super::{Motion, median};
 use crate::study::identify::{Turn, turns};
 
 /// A turning point at a stop.
@@ -12,6 +13,8 @@ pub struct Contact {
     /// The sample where the record turns, and whether that is on the right stop.
     pub at: usize,
     pub right: bool,
+    /// The number of the stop.
+    pub stop: usize,
     /// The impact, where the velocity jumps there.
     pub impact: Option<Impact>,
     /// The samples of the flights before it and after it.
@@ -27,6 +30,8 @@ pub struct Impact {
     pub error: f64,
     /// Samples nearer in time than this may lie on either side of the impact.
     pub unsure: f64,
+    /// Jump of the velocity.
+    pub jump: f64,
     /// Speed towards the stop, once a better fit has shown it.
     pub speed: Option<f64>,
 }
@@ -36,29 +41,43 @@ const TERMS: usize = 3;
 
 const FEWEST: usize = 4;
 
+/// Samples between turning points that are the same.
+const NEAR: usize = 2;
+
+/// Impacts that tell a drift from stops at several places.
+const FEW: usize = 4;
+
 /// Standard deviations, squared, by which two intersecting polynomials must fit better than a single one.
 const CLEAR: f64 = 6.0;
 
-/// Impacts on one stop differ in place by less than this share of the range and six standard errors.
-const SAME_STOP: f64 = 0.005;
+/// Uniform drifts in which turning points are looked for where a record has few impacts, as shares of the
+/// root of its mean square velocity. A rebound slower than the drift is no turning point of the record.
+const DRIFTS: [f64; 8] = [0.0625, -0.0625, 0.125, -0.125, 0.25, -0.25, 0.5, -0.5];
 
-/// Impacts belong to a given stop if they are nearer to it than this share of the range.
-const NEAR_GIVEN: f64 = 0.05;
+/// Share of the longer step to its neighbours by which the sample at a turning point may differ from the fit
+/// on its side. A mass that arrives at a stop, rests and leaves again would otherwise meet beyond the stop.
+const AT_TURN: f64 = 0.25;
 
 impl Contact {
+    /// Moves its impact with a record from which a drift was subtracted.
+    pub fn subtract(&mut self, motion: &Motion, drift: &Drift) {
+        if let Some(impact) = &mut self.impact {
+            impact.x -= drift.at(motion.part(impact.t)).0;
+        }
+    }
+
     /// Its instant, as far as it is known.
     pub fn time(&self, motion: &Motion) -> f64 {
         self.impact.map_or(motion.times[self.at], |impact| impact.t)
     }
 }
 
-/// The contacts in order of time, and the places of the left and the right stop where impacts show them.
+/// The turning points in order of time, each with an impact if the velocity jumps there.
 ///
 /// A turning point is an impact if two parabolas that intersect there fit the samples around it better than
-/// one polynomial with the same number of coefficients. A stop is at the outermost of these impacts, with no
-/// sample beyond, or at the impacts near a `given` position. Turning points elsewhere are not contacts, nor
-/// are those within the noise of a limit at which the record is cut off.
-pub fn contacts(motion: &Motion, given: [Option<f64>; 2]) -> (Vec<Contact>, [Option<f64>; 2]) {
+/// one polynomial with the same number of coefficients. Within the noise of a limit at which the record is
+/// cut off there is none.
+fn turning_points(motion: &Motion) -> Vec<Contact> {
     let turning = turns(&motion.x, motion.back);
     let samples = motion.x.len();
     let mut contacts = Vec::new();
@@ -71,26 +90,65 @@ pub fn contacts(motion: &Motion, given: [Option<f64>; 2]) -> (Vec<Contact>, [Opt
         let after = turning.get(k + 2).map_or(samples, |turn| turn.at);
         let from = (before + 1..=turn.at).rev().find(|i| motion.is_gap(*i)).unwrap_or(before);
         let to = (turn.at + 1..after).find(|i| motion.is_gap(*i)).unwrap_or(after);
-        let cut = motion.cut[usize::from(turn.maximum)];
-        let is_hidden = cut.is_some_and(|cut| (motion.x[turn.at] - cut.limit).abs() < motion.back);
-        let impact = if is_hidden { None } else { impact(motion, *turn, from..to) };
-        contacts.push(Contact { at: turn.at, right: turn.maximum, impact, flights: turn.at..turn.at });
+        let impact = if motion.is_hidden(*turn) { None } else { impact(motion, *turn, from..to) };
+        contacts.push(Contact {
+            at: turn.at,
+            right: turn.maximum,
+            stop: 0,
+            impact,
+            flights: turn.at..turn.at,
+        });
     }
-    let stops = [false, true].map(|right| stop(motion, &contacts, right, given[usize::from(right)]));
-    contacts.retain(|contact| {
-        let Some(stop) = stops[usize::from(contact.right)] else { return false };
-        let x = |i: usize| motion.x[i];
-        match &contact.impact {
-            Some(impact) => (impact.x - stop).abs() < 6.0 * impact.error + SAME_STOP * motion.range(),
-            None => {
-                let step = [contact.at - 1, contact.at + 1].map(|i| (x(i) - x(contact.at)).abs());
-                let reach = step[0].max(step[1]) + motion.back + band(motion, &stops, contact.right);
-                (x(contact.at) - stop).abs() < reach
-            }
+    contacts
+}
+
+/// The turning points of the record, and those with an impact among the `earlier` ones and, if they are few,
+/// in the record with a drift.
+pub fn jumps(motion: &mut Motion, earlier: Vec<Contact>) -> Vec<Contact> {
+    let mut found = turning_points(motion);
+    let merge = |found: &mut Vec<Contact>, more: Vec<Contact>| {
+        let new = |contact: &Contact| {
+            contact.impact.is_some() && found.iter().all(|other| other.at.abs_diff(contact.at) > NEAR)
+        };
+        let more: Vec<Contact> = more.into_iter().filter(new).collect();
+        found.extend(more);
+    };
+    merge(&mut found, earlier);
+    if found.iter().filter(|contact| contact.impact.is_some()).count() < FEW {
+        let speed = motion.speed();
+        for share in DRIFTS {
+            let drift = Drift::uniform(share * speed * motion.half());
+            let back = Drift::uniform(-share * speed * motion.half());
+            motion.subtract(&drift);
+            let mut more = turning_points(motion);
+            motion.subtract(&back);
+            more.iter_mut().for_each(|contact| contact.subtract(motion, &back));
+            merge(&mut found, more);
         }
+    }
+    found.sort_by_key(|contact| contact.at);
+    found
+}
+
+/// The contacts with the stops: the impacts whose places agree, and the turning points near them that may be
+/// impacts of flights too short to show it. The rate is the one that is `unexplained`.
+pub fn contacts(motion: &Motion, mut contacts: Vec<Contact>) -> (Vec<Contact>, f64) {
+    let (stops, members) = stops(motion, &contacts, 0.0);
+    let lone = unexplained(motion, &contacts, &stops, &members);
+    let mut members = members.into_iter();
+    contacts.retain_mut(|contact| {
+        let member = members.next().flatten();
+        let Some(stop) = member.or_else(|| stop_at(&stops, contact.right, motion.times[contact.at])) else {
+            return false;
+        };
+        contact.stop = stop;
+        let x = |i: usize| motion.x[i];
+        let step = [contact.at - 1, contact.at + 1].map(|i| (x(i) - x(contact.at)).abs());
+        let reach = step[0].max(step[1]) + motion.back + band(motion, &stops[stop]);
+        member.is_some() || contact.impact.is_none() && (x(contact.at) - stops[stop].x).abs() < reach
     });
     limit(motion, &mut contacts, &stops);
-    (contacts, stops)
+    (contacts, lone)
 }
 
 /// The impact at a turning point, from the fewest samples that show it.
@@ -113,32 +171,22 @@ fn impact(motion: &Motion, turn: Turn, within: Range<usize>) -> Option<Impact> {
         let turns_back = |found: &Meeting| found.towards > 0.0 && found.away > 0.0 && inside(found.t);
         if let (Some(found), Some((each, _))) = (found.filter(turns_back), sides.rest(TERMS)) {
             let both = motion.fit_both(before, after).squared_residuals(2 * TERMS).unwrap_or(0.0);
+            // the sample at the turning point is in neither fit
+            let side = if motion.times[turn.at] < found.t { &sides.before } else { &sides.after };
+            let (apart, error) = motion.residual(side, turn.at, TERMS);
+            let step = [turn.at - 1, turn.at + 1].map(|i| (motion.x[i] - motion.x[turn.at]).abs());
+            let follows = apart < AT_TURN * step[0].max(step[1]) + CLEAR * motion.noise * error;
             let better = both - each > CLEAR.powi(2) * variance && each < 0.25 * both.max(100.0 * variance);
             let fits = each < 4.0 * variance * samples as f64 || each < 0.1 * both;
-            if better && fits {
+            if better && fits && follows {
                 let error = motion.noise * found.of_x.sqrt() + (each / samples as f64).sqrt();
                 let unsure = motion.noise * found.of_t.sqrt();
-                return Some(Impact { t: found.t, x: found.x, error, unsure, speed: None });
+                let jump = found.towards + found.away;
+                return Some(Impact { t: found.t, x: found.x, error, unsure, jump, speed: None });
             }
         }
         count = (count * 7 / 5).max(count + 1);
     }
-}
-
-/// The place of a stop: the median of the outermost impacts.
-fn stop(motion: &Motion, contacts: &[Contact], right: bool, given: Option<f64>) -> Option<f64> {
-    let (sign, edge) = if right { (1.0, motion.extent.1) } else { (-1.0, -motion.extent.0) };
-    let same = |impact: &Impact| 6.0 * impact.error + SAME_STOP * motion.range();
-    let counts = |impact: &Impact| match given {
-        Some(place) => (impact.x - place).abs() < NEAR_GIVEN * motion.range(),
-        None => sign * impact.x + same(impact) + motion.back > edge,
-    };
-    let of_side = contacts.iter().filter(|contact| contact.right == right);
-    let impacts: Vec<Impact> = of_side.filter_map(|contact| contact.impact).filter(counts).collect();
-    let inner = impacts.iter().map(|impact| sign * impact.x - 3.0 * impact.error);
-    let outermost = inner.fold(f64::NEG_INFINITY, f64::max);
-    let outer = impacts.iter().filter(|impact| sign * impact.x + same(impact) >= outermost);
-    median(outer.map(|impact| impact.x).collect())
 }
 
 /// Samples of the longest flight from a turning point to the next of its kind, less than half way across.
@@ -153,10 +201,9 @@ pub fn longest_rebound(motion: &Motion) -> Option<usize> {
 }
 
 /// Distance from a stop within which a mass lies on it: that of the noise, or twice the distance from the
-/// stop to the outermost sample, which is the uncertainty of its position.
-fn band(motion: &Motion, stops: &[Option<f64>; 2], right: bool) -> f64 {
-    let edge = if right { motion.extent.1 } else { motion.extent.0 };
-    stops[usize::from(right)].map_or(0.0, |stop| motion.back.max(2.0 * (edge - stop).abs()))
+/// stop to the outermost sample of its impacts, which is the uncertainty of its position.
+fn band(motion: &Motion, stop: &Stop) -> f64 {
+    motion.back.max(2.0 * stop.beyond)
 }
 
 /// Where a contact lies among the samples.
@@ -168,17 +215,16 @@ struct End {
 
 /// Finds the flights of each contact: from its instant to that of the next impact, or to where the mass comes
 /// near a stop without one, or to a gap of the record.
-pub fn limit(motion: &Motion, contacts: &mut [Contact], stops: &[Option<f64>; 2]) {
+pub fn limit(motion: &Motion, contacts: &mut [Contact], stops: &[Stop]) {
     let end = |contact: &Contact| {
         let between = |impact: Impact| motion.from(impact.t)..motion.from(impact.t);
         let samples = contact.impact.map_or(contact.at..contact.at + 1, between);
         End { samples, right: contact.right, impact: contact.impact.is_some() }
     };
     let ends: Vec<End> = contacts.iter().map(end).collect();
-    let bands = [false, true].map(|right| band(motion, stops, right));
     let near = |i: usize, right: bool, part: f64| {
-        let side = usize::from(right);
-        stops[side].is_some_and(|stop| (motion.x[i] - stop).abs() < part * bands[side])
+        let stop = stop_at(stops, right, motion.times[i]).map(|k| &stops[k]);
+        stop.is_some_and(|stop| (motion.x[i] - stop.x).abs() < part * band(motion, stop))
     };
     for (k, contact) in contacts.iter_mut().enumerate() {
         let (start, side) = (ends[k].samples.start, contact.right);

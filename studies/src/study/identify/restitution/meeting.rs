@@ -14,6 +14,8 @@ pub struct Sides {
 pub struct Meeting {
     pub t: f64,
     pub x: f64,
+    /// 1 if the stop is on the right, -1 if it is on the left.
+    pub side: f64,
     /// Speed towards the stop before it, and away from the stop after it.
     pub towards: f64,
     pub away: f64,
@@ -59,6 +61,7 @@ impl Sides {
         Some(Meeting {
             t,
             x: l * before.value + r * after.value,
+            side: sign,
             towards: sign * before.slope,
             away: -sign * after.slope,
             of_t: (before.value_variance + after.value_variance) / jump.powi(2),
@@ -93,18 +96,29 @@ impl Meeting {
     }
 }
 
-/// The restitution of impacts together and its variance for errors of variance 1 in the samples.
+/// The restitution of impacts together. Variances are those for errors of variance 1 in the samples.
+#[derive(Debug, Clone, Copy)]
+pub struct Common {
+    pub value: f64,
+    pub variance: f64,
+    /// Sum of the squared residuals of the impacts, each over its variance.
+    pub square: f64,
+    /// Derivative of the value to the velocity of the stops.
+    pub of_drift: f64,
+}
+
+/// The restitution of impacts together.
 ///
 /// Both speeds have errors, so that a mean of ratios would be biased. This is the maximum likelihood estimate
 /// of e with the true speeds as further unknowns (Deming 1943, with a covariance for each impact), by
 /// fixed-point iteration. Impacts are treated as independent, although two that share a flight are weakly
 /// correlated.
-pub fn restitution(impacts: &[&Meeting]) -> Option<(f64, f64)> {
+pub fn restitution(impacts: &[&Meeting]) -> Option<Common> {
     let mut e = median(impacts.iter().map(|impact| impact.ratio().0).collect())?;
-    let mut weight = f64::NAN;
+    let (mut weight, mut rest, mut drift) = (f64::NAN, 0.0, 0.0);
     for _ in 0..30 {
         let (mut product, mut square) = (0.0, 0.0);
-        weight = 0.0;
+        (weight, rest, drift) = (0.0, 0.0, 0.0);
         for impact in impacts {
             let (residual, variance) = (impact.away - e * impact.towards, impact.of_residual(e));
             let shift = (impact.of_speeds - e * impact.of_towards) / variance * residual;
@@ -112,6 +126,8 @@ pub fn restitution(impacts: &[&Meeting]) -> Option<(f64, f64)> {
             product += speed * impact.away / variance;
             square += speed * impact.towards / variance;
             weight += speed * speed / variance;
+            rest += residual * residual / variance;
+            drift += impact.side * speed / variance;
         }
         let step = product / square - e;
         e += step;
@@ -119,12 +135,16 @@ pub fn restitution(impacts: &[&Meeting]) -> Option<(f64, f64)> {
             break;
         }
     }
-    (e.is_finite() && weight > 0.0).then(|| (e, 1.0 / weight))
+    let common =
+        Common { value: e, variance: 1.0 / weight, square: rest, of_drift: (1.0 + e) * drift / weight };
+    (e.is_finite() && weight > 0.0).then_some(common)
 }
 
-/// The place of impacts on one stop, the mean with weights 1/variance, and its variance.
-pub fn place(impacts: &[&Meeting]) -> Option<(f64, f64)> {
+/// The place of impacts on one stop, the mean with weights 1/variance, its variance, and the sum of the
+/// squared residuals, each over its variance.
+pub fn place(impacts: &[&Meeting]) -> Option<(f64, f64, f64)> {
     let total: f64 = impacts.iter().map(|impact| 1.0 / impact.of_x).sum();
     let mean = impacts.iter().map(|impact| impact.x / impact.of_x).sum::<f64>() / total;
-    mean.is_finite().then(|| (mean, 1.0 / total))
+    let square = impacts.iter().map(|impact| (impact.x - mean).powi(2) / impact.of_x).sum();
+    mean.is_finite().then_some((mean, 1.0 / total, square))
 }

@@ -1,56 +1,117 @@
 //! Coefficient of restitution from a record of displacement, or from the times of impacts.
 
+mod base;
 mod contacts;
+mod drift;
 mod meeting;
 mod motion;
 mod trials;
 
-use self::contacts::{Contact, contacts};
-use self::meeting::{place, restitution as ratio};
+use self::contacts::{Contact, contacts, jumps, limit};
+use self::drift::{Drift, stop_at, stops};
+use self::meeting::restitution as ratio;
 use self::motion::Motion;
-use self::trials::{Choice, Single, Trial, each, together, trials};
-use super::{Identified, Identity, Unidentified, median, with_interval};
+use self::trials::{Choice, Single, Trial, each, locate, together, trials};
+use super::{Identified, Identity, Unidentified, median, outliers, with_interval};
 use crate::numeric::regression::{geometric, student};
-use crate::numeric::{elementary, short};
+use crate::numeric::{elementary, extent, short};
 use crate::study::Table;
 
 const RESTITUTION: &str = "restitution";
 
+/// Standard errors of half an interval where the errors are known.
+const NORMAL: f64 = 1.96;
+
 /// Samples that a rebound should have.
 pub(super) const ENOUGH: usize = 8;
+
+/// Passes in which the drift of the record is found: before it is subtracted, some rebounds are no turning
+/// points.
+const PASSES: usize = 3;
+
+/// Impacts on one stop differ in place by less than this share of the range while the drift is sought, since
+/// it may not be uniform.
+const LOOSE: f64 = 0.02;
 
 /// Restitution of the impacts in a record of displacement `x` in m over `times` in s, for a mass that is
 /// shaken between stops or bounces freely.
 ///
-/// A turning point is an impact where the velocity jumps, and a stop is where the outermost impacts lie, or
-/// those near a place `given` (left, right). On each side of an impact a polynomial is fitted to the flight;
-/// the slopes at their intersection are the speeds before and after it. The displacement caused by the
-/// `accelerations` of the base in m/s^2 alone is subtracted first.
+/// An impact is a turning point where the velocity jumps, and stops are where impacts lie, up to a slow drift
+/// of all of them, to which the speeds are relative. On each side of an impact a polynomial is fitted to the
+/// flight; the slopes at their intersection are the speeds before and after it. The displacement caused by
+/// the `accelerations` of the base in m/s^2 alone is subtracted first.
 ///
 /// Window and degree are those with the narrowest interval, which includes the differences from other windows
-/// and degrees. Clipped samples are left out. If the stops differ by more than their intervals, the interval
-/// of the common number contains both; if the impacts on a stop do, the interval is widened accordingly
-/// (Birge 1932).
+/// and degrees, the scatter of the impacts, and the error of the drift. Clipped samples and those that lie
+/// off are left out. If the stops differ by more than their intervals, the interval of the common number
+/// contains both.
 pub fn restitution(
     times: &[f64],
     x: &[f64],
     accelerations: Option<&[f64]>,
-    given: [Option<f64>; 2],
 ) -> Result<Identified, Unidentified> {
-    let motion = Motion::new(times, x, accelerations);
-    let (mut contacts, stops) = contacts(&motion, given);
-    if contacts.is_empty() {
-        return Err(unresolved(&motion, 0));
+    let mut motion = Motion::new(times, x, accelerations);
+    let mut found = Vec::new();
+    for _ in 0..PASSES {
+        found = jumps(&mut motion, found);
+        let (stops, members) = stops(&motion, &found, LOOSE);
+        let drift = Drift::of(&motion, &found, stops.len(), &members);
+        motion.subtract(&drift);
+        found.iter_mut().for_each(|contact| contact.subtract(&motion, &drift));
     }
-    let trials = trials(&motion, &mut contacts, &stops);
-    let singles = each(&trials, contacts.len());
-    let found = numbers(&contacts, &trials, &singles);
-    let (mut summary, used, mut remarks) = found.ok_or_else(|| unresolved(&motion, contacts.len()))?;
-    for (right, name) in [(false, "left_stop_m"), (true, "right_stop_m")] {
-        if let Some((place, _)) = together(&trials, |k| contacts[k].right == right, place) {
-            remarks.extend(given[usize::from(right)].and_then(|given| elsewhere(right, given, place)));
-            summary.push(Identity::new(name, place.value, place.half));
+    found = jumps(&mut motion, found);
+    let (mut contacts, lone) = contacts(&motion, found);
+    if contacts.is_empty() {
+        return Err(unresolved(&motion, &[]));
+    }
+    locate(&motion, &mut contacts);
+    let (on, members) = stops(&motion, &contacts, 0.0);
+    let drift = Drift::of(&motion, &contacts, on.len(), &members).or(lone);
+    motion.subtract(&drift);
+    contacts.iter_mut().for_each(|contact| contact.subtract(&motion, &drift));
+    let (stops, members) = stops(&motion, &contacts, 0.0);
+    for (contact, member) in contacts.iter_mut().zip(members) {
+        match member.or_else(|| stop_at(&stops, contact.right, contact.time(&motion))) {
+            Some(stop) if member.is_some() => contact.stop = stop,
+            Some(stop) => (contact.stop, contact.impact) = (stop, None),
+            None => contact.impact = None,
         }
+    }
+    limit(&motion, &mut contacts, &stops);
+    let trials = trials(&motion, &contacts, &stops);
+    let singles = each(&trials, contacts.len());
+    let found = numbers(&motion, &contacts, &trials, &singles);
+    let (mut summary, used, mut remarks) = found.ok_or_else(|| unresolved(&motion, &contacts))?;
+    for (right, name) in [(false, "left_stop_m"), (true, "right_stop_m")] {
+        let most = stops.iter().enumerate().filter(|(_, stop)| stop.right == right);
+        let Some((main, _)) = most.max_by_key(|(_, stop)| stop.impacts) else { continue };
+        if let Some((place, impacts)) = together(&trials, |k| contacts[k].stop == main, Trial::place) {
+            let middle =
+                impacts.iter().map(|impact| motion.part(impact.t)).sum::<f64>() / impacts.len() as f64;
+            let moved = motion.drift.halves(middle).map_or(0.0, |(moved, _)| moved);
+            let mut stop = Identity::new(name, place.value, elementary::hypot(place.half, moved));
+            // no sample lies beyond a stop by more than noise
+            let on_it = contacts.iter().filter(|contact| contact.stop == main && contact.impact.is_some());
+            let times = on_it.map(|contact| contact.time(&motion));
+            let (first, last) = extent(times);
+            let samples = motion.x.get(motion.from(first)..motion.from(last));
+            let (low, high) = extent(samples.unwrap_or_default().iter().copied());
+            stop.interval = match right {
+                true => (stop.interval.0, stop.interval.1.max(high + moved)),
+                false => (stop.interval.0.min(low - moved), stop.interval.1),
+            };
+            summary.push(stop);
+        }
+    }
+    let moves = singles.iter().map(|single| motion.drift.at(motion.part(single.impact.t)).1).sum::<f64>();
+    let velocity = moves / singles.len() as f64 / motion.half();
+    match drift_half(&motion, singles.iter().map(|single| single.impact.t)) {
+        Some(half) => summary.push(Identity::new("stop_drift_m_per_s", velocity, half)),
+        None => remarks.push(
+            "each stop has a single impact, which tells no drift of the record: the stops are taken as at \
+             rest"
+                .to_owned(),
+        ),
     }
     let counts = [
         ("impacts_found", contacts.len()),
@@ -59,6 +120,7 @@ pub fn restitution(
     ];
     let count = |(name, count)| Identity { name, value: count as f64, interval: (f64::NAN, f64::NAN) };
     summary.extend(counts.map(count));
+    remarks.extend(outliers::remark(motion.outliers));
     remarks.extend(left_out(&motion, &contacts, &singles, used));
     remarks.extend(cut_off(&motion).map(|(swings, limits)| {
         format!(
@@ -66,23 +128,33 @@ pub fn restitution(
              converter; impacts that they hide are left out"
         )
     }));
-    let (rows, fitted) = (rows(&contacts, &singles), fitted(&motion, &contacts, &singles));
+    let (rows, fitted) = (rows(&motion, &contacts, &singles), fitted(&motion, &contacts, &singles));
     Ok(Identified { rows, fitted, summary, remarks, tolerance: None })
+}
+
+/// Half of the interval of the velocity of the stops in m/s at these times in s, on average.
+fn drift_half(motion: &Motion, times: impl Iterator<Item = f64>) -> Option<f64> {
+    let halves: Option<Vec<f64>> = times.map(|t| Some(motion.drift.halves(motion.part(t))?.1)).collect();
+    let halves = halves?;
+    let square = halves.iter().map(|half| half * half).sum::<f64>() / halves.len() as f64;
+    Some(square.sqrt() / motion.half())
 }
 
 /// The restitutions, the number of impacts of the first one, and remarks.
 fn numbers(
+    motion: &Motion,
     contacts: &[Contact],
     trials: &[Trial],
     singles: &[Single],
 ) -> Option<(Vec<Identity>, usize, Vec<String>)> {
     let of = |name: &'static str, counts: fn(bool) -> bool| {
-        let (choice, used) = together(trials, |k| counts(contacts[k].right), ratio)?;
+        let (choice, impacts) = together(trials, |k| counts(contacts[k].right), Trial::ratio)?;
         let singles: Vec<&Single> =
             singles.iter().filter(|single| counts(contacts[single.contact].right)).collect();
-        let scatter = scatter(choice, &singles);
-        let identity = Identity::new(name, choice.value, choice.half * scatter.unwrap_or(1.0));
-        Some((identity, used, scatter.is_some()))
+        let drift = drift_half(motion, impacts.iter().map(|impact| impact.t)).unwrap_or(0.0);
+        let of_drift = ratio(&impacts).map_or(0.0, |common| common.of_drift);
+        let identity = Identity::new(name, choice.value, elementary::hypot(choice.half, drift * of_drift));
+        Some((identity, impacts.len(), scatter(choice, &singles)))
     };
     let sides = [of("restitution_left", |right| !right), of("restitution_right", |right| right)];
     let mut remarks = Vec::new();
@@ -132,15 +204,15 @@ fn spanning(one: Identity, other: Identity) -> Identity {
     Identity { name: RESTITUTION, value: (a * one.value + b * other.value) / (a + b), interval }
 }
 
-/// Factor by which single impacts scatter beyond their intervals; `None` if they do not.
-fn scatter(common: Choice, singles: &[&Single]) -> Option<f64> {
+/// Whether single impacts scatter beyond their intervals.
+fn scatter(common: Choice, singles: &[&Single]) -> bool {
     let count = singles.len() as f64;
     let apart = |single: &&Single| {
         (single.ratio.value - common.value) / elementary::hypot(single.ratio.half, common.half)
     };
     // half of an interval is about two standard errors
     let square = 4.0 * singles.iter().map(|single| apart(single).powi(2)).sum::<f64>() / count;
-    (square > 1.0 + 4.0 * (2.0 / count).sqrt()).then(|| square.sqrt())
+    square > 1.0 + 4.0 * (2.0 / count).sqrt()
 }
 
 fn above_one(number: &Identity) -> Option<String> {
@@ -158,13 +230,6 @@ fn above_one(number: &Identity) -> Option<String> {
         return None;
     };
     Some(format!("the restitution{which} {text}"))
-}
-
-fn elsewhere(right: bool, given: f64, place: Choice) -> Option<String> {
-    let side = if right { "right" } else { "left" };
-    let [found, place_given] = [place.value, given].map(|x| short(1e3 * x));
-    let apart = (place.value - given).abs() > place.half;
-    apart.then(|| format!("the {side} stop lies at {found} mm, not at {place_given} mm"))
 }
 
 fn left_out(motion: &Motion, contacts: &[Contact], singles: &[Single], used: usize) -> Option<String> {
@@ -191,17 +256,23 @@ fn cut_off(motion: &Motion) -> Option<(usize, String)> {
     (!limits.is_empty()).then(|| (cut.map(|cut| cut.swings).sum(), limits.join(" and ")))
 }
 
-/// The reason why `found` contacts give no restitution, and the sampling rate needed.
-fn unresolved(motion: &Motion, found: usize) -> Unidentified {
+/// The reason why these contacts give no restitution, and the sampling rate needed.
+fn unresolved(motion: &Motion, contacts: &[Contact]) -> Unidentified {
+    let found = contacts.len();
     if found == 0
         && let Some((swings, limits)) = cut_off(motion)
     {
         return Unidentified::CutOff(swings, limits);
     }
+    let missing = contacts.iter().filter(|contact| motion.is_missing(contact.time(motion))).count();
+    if 2 * missing > found {
+        return Unidentified::Missing(found, missing);
+    }
     let (noise, rate) = (short(motion.noise), 1.0 / motion.timing.step);
-    match contacts::longest_rebound(motion).or((found > 0).then_some(2)) {
+    let flights = contacts.iter().map(|contact| contact.flights.end.saturating_sub(contact.at)).max();
+    match contacts::longest_rebound(motion).or(flights) {
         Some(longest) if longest < ENOUGH => {
-            let [rate, needed] = [rate, rate * ENOUGH as f64 / longest as f64].map(short);
+            let [rate, needed] = [rate, rate * ENOUGH as f64 / longest.max(1) as f64].map(short);
             Unidentified::Slow { longest, rate, needed }
         }
         _ if found > 0 => Unidentified::Noisy(found, noise),
@@ -209,23 +280,28 @@ fn unresolved(motion: &Motion, found: usize) -> Unidentified {
     }
 }
 
-fn rows(contacts: &[Contact], singles: &[Single]) -> Table {
+fn rows(motion: &Motion, contacts: &[Contact], singles: &[Single]) -> Table {
     let right = |single: &Single| contacts[single.contact].right;
     let outward = |single: &Single| if right(single) { 1.0 } else { -1.0 };
     let side = |single: &Single| if right(single) { "right" } else { "left" };
+    let moved = |single: &Single| drift_half(motion, std::iter::once(single.impact.t)).unwrap_or(0.0);
+    let half = |single: &Single, half: f64, of_drift: f64| elementary::hypot(half, moved(single) * of_drift);
     let table = Table::new().each("t_s", singles, |single| single.impact.t).each("side", singles, side);
     let table = with_interval(table, "v_in_m_per_s", singles, |single| {
-        Identity::new("v_in_m_per_s", outward(single) * single.impact.towards, single.halves[0])
+        let speed = outward(single) * single.impact.towards;
+        Identity::new("v_in_m_per_s", speed, half(single, single.halves[0], 1.0))
     });
     let table = with_interval(table, "v_out_m_per_s", singles, |single| {
-        Identity::new("v_out_m_per_s", -outward(single) * single.impact.away, single.halves[1])
+        let speed = -outward(single) * single.impact.away;
+        Identity::new("v_out_m_per_s", speed, half(single, single.halves[1], 1.0))
     });
     with_interval(table, RESTITUTION, singles, |single| {
-        Identity::new(RESTITUTION, single.ratio.value, single.ratio.half)
+        let of_drift = (1.0 + single.ratio.value) / single.impact.towards;
+        Identity::new(RESTITUTION, single.ratio.value, half(single, single.ratio.half, of_drift))
     })
 }
 
-/// The impacts, and how far each flight goes after it.
+/// The impacts in the record, and how far each flight goes after it.
 fn fitted(motion: &Motion, contacts: &[Contact], singles: &[Single]) -> Table {
     let farthest = |single: &Single| {
         let away = |i: &usize| (motion.x[*i] - single.impact.x).abs();
@@ -233,12 +309,12 @@ fn fitted(motion: &Motion, contacts: &[Contact], singles: &[Single]) -> Table {
         flight.max_by(|a, b| away(a).total_cmp(&away(b)))
     };
     let ends: Vec<Option<usize>> = singles.iter().map(farthest).collect();
-    let at = |values: &[f64], end: &Option<usize>| end.map(|i| values[i]);
+    let recorded = |t: f64, x: f64| x + motion.drift.at(motion.part(t)).0;
     Table::new()
         .each("t_s", singles, |single| single.impact.t)
-        .each("x_m", singles, |single| single.impact.x)
-        .each("rebound_t_s", &ends, |end| at(&motion.times, end))
-        .each("rebound_x_m", &ends, |end| at(&motion.x, end))
+        .each("x_m", singles, |single| recorded(single.impact.t, single.impact.x))
+        .each("rebound_t_s", &ends, |end| end.map(|i| motion.times[i]))
+        .each("rebound_x_m", &ends, |end| end.map(|i| recorded(motion.times[i], motion.x[i])))
 }
 
 /// Restitution of the impacts at these `times` in s of a body that bounces on one stop under a constant

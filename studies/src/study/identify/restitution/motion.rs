@@ -2,13 +2,16 @@
 
 use std::ops::Range;
 
+use super::base::Base;
+use super::drift::Drift;
 use crate::numeric::extent;
 use crate::numeric::orthogonal::{Orthogonal, Tangent};
 use crate::scene::Timing;
 use crate::study::identify::clipped::{CutOff, cut_off};
-use crate::study::identify::{noise, reach};
+use crate::study::identify::outliers::outliers;
+use crate::study::identify::{Turn, noise_between_impacts, reach};
 
-/// A record of displacement relative to the base, without clipped samples. SI.
+/// A record of displacement relative to the base, without clipped samples and those that lie off. SI.
 pub struct Motion {
     pub times: Vec<f64>,
     pub x: Vec<f64>,
@@ -16,7 +19,11 @@ pub struct Motion {
     pub cut: [Option<CutOff>; 2],
     /// Whether samples between the one before and this one were cut off.
     after_cut: Vec<bool>,
+    /// Number of samples that lay off and are left out.
+    pub outliers: usize,
     pub timing: Timing,
+    /// Motion of the stops in the record, which is subtracted.
+    pub drift: Drift,
     /// Least and greatest displacement.
     pub extent: (f64, f64),
     pub noise: f64,
@@ -24,34 +31,71 @@ pub struct Motion {
     pub back: f64,
     /// The displacement less that which the acceleration of the base alone causes.
     smooth: Vec<f64>,
-    /// Displacement, velocity and acceleration at each sample that the acceleration of the base alone causes.
-    base: Vec<[f64; 3]>,
+    base: Option<Base>,
 }
 
 impl Motion {
     /// The record, with the acceleration of the base at the same times where it was recorded: the mass obeys
-    /// x'' = -a + smooth forces, so that -a, interpolated linearly and integrated twice, can be subtracted,
-    /// which leaves a smoother function than the displacement.
+    /// x'' = -a + smooth forces, so that -a, integrated twice, can be subtracted, which leaves a smoother
+    /// function than the displacement.
     ///
-    /// Samples in flat tops are left out, and where they were the record has a gap.
+    /// Samples in flat tops are left out, and where they were the record has a gap; so are samples that lie
+    /// off.
     pub fn new(times: &[f64], x: &[f64], accelerations: Option<&[f64]>) -> Self {
         let timing = Timing::of(times);
-        let mut base = accelerations.map_or(Vec::new(), |a| integrated(times, a));
+        let base = accelerations.map(|accelerations| Base::new(times, accelerations));
         let cut = cut_off(times, x);
         let is_cut = |x: f64| cut.iter().flatten().any(|cut| x == cut.limit);
-        let kept: Vec<usize> = (0..x.len()).filter(|i| !is_cut(x[*i])).collect();
-        let after_cut = kept.iter().map(|i| *i > 0 && is_cut(x[i - 1])).collect();
-        let [times, x] = [times, x].map(|values| kept.iter().map(|i| values[*i]).collect::<Vec<f64>>());
-        if !base.is_empty() {
-            base = kept.iter().map(|i| base[*i]).collect();
+        let free = |i: &usize| x[*i] - base.as_ref().map_or(0.0, |base| base.at(times[*i])[0]);
+        let of = |kept: &[usize], values: &[f64]| kept.iter().map(|i| values[*i]).collect::<Vec<f64>>();
+        let seen: Vec<usize> = (0..x.len()).filter(|i| !is_cut(x[*i])).collect();
+        let smooth: Vec<f64> = seen.iter().map(free).collect();
+        let off = outliers(&of(&seen, times), &smooth, noise_between_impacts(&smooth));
+        let (mut kept, mut after_cut) = (Vec::with_capacity(seen.len()), Vec::with_capacity(seen.len()));
+        let mut is_after = false;
+        for (i, off) in seen.iter().zip(&off) {
+            is_after |= *i > 0 && is_cut(x[i - 1]);
+            if !off {
+                kept.push(*i);
+                after_cut.push(is_after);
+                is_after = false;
+            }
         }
-        let smooth = match base.is_empty() {
-            true => x.clone(),
-            false => x.iter().zip(&base).map(|(x, base)| x - base[0]).collect(),
-        };
-        let noise = noise(&x);
+        let smooth: Vec<f64> = kept.iter().map(free).collect();
+        let (outliers, [times, x]) = (seen.len() - kept.len(), [times, x].map(|values| of(&kept, values)));
+        let noise = noise_between_impacts(&smooth);
         let (extent, back) = (extent(x.iter().copied()), reach(&x, noise));
-        Self { times, x, cut, after_cut, timing, extent, noise, back, smooth, base }
+        let drift = Drift::default();
+        Self { times, x, cut, after_cut, outliers, timing, drift, extent, noise, back, smooth, base }
+    }
+
+    /// Subtracts a motion of the stops that was not subtracted yet.
+    pub fn subtract(&mut self, drift: &Drift) {
+        for i in 0..self.x.len() {
+            let (moved, _) = drift.at(self.part(self.times[i]));
+            self.x[i] -= moved;
+            self.smooth[i] -= moved;
+        }
+        self.extent = extent(self.x.iter().copied());
+        self.back = reach(&self.x, self.noise);
+        self.drift = Drift { coefficients: self.drift.coefficients + drift.coefficients, ..*drift };
+    }
+
+    /// A time as -1 to 1 over the record.
+    pub fn part(&self, t: f64) -> f64 {
+        (t - 0.5 * (self.timing.span.0 + self.timing.span.1)) / self.half()
+    }
+
+    /// Half of the duration.
+    pub fn half(&self) -> f64 {
+        0.5 * (self.timing.span.1 - self.timing.span.0)
+    }
+
+    /// Whether an impact at a turning point may be cut off.
+    pub fn is_hidden(&self, turn: Turn) -> bool {
+        let drift = self.drift.at(self.part(self.times[turn.at])).0;
+        let cut = self.cut[usize::from(turn.maximum)];
+        cut.is_some_and(|cut| (self.x[turn.at] + drift - cut.limit).abs() < self.back)
     }
 
     pub fn range(&self) -> f64 {
@@ -89,35 +133,29 @@ impl Motion {
         Orthogonal::fit(&both(&self.times), &both(&self.smooth))
     }
 
+    /// How far a sample is from a fit with `terms` coefficients, and the standard error for samples of
+    /// variance 1.
+    pub fn residual(&self, fit: &Orthogonal, sample: usize, terms: usize) -> (f64, f64) {
+        let found = fit.at(self.times[sample], terms);
+        ((self.smooth[sample] - found.value).abs(), (1.0 + found.value_variance).sqrt())
+    }
+
+    /// Root of the mean square velocity.
+    pub fn speed(&self) -> f64 {
+        let steps = self.times.windows(2).zip(self.x.windows(2));
+        let square: f64 = steps.map(|(t, x)| (x[1] - x[0]).powi(2) / (t[1] - t[0])).sum();
+        (square / (2.0 * self.half())).sqrt()
+    }
+
     /// Displacement, velocity and acceleration at a time, of a fit with `terms` coefficients.
     pub fn at(&self, fit: &Orthogonal, t: f64, terms: usize) -> Tangent {
         let mut found = fit.at(t, terms);
-        if !self.base.is_empty() {
-            let k = self.from(t).clamp(1, self.times.len() - 1) - 1;
-            let ([y, v, a], h) = (self.base[k], t - self.times[k]);
-            let jerk = (self.base[k + 1][2] - a) / (self.times[k + 1] - self.times[k]);
-            found.value += y + h * (v + h * (a / 2.0 + h * jerk / 6.0));
-            found.slope += v + h * (a + h * jerk / 2.0);
-            found.bend += a + h * jerk;
+        if let Some(base) = &self.base {
+            let [y, v, a] = base.at(t);
+            found.value += y;
+            found.slope += v;
+            found.bend += a;
         }
         found
     }
-}
-
-/// Displacement, velocity and acceleration at each sample of a free mass relative to a base that accelerates
-/// along straight lines between its samples.
-fn integrated(times: &[f64], accelerations: &[f64]) -> Vec<[f64; 3]> {
-    let (mut y, mut v) = (0.0, 0.0);
-    let mut before: Option<(f64, f64)> = None;
-    let next = |(t, a): (&f64, &f64)| {
-        let a = -a;
-        if let Some((last, first)) = before {
-            let h = t - last;
-            y += h * (v + h * (2.0 * first + a) / 6.0);
-            v += 0.5 * h * (first + a);
-        }
-        before = Some((*t, a));
-        [y, v, a]
-    };
-    times.iter().zip(accelerations).map(next).collect()
 }

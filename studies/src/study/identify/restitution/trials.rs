@@ -5,9 +5,10 @@ use std::collections::BTreeMap;
 use std::f64::consts::SQRT_2;
 use std::ops::RangeInclusive;
 
-use super::contacts::{Contact, Impact, limit};
-use super::meeting::{Meeting, Sides};
-use super::{Motion, median};
+use super::contacts::{Contact, Impact};
+use super::drift::{Stop, tolerance};
+use super::meeting::{Common, Meeting, Sides, restitution};
+use super::{Motion, NORMAL, median};
 use crate::numeric::elementary;
 use crate::numeric::orthogonal::MAX_TERMS;
 use crate::numeric::regression::student;
@@ -28,6 +29,16 @@ const FAST: f64 = 12.0;
 
 /// Smallest number of degrees of freedom of the residuals of a trial.
 const LEAST_FREEDOM: usize = 3;
+
+/// Residuals below this share of the range are rounding, which is not alike in all flights.
+const ROUNDING: f64 = 1e-13;
+
+/// Number of impacts that the errors told by the residuals count as, where the impacts scatter by more.
+///
+/// Errors that are not independent from sample to sample, such as those of an acceleration of the base that
+/// was integrated twice, do not show in the residuals but in the scatter of the impacts, which a few impacts
+/// do not tell well.
+const TRUSTED: f64 = 6.0;
 
 /// All impacts, fitted with one window and one degree.
 pub struct Trial {
@@ -52,34 +63,60 @@ impl Trial {
         self.impacts.iter().filter(|(contact, _)| counts(*contact)).map(|(_, impact)| impact).collect()
     }
 
+    /// The restitution of impacts together, and half of its interval.
+    pub fn ratio(&self, impacts: &[&Meeting]) -> Option<(f64, f64)> {
+        let Common { value, variance, square, .. } = restitution(impacts)?;
+        Some(self.scattered((value, variance, square), impacts.len()))
+    }
+
+    /// The place of a stop, and half of its interval.
+    pub fn place(&self, impacts: &[&Meeting]) -> Option<(f64, f64)> {
+        Some(self.scattered(super::meeting::place(impacts)?, impacts.len()))
+    }
+
+    /// A value of several impacts, and half of its interval: that of their errors, or wider if they scatter
+    /// by more.
+    fn scattered(&self, (value, variance, square): (f64, f64, f64), count: usize) -> (f64, f64) {
+        let freedom = TRUSTED + count as f64 - 1.0;
+        let scatter = (TRUSTED + square / self.variance) / freedom;
+        let (value, half) = self.estimate((value, variance));
+        match scatter > 1.0 {
+            true => (value, half * scatter.sqrt() * (student(freedom as usize) / NORMAL).max(1.0)),
+            false => (value, half),
+        }
+    }
+
     /// A value, and half of its interval from its variance for errors of variance 1 in the samples.
     fn estimate(&self, (value, variance): (f64, f64)) -> (f64, f64) {
         (value, self.student * (variance * self.variance).sqrt())
     }
 }
 
-/// Fits all impacts, which refines their times and flights; a contact without a fit is not an impact.
-pub fn trials(motion: &Motion, contacts: &mut [Contact], stops: &[Option<f64>; 2]) -> Vec<Trial> {
+/// Fits all impacts, which refines their times and places; a contact without a fit is not an impact.
+pub fn locate(motion: &Motion, contacts: &mut [Contact]) {
     let mut best: Vec<Option<(f64, Impact)>> = vec![None; contacts.len()];
-    for trial in all(motion, contacts, FIRST_TERMS..=FIRST_TERMS) {
+    for trial in all(motion, contacts, &[], FIRST_TERMS..=FIRST_TERMS) {
         let error = |of: f64| (of * trial.variance).sqrt();
-        for (contact, Meeting { t, x, towards, of_t, of_x, of_towards, .. }) in trial.impacts {
+        for (contact, Meeting { t, x, towards, away, of_t, of_x, of_towards, .. }) in trial.impacts {
             let best = &mut best[contact];
             if best.is_none_or(|(least, _)| error(of_towards) < least) {
-                let (unsure, speed) = (3.0 * error(of_t), Some(towards));
-                *best = Some((error(of_towards), Impact { t, x, error: error(of_x), unsure, speed }));
+                let (unsure, jump, speed) = (3.0 * error(of_t), towards + away, Some(towards));
+                *best = Some((error(of_towards), Impact { t, x, error: error(of_x), unsure, jump, speed }));
             }
         }
     }
     for (contact, best) in contacts.iter_mut().zip(best) {
         contact.impact = best.map(|(_, impact)| impact);
     }
-    limit(motion, contacts, stops);
-    all(motion, contacts, TERMS)
+}
+
+/// The impacts on these stops, fitted over all windows by all degrees.
+pub fn trials(motion: &Motion, contacts: &[Contact], stops: &[Stop]) -> Vec<Trial> {
+    all(motion, contacts, stops, TERMS)
 }
 
 /// Trials over windows up to the usual length of a flight.
-fn all(motion: &Motion, contacts: &[Contact], terms: RangeInclusive<usize>) -> Vec<Trial> {
+fn all(motion: &Motion, contacts: &[Contact], stops: &[Stop], terms: RangeInclusive<usize>) -> Vec<Trial> {
     let longest = |contact: &Contact| {
         let (t, flights) = (contact.impact?.t, &contact.flights);
         let last = flights.end.checked_sub(1).filter(|last| *last >= flights.start)?;
@@ -92,7 +129,9 @@ fn all(motion: &Motion, contacts: &[Contact], terms: RangeInclusive<usize>) -> V
         let sides =
             contacts.iter().enumerate().filter_map(|(k, contact)| Some((k, sides(motion, contact, width)?)));
         let sides: Vec<(usize, Sides)> = sides.collect();
-        trials.extend(terms.clone().filter_map(|terms| trial(motion, contacts, &sides, (window, terms))));
+        trials.extend(
+            terms.clone().filter_map(|terms| trial(motion, contacts, stops, &sides, (window, terms))),
+        );
         if !(width < widest) {
             break;
         }
@@ -109,40 +148,59 @@ fn sides(motion: &Motion, contact: &Contact, width: f64) -> Option<Sides> {
     enough.then(|| Sides { before: motion.fit(before), after: motion.fit(after) })
 }
 
-fn trial(motion: &Motion, contacts: &[Contact], sides: &[(usize, Sides)], setting: Setting) -> Option<Trial> {
+fn trial(
+    motion: &Motion,
+    contacts: &[Contact],
+    stops: &[Stop],
+    sides: &[(usize, Sides)],
+    setting: Setting,
+) -> Option<Trial> {
     let (_, terms) = setting;
     let fit = |(k, sides): &(usize, Sides)| {
         let meeting = sides.meet(motion, terms, contacts[*k].impact?.t, contacts[*k].right)?;
         Some((*k, meeting, sides.rest(terms)?))
     };
-    let fits: Vec<(usize, Meeting, (f64, usize))> = sides.iter().filter_map(fit).collect();
-    let freedom: usize = fits.iter().map(|(_, _, (_, freedom))| freedom).sum();
-    let variance = fits.iter().map(|(_, _, (square, _))| square).sum::<f64>() / freedom.max(1) as f64;
-    let counts = |(k, found, (square, freedom)): &(usize, Meeting, (f64, usize))| {
+    let mut fits: Vec<(usize, Meeting, (f64, usize))> = sides.iter().filter_map(fit).collect();
+    let rounding = (ROUNDING * motion.range()).powi(2);
+    let (freedom, variance) = loop {
+        let before = fits.len();
+        let freedom: usize = fits.iter().map(|(_, _, (_, freedom))| freedom).sum();
+        let variance = fits.iter().map(|(_, _, (square, _))| square).sum::<f64>() / freedom.max(1) as f64;
+        // samples with residuals above four standard deviations belong to other flights
+        fits.retain(|(_, _, (square, freedom))| {
+            let usual = *freedom as f64 + 4.0 * (2.0 * *freedom as f64).sqrt() + 8.0;
+            *square <= usual * variance.max(rounding)
+        });
+        if fits.len() == before {
+            break (freedom, variance);
+        }
+    };
+    let counts = |(k, found, _): &(usize, Meeting, (f64, usize))| {
         let impact = contacts[*k].impact?;
         let error = |of: f64| (of * variance).sqrt();
         let fast = impact.speed.unwrap_or(found.towards) > FAST * error(found.of_towards);
         let near = (found.t - impact.t).abs() < 2.0 * motion.timing.step + 6.0 * error(found.of_t);
         let back = found.towards > 0.0 && found.away > -3.0 * error(found.of_away);
-        // samples with residuals above four standard deviations belong to other flights
-        let usual = *freedom as f64 + 4.0 * (2.0 * *freedom as f64).sqrt() + 8.0;
-        (fast && near && back && *square <= usual * variance).then_some((*k, *found))
+        let on_stop = stops
+            .get(contacts[*k].stop)
+            .is_none_or(|stop| (found.x - stop.x).abs() < tolerance(motion, error(found.of_x)));
+        (fast && near && back && on_stop).then_some((*k, *found))
     };
     let impacts: Vec<(usize, Meeting)> = fits.iter().filter_map(counts).collect();
     let enough = freedom >= LEAST_FREEDOM && !impacts.is_empty();
     enough.then(|| Trial { setting, variance, student: student(freedom), impacts })
 }
 
-/// The number that `of` computes from the contacts that count, its variance, and how many contacts count.
+/// The number that `of` computes from the contacts that count, and their impacts in the trial it is from.
 pub fn together(
     trials: &[Trial],
     counts: impl Fn(usize) -> bool,
-    of: fn(&[&Meeting]) -> Option<(f64, f64)>,
-) -> Option<(Choice, usize)> {
-    let estimate = |trial: &Trial| Some((trial.setting, trial.estimate(of(&trial.selected(&counts))?)));
+    of: impl Fn(&Trial, &[&Meeting]) -> Option<(f64, f64)>,
+) -> Option<(Choice, Vec<&Meeting>)> {
+    let estimate = |trial: &Trial| Some((trial.setting, of(trial, &trial.selected(&counts))?));
     let choice = narrowest(&trials.iter().filter_map(estimate).collect())?;
     let trial = trials.iter().find(|trial| trial.setting == choice.setting)?;
-    Some((choice, trial.selected(&counts).len()))
+    Some((choice, trial.selected(&counts)))
 }
 
 pub fn each(trials: &[Trial], contacts: usize) -> Vec<Single> {

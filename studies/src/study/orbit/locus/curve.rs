@@ -4,12 +4,11 @@ use std::sync::atomic::AtomicBool;
 
 use nalgebra::{Vector4, Vector5};
 
+use super::super::Units;
 use super::super::corrector::{Accuracy, Corrector, Equations, Point, newton, tangent};
 use super::super::events::{characteristic, differ, has, is_at};
 use super::super::grazing::{EXACT, FINEST, Grazing, Touch, grazings};
-use super::super::{SAME, Units, map_of};
-use super::{BranchEvent, BranchOptions, FieldRange, Orbit};
-use crate::dynamics::MapState;
+use super::{BranchEvent, BranchOptions, FieldRange, LocusEnd, Orbit};
 use crate::scene::FieldPath;
 use crate::study::Family;
 
@@ -71,7 +70,7 @@ fn with_fifth(at: &Vector4<f64>, fifth: f64) -> Vector5<f64> {
 }
 
 impl<'a> Curve<'a> {
-    /// The equations near an orbit of a branch, and their first point.
+    /// The equations near an orbit of a branch, and their first point, or why there is none.
     pub fn new(
         family: &'a Family<'a>,
         orbit: &Orbit,
@@ -80,25 +79,35 @@ impl<'a> Curve<'a> {
         (of, second): (BranchEvent, &FieldRange),
         options: &BranchOptions,
         cancel: &'a AtomicBool,
-    ) -> Option<(Self, Spot)> {
+    ) -> Result<(Self, Spot), LocusEnd> {
         let path = FieldPath::new(&second.field);
         let unit = unit_of(second.range);
         let upwards = Vector5::ith(4, (second.range.1 - second.range.0).signum());
         let shifted = family.with(&path, second.range.0);
-        let model = shifted.model(value).ok()?;
+        let model = shifted.model(value).map_err(|_| LocusEnd::Lost)?;
         let units = Units::of(&model, unit_of(range));
-        let map = map_of(&model, options.phase, cancel)?;
-        let is_symmetric = Corrector::asymmetry(&map, orbit).is_some_and(|off| off.amax() <= SAME);
-        let mirrored = of == BranchEvent::Symmetry || is_symmetric && of != BranchEvent::Flip;
         let (phase, periods) = (options.phase, orbit.period);
-        let corrector = Corrector { family, phase, periods, mirrored, units, cancel };
+        let corrector = Corrector { family, phase, periods, mirrored: false, units, cancel };
+        let at_second = |share: f64| family.with(&path, second.range.0 + share * unit);
+        let has_mirrored_map = |share: f64| {
+            let corrector = Corrector { family: &at_second(share), mirrored: true, ..corrector };
+            corrector.model(value).is_some()
+        };
+        let mirrored = of != BranchEvent::Flip
+            && Corrector { family: &shifted, ..corrector }.keeps_mirrored(orbit, value)
+            && [-FIELD_DIFFERENCE, FIELD_DIFFERENCE].into_iter().any(has_mirrored_map);
+        if of == BranchEvent::Symmetry && !mirrored {
+            return Err(LocusEnd::Unmirrored);
+        }
+        let corrector = Corrector { mirrored, ..corrector };
         let has_circuit = orbit.circuit.is_some();
         let curve = Self { corrector, path, range: unit, of, has_circuit, touch: None };
         let at = with_fifth(&curve.corrector.at(orbit.state, value), second.range.0 / unit);
-        let mut point = curve.at_second(at[4], |corrector| corrector.evaluate(&first_four(&at)))?;
+        let point = curve.at_second(at[4], |corrector| corrector.evaluate(&first_four(&at)));
+        let mut point = point.ok_or(LocusEnd::Lost)?;
         // the motion from the state of one that touches may miss the stop or strike it, by rounding
         point.orbit.passage.misses.extend(&orbit.passage.misses);
-        curve.begun(at, point, &upwards)
+        curve.begun(at, point, &upwards).ok_or(LocusEnd::Lost)
     }
 
     /// These equations with the phase of the drive away from events at the stops, and their point near an
@@ -140,12 +149,20 @@ impl<'a> Curve<'a> {
         of(&Corrector { family: &family, ..self.corrector })
     }
 
-    /// The state of a point at a phase of the drive in forcing periods; `None` if its orbit ends early.
-    pub fn state_at(&self, spot: &Spot, phase: f64) -> Option<MapState> {
+    /// The orbit of a point with its state at a phase of the drive in forcing periods; `None` if the motion
+    /// from that state ends early or does not come back to it.
+    pub fn orbit_at(&self, spot: &Spot, phase: f64) -> Option<Orbit> {
         let Point { orbit, value, .. } = &spot.point;
         self.at_second(spot.at[4], |corrector| match &self.touch {
-            Some(touch) => touch.at(first_four(&spot.at)).at_phase(corrector, &spot.point, phase),
-            None => corrector.at_phase(orbit, *value, phase).map(|orbit| orbit.state),
+            Some(touch) => {
+                let state = touch.at(first_four(&spot.at)).at_phase(corrector, &spot.point, phase)?;
+                Some(Orbit { state, ..orbit.clone() })
+            }
+            None => {
+                let moved = corrector.at_phase(orbit, *value, phase)?;
+                let rows = Corrector { mirrored: false, phase, ..*corrector };
+                moved.comes_back(&rows.map(*value)?).then_some(moved)
+            }
         })
     }
 
@@ -224,7 +241,7 @@ impl<'a> Curve<'a> {
         let difference = |axis: usize, half: f64| {
             let step = Vector5::ith(axis, half);
             let (above, below) = (evaluate(&(at + step))?, evaluate(&(at - step))?);
-            let alike = !differ(&above.0, &point) && !differ(&below.0, &point);
+            let alike = !differ(&above.0.orbit, &point.orbit) && !differ(&below.0.orbit, &point.orbit);
             // a state may have been moved to the nearest admissible one
             let over = if axis == 4 { 2.0 * half } else { (above.0.at - below.0.at).sum() };
             let by = |a: f64, b: f64| (a - b) / over;

@@ -43,6 +43,9 @@ words! {
         Closed = "where it had been before",
         /// The orbit grazes a stop, or grazes once more: the condition no longer is one on a smooth map.
         Grazing = "where it meets a locus of grazing",
+        /// Beside the first values of the fields the scene is not its own mirror image.
+        Unmirrored = "at once: beside these values the scene is not its own mirror image, so that no motion \
+                      breaks a symmetry",
         /// Newton's method finds no point near the last one.
         Lost = "where no motion near the last one was found",
         /// The largest number of points was reached.
@@ -131,18 +134,20 @@ pub fn loci(
                 events: Vec::new(),
                 end: LocusEnd::Lost,
             };
-            found.push(match Curve::new(family, orbit, value, range, (of, second), options, task.cancel) {
-                Some((curve, start)) => {
+            let begun = Curve::new(family, orbit, value, range, (of, second), options, task.cancel);
+            let mut locus = match begun {
+                Ok((curve, start)) => {
                     let ranges = [range, second.range];
                     Walk { curve, locus, at: start, ranges, options: *options }.run_out(task)?
                 }
-                None => Locus {
-                    values: vec![[value, second.range.0]],
-                    orbits: vec![orbit.clone()],
-                    events: vec![None],
-                    ..locus
-                },
-            });
+                Err(end) => Locus { end, ..locus },
+            };
+            if locus.orbits.is_empty() {
+                locus.values.push([value, second.range.0]);
+                locus.orbits.push(orbit.clone());
+                locus.events.push(None);
+            }
+            found.push(locus);
         }
         Ok(found)
     })

@@ -52,14 +52,21 @@ impl Walk<'_> {
             [from.min(to) / unit, from.max(to) / unit]
         });
         let (mut step, mut farthest) = (FIRST.min(self.options.step), 0.0_f64);
-        self.add(None, &self.at.clone());
+        let Some(first) = self.curve.orbit_at(&self.at, self.options.phase) else {
+            return Ok(LocusEnd::Lost);
+        };
+        self.add(None, &self.at.clone(), first);
         while self.locus.orbits.len() < self.options.count {
             task.check_cancelled()?;
             (task.tick)();
             let next = self.predicted(step, &ends);
-            let Some(((next, is_last), events)) = next.and_then(|next| {
-                let events = self.events_to(&next.0)?;
-                Some((next, events))
+            let Some(((next, is_last), rows)) = next.and_then(|next| {
+                let mut rows: Vec<_> =
+                    self.events_to(&next.0)?.into_iter().map(|(event, spot)| (Some(event), spot)).collect();
+                rows.push((None, next.0.clone()));
+                let orbit = |(_, spot): &(_, Spot)| self.curve.orbit_at(spot, self.options.phase);
+                let orbits = rows.iter().map(orbit).collect::<Option<Vec<Orbit>>>()?;
+                Some((next, rows.into_iter().zip(orbits)))
             }) else {
                 step *= 0.5;
                 if step < SHORTEST {
@@ -67,10 +74,9 @@ impl Walk<'_> {
                 }
                 continue;
             };
-            for (event, spot) in events {
-                self.add(Some(event), &spot);
+            for ((event, spot), orbit) in rows {
+                self.add(event, &spot, orbit);
             }
-            self.add(None, &next);
             self.at = next;
             if is_last {
                 return Ok(LocusEnd::Range);
@@ -134,7 +140,8 @@ impl Walk<'_> {
         let onward = tangent(&next.slopes, along)?;
         let ahead = next.at - at;
         let follows = onward.dot(along) > STRAIGHT && ahead.dot(along) > STRAIGHT * ahead.norm();
-        (follows && !differ(&next.point, &self.at.point)).then_some((Spot { along: onward, ..next }, is_last))
+        (follows && !differ(&next.point.orbit, &self.at.point.orbit))
+            .then_some((Spot { along: onward, ..next }, is_last))
     }
 
     /// The events between the last point and the next in order; `None` if one is not found.
@@ -216,16 +223,15 @@ impl Walk<'_> {
         LocusEnd::Grazing
     }
 
-    /// Adds a row, with the state at the phase of the rows.
-    fn add(&mut self, event: Option<LocusEvent>, spot: &Spot) {
-        let state = self.curve.state_at(spot, self.options.phase).unwrap_or(spot.point.orbit.state);
+    /// Adds a row with the orbit of a point at the phase of the rows.
+    fn add(&mut self, event: Option<LocusEvent>, spot: &Spot, orbit: Orbit) {
         let values = [spot.point.value, spot.at[4] * self.curve.range];
         // a motion at an end is off it by the rounding of the unit
         let (from, to) = self.ranges[1];
         let is_at = |end: &f64| (values[1] - end).abs() <= AT_AN_END * ((to - from).abs() + end.abs() * 1e-3);
         let second = [from, to].into_iter().find(is_at).unwrap_or(values[1]);
         self.locus.values.push([values[0], second]);
-        self.locus.orbits.push(Orbit { state, ..spot.point.orbit.clone() });
+        self.locus.orbits.push(orbit);
         self.locus.events.push(event);
     }
 

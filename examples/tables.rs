@@ -3,7 +3,7 @@
 
 use interwell_studies as interwell;
 
-#[path = "../src/tables.rs"]
+#[path = "../web/src/tables.rs"]
 mod tables;
 
 fn main() {
