@@ -1,6 +1,6 @@
 //! The gestures of the pictures, which mean the same in every view.
 
-use eframe::egui::{Event, Modifiers, PointerButton, Vec2, vec2};
+use eframe::egui::{Event, Key, Modifiers, OutputCommand, PointerButton, Pos2, Vec2, vec2};
 use egui_kittest::{Harness, kittest::Queryable as _};
 use interwell::app::views::View;
 use interwell::app::window::{Command, Window};
@@ -113,9 +113,37 @@ fn every_picture_has_the_same_gestures() {
         harness.get_by_label(&tool).click();
         harness.run_steps(3);
         assert_eq!(ends(&harness), [None; 2], "{view:?}");
+        // the menu copies what is drawn, and saves a figure of it
+        let copied = from_menu(&mut harness, at, "Copy values").unwrap();
+        assert!(copied.starts_with("curve,") && copied.lines().count() > 3, "{view:?}: {copied}");
+        let columns = |line: &str| line.split(',').count();
+        let count = copied.lines().next().map(columns);
+        assert!(copied.lines().all(|line| Some(columns(line)) == count), "{view:?}: {copied}");
+        from_menu(&mut harness, at, "Save figure..");
+        harness.get_by_label("Save");
+        harness.key_press(Key::Escape);
+        harness.run_steps(3);
         assert_eq!(state(&harness), before, "{view:?}");
         assert!(!harness.state().session.editor.can_undo(), "{view:?}");
     }
+}
+
+/// What an entry of the menu at a place copies, if it does.
+fn from_menu(harness: &mut Harness<'static, Window>, at: Pos2, entry: &str) -> Option<String> {
+    harness.event(Event::PointerMoved(at));
+    for pressed in [true, false] {
+        let (button, modifiers) = (PointerButton::Secondary, Modifiers::NONE);
+        harness.event(Event::PointerButton { pos: at, button, pressed, modifiers });
+        harness.run_steps(2);
+    }
+    harness.get_by_label(entry).click();
+    (0..4).find_map(|_| {
+        harness.run_steps(1);
+        harness.output().platform_output.commands.iter().find_map(|command| match command {
+            OutputCommand::CopyText(text) => Some(text.clone()),
+            _ => None,
+        })
+    })
 }
 
 /// Time is panned alone, and a click goes to a time, as the menu does.
@@ -136,14 +164,7 @@ fn views_over_time_go_to_a_time() {
         assert!(!harness.state().session.player.is_playing(), "{view:?}");
         assert!(clicked > now - 1.6 && clicked < now - 0.4, "{view:?}: {clicked} of {now}");
         // the picture has followed
-        harness.event(Event::PointerMoved(at));
-        for pressed in [true, false] {
-            let (button, modifiers) = (PointerButton::Secondary, Modifiers::NONE);
-            harness.event(Event::PointerButton { pos: at, button, pressed, modifiers });
-            harness.run_steps(2);
-        }
-        harness.get_by_label("Go to this time").click();
-        harness.run_steps(3);
+        from_menu(&mut harness, at, "Go to this time");
         assert!((time(&harness) - (2.0 * clicked - now)).abs() < 0.1, "{view:?}: {}", time(&harness));
         assert!(!harness.state().session.editor.can_undo(), "{view:?}");
         drag(&mut harness, at, at + vec2(40.0, 30.0), (PointerButton::Primary, Modifiers::NONE));

@@ -10,8 +10,9 @@ use crate::output::{Cell, Cells, Layer, Marks, Panel, PlotAxis, Role};
 use interwell_studies::study::Edges;
 
 use super::labels::pointer_rests;
+use super::layer::by_kind;
 use super::phase::starts;
-use super::plot::{Plotted, by_kind, kept, plot_ui};
+use super::plot::{Plotted, kept, plot_ui};
 use super::stops::{add_walls, stops_ui};
 use super::{View, ViewContext, empty_ui};
 

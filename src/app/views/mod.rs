@@ -16,6 +16,7 @@ mod force;
 mod ghosts;
 mod hand;
 mod labels;
+mod layer;
 mod map;
 mod mass;
 mod measured;

@@ -7,27 +7,26 @@
 use std::cell::RefCell;
 use std::collections::HashSet;
 use std::ops::RangeInclusive;
-use std::sync::Arc;
 use std::time::Duration;
 
 use eframe::egui::{
-    Align2, AsIdSalt, Color32, CursorIcon, Id, Painter, Pos2, Rect, Response, Sense, Shape, TextStyle, Ui,
-    UiBuilder, Vec2, pos2, vec2,
+    Align2, AsIdSalt, CursorIcon, Id, Painter, Pos2, Rect, Response, Sense, TextStyle, Ui, UiBuilder, Vec2,
+    pos2, vec2,
 };
 use egui_plot::{
     AxisHints, ColorConflictHandling, Corner, GridInput, GridMark, HPlacement, HoverPosition, Legend, Plot,
-    PlotBounds, PlotGeometry, PlotItem, PlotItemBase, PlotPoint, PlotTransform,
+    PlotBounds, PlotPoint, PlotTransform,
 };
 
-use crate::app::ui::style::{CONTROL, GRAB, Style, colour};
+use crate::app::ui::style::{CONTROL, GRAB, Style};
 use crate::app::ui::widgets::{Icon, tool_ui};
 use crate::app::words::numbers::{three, with_minus};
-use crate::output::{Area, Cell, Cells, Colours, Frame, Layer, Marks, Panel, PlotAxis, Role};
+use crate::output::{Layer, Marks, Panel, PlotAxis};
 
 use super::hand::zoom_input;
 use super::labels::plated;
+use super::layer::{LayerItem, shapes_of, values_as_csv};
 use super::memory::Memory;
-use super::pane::{UNIT, on_canvas};
 use super::span::Span;
 use super::view::{Axis, View};
 use super::zoom::Ends;
@@ -155,29 +154,6 @@ where
         ui.data_mut(|data| data.insert_temp(id, (key, made.clone())));
         made
     })
-}
-
-/// A layer of cells as one layer for each kind of them, which the legend names and hides; any other as it is.
-pub fn by_kind(layer: Layer) -> Vec<Layer> {
-    let Marks::Cells(cells) = &layer.marks else { return vec![layer] };
-    let is_kind = matches!(cells.colours, Colours::Categories(_));
-    let part = |role: Role, name: String, has: &dyn Fn(&Cell) -> bool| {
-        let own = cells.cells.iter().map(|cell| if has(cell) { *cell } else { Cell::Blank });
-        Layer { marks: Marks::Cells(Cells { cells: own.collect(), ..cells.clone() }), role, name }
-    };
-    let valued = (!is_kind).then(|| part(layer.role, String::new(), &|cell| cell.value().is_some()));
-    let named = cells.entries().into_iter().map(|(role, name)| {
-        let kind = match (&cells.colours, role) {
-            (_, Role::Missing) => Cell::Missing,
-            (Colours::Categories(kinds), _) => match kinds.iter().position(|kind| kind.1 == name) {
-                Some(kind) => Cell::Value(kind as f64),
-                None => Cell::Rest,
-            },
-            _ => Cell::Rest,
-        };
-        part(role, name, &|cell| *cell == kind)
-    });
-    valued.into_iter().chain(named).collect()
 }
 
 /// Writes what is read in the corner of a picture.
@@ -386,7 +362,7 @@ pub fn part_ui(
     }
     if axes != [None; 2] {
         zoom_input(ui, memory, (view, axes), &plotted.response, (area, plotted.frame()));
-        menu_ui(ui, memory, view, id.with("menu"), &mut plotted);
+        menu_ui(ui, memory, view, (id.with("menu"), panel), &mut plotted);
     }
     if has_both {
         let name = if part.is_empty() { view.name() } else { part };
@@ -456,7 +432,7 @@ fn changed_ui(
 }
 
 /// The menu of a plot. What it sets, it sets as a click would where the menu was asked for.
-fn menu_ui(ui: &Ui, memory: &mut Memory, view: View, id: Id, plotted: &mut Plotted) {
+fn menu_ui(ui: &Ui, memory: &mut Memory, view: View, (id, panel): (Id, &Panel), plotted: &mut Plotted) {
     let response = plotted.response.clone();
     if let Some(at) = plotted.pointed().filter(|_| response.secondary_clicked()) {
         ui.data_mut(|data| data.insert_temp(id, at));
@@ -465,113 +441,16 @@ fn menu_ui(ui: &Ui, memory: &mut Memory, view: View, id: Id, plotted: &mut Plott
         if ui.button("Axes as they were").clicked() {
             memory.free_axes(view);
         }
+        if ui.button("Copy values").on_hover_text("What is drawn, as CSV.").clicked() {
+            ui.copy_text(values_as_csv(panel));
+        }
+        if ui.button("Save figure..").clicked() {
+            memory.figure = Some(view);
+        }
         if let Some(action) = view.action()
             && ui.button(action).clicked()
         {
             plotted.clicked = ui.data(|data| data.get_temp(id));
         }
     });
-}
-
-/// The shapes of a layer on the screen.
-fn shapes_of(
-    ui: &Ui,
-    transform: &PlotTransform,
-    axes: [&PlotAxis; 2],
-    style: &Style,
-    layer: &Layer,
-) -> Vec<Shape> {
-    let (rect, bounds) = (*transform.frame(), transform.bounds());
-    let area = Area::new(0.0, 0.0, (rect.width() / UNIT).into(), (rect.height() / UNIT).into());
-    let axis = |of: usize, range: RangeInclusive<f64>| axes[of].bare((*range.start(), *range.end()));
-    let frame = Frame { area, x: axis(0, bounds.range_x()), y: axis(1, bounds.range_y()) };
-    let shapes = frame.shapes(std::slice::from_ref(layer), &style.theme());
-    on_canvas(ui.painter(), style, rect.min, shapes)
-}
-
-/// The shapes of cells as they were drawn last, and for what.
-#[derive(Clone)]
-struct KeptCells {
-    layer: Layer,
-    place: (Rect, PlotBounds, Style, f32),
-    shapes: Vec<Shape>,
-}
-
-/// The shapes of a layer of cells, made anew only where they change.
-fn shapes_of_cells(ui: &Ui, transform: &PlotTransform, item: &LayerItem<'_>) -> Vec<Shape> {
-    let place = (*transform.frame(), *transform.bounds(), item.style, ui.pixels_per_point());
-    let kept = ui.data(|data| data.get_temp::<Arc<KeptCells>>(item.id));
-    if let Some(kept) = kept.filter(|kept| kept.place == place && kept.layer == *item.layer) {
-        return kept.shapes.clone();
-    }
-    let shapes = shapes_of(ui, transform, item.axes, &item.style, item.layer);
-    let kept = KeptCells { layer: item.layer.clone(), place, shapes: shapes.clone() };
-    ui.data_mut(|data| data.insert_temp(item.id, Arc::new(kept)));
-    shapes
-}
-
-/// A layer of a panel as an item: its shapes are those on paper, in the frame and between the ends that the
-/// plot has.
-struct LayerItem<'a> {
-    id: Id,
-    base: PlotItemBase,
-    layer: &'a Layer,
-    axes: [&'a PlotAxis; 2],
-    style: Style,
-    points: Vec<PlotPoint>,
-}
-
-impl<'a> LayerItem<'a> {
-    /// An item with this name in the legend, whose points are found under the pointer if `read`.
-    fn new(id: Id, (name, layer): (&str, &'a Layer), panel: &'a Panel, style: &Style, read: bool) -> Self {
-        let points = match &layer.marks {
-            _ if !read => Vec::new(),
-            Marks::Path(points)
-            | Marks::Trace(points)
-            | Marks::Points(points)
-            | Marks::Cloud(points)
-            | Marks::Sticks(points) => points
-                .iter()
-                .filter(|at| at.0.is_finite() && at.1.is_finite())
-                .map(|at| [at.0, at.1].into())
-                .collect(),
-            _ => Vec::new(),
-        };
-        let base = PlotItemBase::new(name.to_owned());
-        Self { id, base, layer, axes: [&panel.x, &panel.y], style: *style, points }
-    }
-}
-
-impl PlotItem for LayerItem<'_> {
-    fn shapes(&self, ui: &Ui, transform: &PlotTransform, shapes: &mut Vec<Shape>) {
-        shapes.extend(match &self.layer.marks {
-            Marks::Cells(_) => shapes_of_cells(ui, transform, self),
-            _ => shapes_of(ui, transform, self.axes, &self.style, self.layer),
-        });
-    }
-
-    fn initialize(&mut self, _: RangeInclusive<f64>) {}
-
-    fn color(&self) -> Color32 {
-        colour(self.style.theme().look(self.layer.role).ink)
-    }
-
-    fn geometry(&self) -> PlotGeometry<'_> {
-        match self.points.is_empty() {
-            true => PlotGeometry::None,
-            false => PlotGeometry::Points(&self.points),
-        }
-    }
-
-    fn bounds(&self) -> PlotBounds {
-        PlotBounds::NOTHING
-    }
-
-    fn base(&self) -> &PlotItemBase {
-        &self.base
-    }
-
-    fn base_mut(&mut self) -> &mut PlotItemBase {
-        &mut self.base
-    }
 }

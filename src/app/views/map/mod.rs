@@ -26,7 +26,8 @@ use crate::scene::{Stops, SweepAxis};
 use interwell_studies::study::{Edges, Read, SummaryField, label_and_unit};
 
 use super::labels::haloed;
-use super::plot::{Part, Plotted, UPRIGHT, by_kind, kept, part_ui, width};
+use super::layer::by_kind;
+use super::plot::{Part, Plotted, UPRIGHT, kept, part_ui, width};
 use super::view::{Axis, View};
 use super::zoom::Ends;
 use super::{ViewContext, too_small_ui};
