@@ -10,7 +10,7 @@ use interwell_studies::study::{Direction, Signal};
 
 use crate::cursors::drag;
 use crate::shared::axis;
-use crate::support::{LONG, PROJECTED, WIDE, command, painted, press_with_ctrl, wait_until, window};
+use crate::support::{LONG, PROJECTED, WIDE, command, painted, press_with_ctrl, session, wait_until, window};
 
 const AMPLITUDE: &str = "excitation.amplitude_g";
 
@@ -201,4 +201,19 @@ fn under_noise_the_tab_that_has_something_is_open() {
     let text = harness.get_by_label_contains("needs a drive that repeats, such as a sine").rect();
     assert!((text.center().x - place.center().x).abs() < 10.0, "{text:?} {place:?}");
     assert!((text.center().y - place.center().y).abs() < 0.2 * place.height(), "{text:?} {place:?}");
+}
+
+/// A start that was chosen is undone with the motion from it.
+#[test]
+fn undo_begins_again_at_the_start_before() {
+    let mut session = session("paper", &["start=At(x_mm: 0.5, v_m_per_s: 0)"]);
+    session.player.set_playing(true);
+    (0..8).for_each(|_| _ = session.player.tick(0.1));
+    session.start_at(1e-3, 0.02);
+    assert_eq!((session.player.time(), session.player.state().x), (0.0, 1e-3));
+    (0..8).for_each(|_| _ = session.player.tick(0.1));
+    assert!(session.undo());
+    assert_eq!((session.player.time(), session.player.state().x), (0.0, 0.5e-3));
+    assert!(session.redo());
+    assert_eq!((session.player.time(), session.player.state().x), (0.0, 1e-3));
 }

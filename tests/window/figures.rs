@@ -15,7 +15,9 @@ use interwell_studies::study::SummaryField;
 
 use crate::measured::{dropped, instrument};
 use crate::shared::axis;
-use crate::support::{PROJECTED, WIDE, command, press, press_with_ctrl, sliced, wait_until, window};
+use crate::support::{
+    PROJECTED, WIDE, choose_in_map, command, press, press_with_ctrl, sliced, wait_until, window,
+};
 use crate::written::{arguments, copied};
 
 fn open(harness: &mut Harness<'static, Window>, view: View, path: &Path) {
@@ -184,7 +186,7 @@ fn of_every_view_of_a_survey_the_copied_command_makes_the_same_bytes() {
     assert!(line.contains("--over stops.travel_limit_mm=1:2:0.5 --over excitation.amplitude_g=0.6:1:0.2"));
     assert!(line.contains("--quantity rms_velocity_m_per_s"), "{line}");
     command(&mut harness, Command::Arrange(Layout::Map));
-    harness.get_by_label("Surface").click();
+    choose_in_map(&mut harness, "Surface");
     harness.run_steps(3);
     let column = SummaryField::find("impact_share").unwrap();
     harness.state_mut().session.map.show(column);
@@ -195,7 +197,7 @@ fn of_every_view_of_a_survey_the_copied_command_makes_the_same_bytes() {
         harness.state().session.map.map().is_some_and(|map| map.is_whole())
     });
     for label in ["Flat", "Cuts"] {
-        harness.get_by_label(label).click();
+        choose_in_map(&mut harness, label);
         harness.run_steps(3);
     }
     let line = same_bytes(&mut harness, View::Map, "svg");

@@ -5,7 +5,7 @@ use std::rc::Rc;
 
 use eframe::egui::{self, Key, Rect, ViewportCommand, accesskit::Role, pos2, vec2};
 use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable as _;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use interwell::app::ui::settings::Settings;
 use interwell::app::views::View;
 use interwell::app::window::Command;
@@ -471,4 +471,26 @@ fn an_event_is_named_by_what_happened() {
     assert!(kinds.contains(&EventKind::Impact) && kinds.contains(&EventKind::Crossing), "{kinds:?}");
     press(&mut harness, Key::Space);
     assert!(harness.state().session.player.event().is_none());
+}
+
+/// Each stop has its restitution among the first sliders, and no control is called by its path.
+#[test]
+fn the_first_sliders_have_names_in_every_scene() {
+    for (preset, count) in [("paper", 1), ("uneven-stops", 2), ("bouncing-ball", 1)] {
+        let harness = window(preset, WIDE);
+        let sliders =
+            harness.query_all_by_role(Role::Slider).filter_map(|slider| slider.accesskit_node().label());
+        let named: Vec<String> = sliders.filter(|label| label.contains("restitution")).collect();
+        assert_eq!(named.len(), count, "{preset}: {named:?}");
+    }
+    for entry in PRESETS {
+        let harness = window(entry.name, WIDE);
+        let sliders = harness.query_all_by_role(Role::Slider);
+        let named: Vec<String> = sliders.filter_map(|slider| slider.accesskit_node().label()).collect();
+        assert!(
+            !named.is_empty() && !named.iter().any(|name| name.contains('.')),
+            "{}: {named:?}",
+            entry.name
+        );
+    }
 }

@@ -163,7 +163,9 @@ fn a_map_waits_for_the_first_prediction() {
     assert!(!harness.state().lesson().unwrap().is_covering());
     assert!(go_to(&mut harness, |step| matches!(step, Step::Do { .. })));
     assert_eq!(harness.query_all_by_label("Covered").count(), 0);
-    assert!(harness.query_all_by_label("Range").next().is_some());
+    for tool in ["Options", "Once a period"] {
+        assert!(is_anywhere(&harness, tool), "{tool}");
+    }
 }
 
 #[test]

@@ -9,7 +9,8 @@ use interwell::scene::{Layout, Start, Stops, SweepAxis};
 use crate::cursors::{drag, wheel};
 use crate::shared::axis;
 use crate::support::{
-    LONG, WIDE, open_options, press, press_with_ctrl, session, wait_for_threads, wait_until, window,
+    LONG, WIDE, choose_in_map, click_on, press, press_with_ctrl, session, wait_for_threads, wait_until,
+    window,
 };
 use crate::written::arguments;
 
@@ -135,8 +136,7 @@ fn what_it_depends_on_makes_another() {
     fill(&mut harness);
     assert_eq!(map(harness.state()).question.scene.mass_g, 16.0);
     assert!(harness.state().session.map.shown().is_some_and(|(_, current)| current));
-    harness.get_by_label("Recompute").click();
-    harness.run_steps(2);
+    choose_in_map(&mut harness, "Recompute");
     fill(&mut harness);
 }
 
@@ -173,7 +173,7 @@ fn it_fits() {
         let place = harness.get_by_role_and_label(Role::Image, "map").rect();
         assert!(place.right() <= size[0] && place.bottom() <= size[1], "{place}");
         assert!(place.width() > 0.3 * size[0] && place.height() > 0.35 * size[1], "{size:?}: {place}");
-        open_options(&mut harness);
+        click_on(&mut harness, "Options");
         for label in ["Flat", "Recompute"] {
             let rect = harness.get_by_label(label).rect();
             assert!(rect.right() <= size[0] && rect.left() >= 0.0, "{label}: {rect}");
@@ -271,6 +271,8 @@ fn a_box_enlarges_and_a_double_click_is_back() {
     }
     harness.run_steps(40);
     assert_eq!(ranges(&harness), before);
+    // the whole map was kept
+    assert!(map(harness.state()).is_whole() && !harness.state().session.map.is_running());
     assert_eq!(*harness.state().session.scene(), scene);
 }
 

@@ -15,7 +15,7 @@ use interwell_studies::study::{Cell, RMS_VELOCITY, STANDARD_COLUMNS, SummaryFiel
 
 use crate::shared::axis;
 use crate::support::{
-    LONG, PROJECTED, WIDE, click_on, command, is_painted, open_options, painted, press, session, sliced,
+    LONG, PROJECTED, WIDE, choose_in_map, click_on, command, is_painted, painted, press, session, sliced,
     window,
 };
 
@@ -91,7 +91,7 @@ fn rms(cell: &Cell) -> f64 {
 #[test]
 fn a_click_on_the_surface_takes_the_scene_there() {
     let mut harness = open(WIDE, (0.25, 0.25));
-    click_on(&mut harness, "Surface");
+    choose_in_map(&mut harness, "Surface");
     let rect = harness.get_by_role_and_label(Role::Image, "map as a surface").rect();
     let [left, top, right, bottom] = [rect.left(), rect.top(), rect.right(), rect.bottom()].map(f64::from);
     let [x, y, z] = [(); 3].map(|()| PlotAxis::given(0.0, 1.0, Vec::new(), ""));
@@ -114,7 +114,7 @@ fn a_click_on_the_surface_takes_the_scene_there() {
 #[test]
 fn cuts_are_rows_of_the_table_and_lead_to_their_cells() {
     let mut harness = open(WIDE, (0.25, 0.25));
-    click_on(&mut harness, "Cuts");
+    choose_in_map(&mut harness, "Cuts");
     assert!(is_painted(&harness, "at travel limit 1.5 mm") && is_painted(&harness, "at amplitude 1 g"));
     let map = map(harness.state());
     let cut = |i: usize, value: f64| Cut { column: map.grid().columns()[i].clone(), value };
@@ -313,8 +313,8 @@ fn the_cost_of_a_frame_does_not_grow_with_the_map() {
     let count = |steps: (f64, f64), look: &[&str], column: &str| {
         let mut harness = open(WIDE, steps);
         harness.state_mut().session.map.show(SummaryField::find(column).unwrap());
-        look.iter().for_each(|label| click_on(&mut harness, label));
-        let place = harness.get_by_label("Recompute").rect();
+        look.iter().for_each(|label| choose_in_map(&mut harness, label));
+        let place = harness.get_by_label("Options").rect();
         harness.hover_at(place.left_top() - vec2(400.0, 80.0));
         harness.run_steps(3);
         let mut count = 0_usize;
@@ -334,9 +334,7 @@ fn nothing_is_cut_in_any_look() {
     for size in [WIDE, [1920.0, 1080.0], PROJECTED] {
         let mut harness = open(size, (0.25, 0.25));
         for label in ["Cuts", "Surface", "Flat"] {
-            open_options(&mut harness);
-            click_on(&mut harness, label);
-            press(&mut harness, Key::Escape);
+            choose_in_map(&mut harness, label);
             assert_eq!(sliced(&harness), Vec::<String>::new(), "{size:?} {label}");
             if label != "Surface" {
                 let place = harness.get_by_role_and_label(Role::Image, "cut across").rect();

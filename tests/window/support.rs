@@ -72,11 +72,12 @@ pub fn click_on(harness: &mut Harness<'_, Window>, label: &str) {
     harness.run_steps(3);
 }
 
-/// Opens the menu with the choices of a map, where these have no row of their own.
-pub fn open_options(harness: &mut Harness<'_, Window>) {
-    if harness.query_by_label("Flat").is_none() {
-        click_on(harness, "Options");
-    }
+/// Clicks on a choice of the map in its menu.
+pub fn choose_in_map(harness: &mut Harness<'_, Window>, label: &str) {
+    click_on(harness, "Options");
+    click_on(harness, label);
+    harness.key_press(Key::Escape);
+    harness.run_steps(3);
 }
 
 /// Presses a key, and lets some frames pass.

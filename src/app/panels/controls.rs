@@ -152,7 +152,6 @@ fn stops_switch_ui(ui: &mut Ui, session: &mut Session) {
 }
 
 fn more_ui(ui: &mut Ui, session: &mut Session, width: f32) {
-    fields_ui(ui, session, &["stops.restitution_left", "stops.restitution_right"], width);
     fields_ui(ui, session, &COUPLING, width);
     for path in sliders(session).into_iter().filter(|path| is_balancing(path)) {
         field_ui(ui, session, &path, width);
@@ -176,7 +175,11 @@ fn more_ui(ui: &mut Ui, session: &mut Session, width: f32) {
 fn restitution_ui(ui: &mut Ui, session: &mut Session, width: f32) {
     let why = match session.scene().stops {
         Stops::None | Stops::Rigid { .. } => return field_ui(ui, session, "stops.restitution", width),
-        Stops::Uneven { .. } => "The two stops have a restitution each, under More.",
+        Stops::Uneven { left_mm, right_mm, .. } => {
+            let sides = [(left_mm, "stops.restitution_left"), (right_mm, "stops.restitution_right")];
+            let there: Vec<&str> = sides.iter().filter_map(|side| side.0.map(|_| side.1)).collect();
+            return fields_ui(ui, session, &there, width);
+        }
         Stops::Hertz { .. } => {
             "These stops are compliant: a faster impact keeps a smaller share of its speed."
         }
@@ -233,7 +236,8 @@ fn is_preload(path: &str) -> bool {
 
 /// The slider of the preload, or for a mechanism without one those of its first numbers.
 fn mechanism_ui(ui: &mut Ui, session: &mut Session, width: f32) {
-    let is_number = |path: &String| path.starts_with("mechanism.");
+    // the tolerance of a table has no name
+    let is_number = |path: &String| path.starts_with("mechanism.") && name_and_unit(path).0 != *path;
     let of_preload = sliders(session).into_iter().find(|path| is_preload(path));
     let first = || numeric_fields(session.scene()).into_iter().filter(is_number).take(FIRST).collect();
     let shown: Vec<String> = of_preload.map_or_else(first, |path| vec![path]);

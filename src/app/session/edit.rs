@@ -87,6 +87,7 @@ impl Session {
 
     fn move_in_history(&mut self, step: impl FnOnce(&mut Editor) -> bool) -> bool {
         self.end_gesture();
+        let start = self.scene().start;
         let moved = step(&mut self.editor);
         if let Some((x, v)) = self.editor.take_placed() {
             self.leave_reference();
@@ -95,6 +96,9 @@ impl Session {
         } else if moved {
             self.apply();
             self.ask_thresholds();
+            if self.scene().start != start {
+                self.restart();
+            }
         }
         moved
     }

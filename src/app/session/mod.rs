@@ -211,6 +211,7 @@ impl Session {
     pub fn hold(&mut self, x: f64) {
         self.leave_reference();
         if !self.player.is_held() {
+            self.player.to_present();
             self.held_from = Some(self.state_of_mass());
         }
         self.player.hold(x);

@@ -8,6 +8,9 @@ use crate::app::words::fields::{Reach, name_and_unit};
 use crate::scene::{SweepAxis, column_names};
 use interwell_studies::study::label_and_unit;
 
+/// Least width in points of a choice of a field.
+const FIELD: f32 = 60.0;
+
 /// The name of a field without its unit: that of its control, or else of its column.
 pub fn field_name(path: &str) -> String {
     let (name, _) = name_and_unit(path);
@@ -21,7 +24,7 @@ pub fn field_name(path: &str) -> String {
 pub fn field_ui(ui: &mut Ui, axis: &SweepAxis, role: &str, known: &[String]) -> Option<String> {
     let name = field_name(&axis.field);
     let mut wanted = None;
-    let inner = ComboBox::from_id_salt(("axis", role)).width(112.0).selected_text(&name).show_ui(ui, |ui| {
+    let inner = ComboBox::from_id_salt(("axis", role)).width(FIELD).selected_text(&name).show_ui(ui, |ui| {
         for path in known {
             if ui.selectable_label(*path == axis.field, field_name(path)).clicked() {
                 wanted = Some(path.clone());

@@ -166,7 +166,7 @@ pub(super) fn cursors_ui(
         let beside = if seen { 0.5 * GRAB + 3.0 } else { 4.0 };
         let beside = if align == Align2::LEFT_TOP { beside } else { -beside };
         let place = (pos2(at + beside, frame.top() + down), align);
-        plated(&painter, &style, place, &text, (style.body(), style.ink()));
+        plated(&painter, &style, place, painter.layout_no_wrap(text, style.body(), style.ink()));
     }
 }
 

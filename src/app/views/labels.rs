@@ -1,6 +1,8 @@
 //! Text over pictures.
 
-use eframe::egui::{Align2, Color32, FontId, Painter, Pos2, Ui, vec2};
+use std::sync::Arc;
+
+use eframe::egui::{Align2, Color32, FontId, Galley, Painter, Pos2, Ui, vec2};
 
 use crate::app::session::Session;
 use crate::app::ui::style::Style;
@@ -26,11 +28,10 @@ pub fn haloed(painter: &Painter, style: &Style, (at, align): Place, text: &str, 
 }
 
 /// Draws text on a background-coloured plate, readable also over walls and hatching.
-pub fn plated(painter: &Painter, style: &Style, (at, align): Place, text: &str, (font, color): Look) {
-    let galley = painter.layout_no_wrap(text.to_owned(), font, color);
+pub fn plated(painter: &Painter, style: &Style, (at, align): Place, galley: Arc<Galley>) {
     let place = align.anchor_size(at, galley.size());
     painter.rect_filled(place.expand2(vec2(2.0, 0.0)), 2.0, style.ground().gamma_multiply(0.9));
-    painter.galley(place.min, galley, color);
+    painter.galley(place.min, galley, style.ink());
 }
 
 pub fn pointer_rests(ui: &Ui) -> bool {

@@ -12,6 +12,9 @@ use interwell_studies::study::{Table, Values};
 
 use super::pane::{UNIT, on_canvas};
 
+/// Difference of lightness to the ground below which a colour is hardly seen.
+const FAINT: f32 = 0.2;
+
 /// A layer of cells as one layer for each kind of them, which the legend names and hides; any other as it is.
 pub fn by_kind(layer: Layer) -> Vec<Layer> {
     let Marks::Cells(cells) = &layer.marks else { return vec![layer] };
@@ -154,8 +157,13 @@ impl PlotItem for LayerItem<'_> {
 
     fn initialize(&mut self, _: RangeInclusive<f64>) {}
 
+    /// The colour of its name in the legend: that of its outline or hatching where its own is hardly seen.
     fn color(&self) -> Color32 {
-        colour(self.style.theme().look(self.layer.role).ink)
+        let look = self.style.theme().look(self.layer.role);
+        let (own, ground) = (colour(look.ink), self.style.ground());
+        let is_seen = (own.intensity() - ground.intensity()).abs() > FAINT;
+        let other = look.halo.or(look.hatch).map(colour).filter(|_| !is_seen);
+        other.unwrap_or(own)
     }
 
     fn geometry(&self) -> PlotGeometry<'_> {

@@ -145,13 +145,18 @@ pub(super) fn starts(
 
 /// Shows the state under the pointer; a click continues the motion from there.
 fn start_ui(ui: &Ui, context: &mut ViewContext<'_>, plotted: &Plotted) {
-    if let Some((mm, speed)) = plotted.clicked {
-        let (x, model) = (mm / 1e3, context.session.shown());
-        let ((left, right), (low, high)) = (model.stop_positions(), model.mechanism().curve.domain());
-        let is_inside = x >= left.unwrap_or(low).max(low) && x <= right.unwrap_or(high).min(high);
-        context.session.place(x, if is_inside { speed / 1e3 } else { 0.0 });
+    let model = context.session.shown();
+    let ((left, right), (low, high)) = (model.stop_positions(), model.mechanism().curve.domain());
+    let ends = (1e3 * left.unwrap_or(low).max(low), 1e3 * right.unwrap_or(high).min(high));
+    // beyond a stop the mass is put onto it
+    let held = |(mm, speed): State| {
+        let at = mm.clamp(ends.0, ends.1);
+        (at, if at == mm { speed } else { 0.0 })
+    };
+    if let Some((mm, speed)) = plotted.clicked.map(held) {
+        context.session.place(mm / 1e3, speed / 1e3);
     }
-    let Some((mm, speed)) = plotted.pointed() else { return };
+    let Some((mm, speed)) = plotted.pointed().map(held) else { return };
     plotted.write(ui, &context.style, &format!("{} mm, {} mm/s", three(mm), three(speed)));
     if pointer_rests(ui) {
         plotted.response.clone().on_hover_text_at_pointer("Click: the motion continues from here.");

@@ -43,7 +43,10 @@ const NAMELESS: f32 = 160.0;
 
 /// Margins in points beside a plot, and above and below it.
 const MARGIN: f32 = 8.0;
-const ABOVE: f32 = 4.0;
+const ABOVE: f32 = 7.0;
+
+/// Share of an axis below which a value is read as zero.
+const ZERO: f64 = 1e-4;
 
 /// Width in points of a vertical axis, so that frames above each other begin at the same place.
 pub const UPRIGHT: f32 = 58.0;
@@ -59,6 +62,8 @@ pub struct Plotted {
     /// which the menu was asked.
     pub clicked: Option<(f64, f64)>,
     transform: PlotTransform,
+    /// Whether what is read stands above, since the legend does not.
+    reads_above: bool,
     /// The name of the curve under the pointer, and its point there.
     nearest: Option<(String, (f64, f64))>,
 }
@@ -108,7 +113,7 @@ impl Plotted {
 
     /// Writes what is read in its corner.
     pub fn write(&self, ui: &Ui, style: &Style, text: &str) {
-        plated_at(ui.painter(), style, self.frame(), text);
+        plated_at(ui.painter(), style, self.frame(), self.reads_above, text);
     }
 
     /// Writes the values of the curve under the pointer.
@@ -117,6 +122,8 @@ impl Plotted {
         let number = |axis: &PlotAxis, value: f64| {
             let number = match axis.is_logarithmic() {
                 true => format!("{:.2e}", 10_f64.powf(value)),
+                // near zero by rounding
+                false if value.abs() < ZERO * (axis.high - axis.low) => three(0.0),
                 false => three(value),
             };
             axis.unit().map_or(number.clone(), |unit| format!("{number} {unit}"))
@@ -156,10 +163,15 @@ where
     })
 }
 
-/// Writes what is read in the corner of a picture.
-pub fn plated_at(painter: &Painter, style: &Style, frame: Rect, text: &str) {
-    let corner = (frame.left_top() + vec2(4.0, 4.0), Align2::LEFT_TOP);
-    plated(painter, style, corner, &with_minus(text), (style.small(), style.ink()));
+/// Writes what is read in the upper or the lower left corner of a picture.
+pub fn plated_at(painter: &Painter, style: &Style, frame: Rect, is_above: bool, text: &str) {
+    let inside = frame.shrink(4.0);
+    let place = match is_above {
+        true => (inside.left_top(), Align2::LEFT_TOP),
+        false => (inside.left_bottom(), Align2::LEFT_BOTTOM),
+    };
+    let galley = painter.layout(with_minus(text), style.small(), style.ink(), inside.width());
+    plated(painter, style, place, galley);
 }
 
 /// The width in points of a text in the letters of a picture.
@@ -188,16 +200,22 @@ fn names<'a>(ui: &Ui, style: &Style, panel: &'a Panel, size: Vec2) -> HashSet<&'
     names
 }
 
-/// The legend of a view, in a corner in which its curves seldom are, or where they are oldest.
-fn legend(view: View) -> Legend {
-    let corner = match view {
-        View::UpAndDown | View::Well | View::ForceCurve | View::Map => Corner::RightBottom,
+/// The corner of the legend of a view, in which its curves seldom are, or where they are oldest.
+fn corner(view: View) -> Corner {
+    match view {
+        View::UpAndDown | View::Map | View::Basins => Corner::RightBottom,
         _ if view.is_over_time() => Corner::LeftBottom,
         _ => Corner::RightTop,
-    };
+    }
+}
+
+fn legend(corner: Corner) -> Legend {
     let legend = Legend::default().follow_insertion_order(true).text_style(TextStyle::Small).position(corner);
     legend.color_conflict_handling(ColorConflictHandling::PickFirst)
 }
+
+/// Time in s after that of a double click at which a single one is known for certain.
+const LATER: f64 = 0.02;
 
 /// A click that may become a double click: its time in s, and what is there.
 type Click<T> = Option<(f64, T)>;
@@ -224,7 +242,10 @@ pub fn single_click<T: Clone + Send + Sync + 'static>(
         click = None;
     } else if let Some(place) = response.interact_pointer_pos().filter(|_| response.clicked()) {
         click = Some((now, at(place)));
-        ui.request_repaint_after(Duration::from_secs_f64(delay));
+    }
+    if let Some((then, _)) = click {
+        // a frame after that time, though no pointer moves
+        ui.request_repaint_after(Duration::from_secs_f64((then + delay - now).max(0.0) + LATER));
     }
     ui.data_mut(|data| data.insert_temp(plot, click));
     known.map(|(_, at)| at)
@@ -319,7 +340,7 @@ pub fn part_ui(
         .y_axis_formatter(words(1))
         .grid_color(style.grid())
         .grid_fade(0.0)
-        .legend(legend(view))
+        .legend(legend(corner(view)))
         .allow_drag([axes[0].is_some(), upright])
         .allow_boxed_zoom(has_both)
         .allow_zoom(false)
@@ -352,7 +373,8 @@ pub fn part_ui(
     };
     let clicked = single_click(ui, id.with("click"), &response, values);
     let nearest = nearest.into_inner();
-    let mut plotted = Plotted { response, clicked, transform, nearest };
+    let reads_above = corner(view) != Corner::RightTop;
+    let mut plotted = Plotted { response, clicked, transform, reads_above, nearest };
     let moved = plotted.transform.bounds();
     for (axis, before, now) in [(axes[0], ends[0], moved.range_x()), (axes[1], ends[1], moved.range_y())] {
         let now = (*now.start(), *now.end());

@@ -65,11 +65,10 @@ pub(super) fn travel_limits(painter: &Painter, context: &ViewContext<'_>, rect: 
             let align = if side > 0.0 { Align2::LEFT_TOP } else { Align2::RIGHT_TOP };
             let at = (pos2(x, rect.top() + 4.0), align);
             let number = limit_number(context.session, mm);
-            let size = painter.layout_no_wrap(number.clone(), style.small(), style.ink()).size();
-            if !rect.x_range().contains(x + side * size.x) {
-                continue;
+            let number = painter.layout_no_wrap(number, style.small(), style.ink());
+            if rect.x_range().contains(x + side * number.size().x) {
+                plated(painter, &style, at, number);
             }
-            plated(painter, &style, at, &number, (style.small(), style.ink()));
         }
     }
 }

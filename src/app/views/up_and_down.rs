@@ -79,18 +79,21 @@ fn tools_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axis: &SweepAxis) {
                 segment_ui(ui, quantity, *value, name).on_hover_text(*hover);
             }
         }
-        ui.label("over");
-        if let Some(path) = field_ui(ui, axis, "over", &known) {
-            context.session.explore.walks.chosen = Some(context.session.map_axis(&path));
-        }
-        let button = choices_ui(ui, "Range", |ui| {
-            let mut wanted = axis.clone();
-            egui::Grid::new("walk").num_columns(7).show(ui, |ui| range_row_ui(ui, &mut wanted, "over"));
-            if wanted != *axis {
-                context.session.explore.walks.chosen = Some(wanted);
+        // no step of a lesson explains these
+        if !context.session.is_lesson {
+            ui.label("over");
+            if let Some(path) = field_ui(ui, axis, "over", &known) {
+                context.session.explore.walks.chosen = Some(context.session.map_axis(&path));
             }
-        });
-        button.on_hover_text("Ends and step of the walk.");
+            let button = choices_ui(ui, "Range", |ui| {
+                let mut wanted = axis.clone();
+                egui::Grid::new("walk").num_columns(7).show(ui, |ui| range_row_ui(ui, &mut wanted, "over"));
+                if wanted != *axis {
+                    context.session.explore.walks.chosen = Some(wanted);
+                }
+            });
+            button.on_hover_text("Ends and step of the walk.");
+        }
         if context.session.explore.walks.found.is_running() && ui.available_width() > SPINNER {
             ui.add(egui::Spinner::new().size(SPINNER)).on_hover_text("Runs are still to come.");
         }

@@ -80,7 +80,8 @@ pub fn card_ui(ui: &mut Ui, titles: &[Title], view: View, context: &mut ViewCont
         }
         left = right;
     }
-    let fills = tools_ui(ui, rect, row, view, context);
+    // tools that would lie over the titles are left to menus and keys
+    let fills = free.left <= free.right && tools_ui(ui, rect, row, view, context);
     ui.painter().rect_stroke(rect, CORNER, style.card_stroke(), egui::StrokeKind::Inside);
     Answer { chosen, fills }
 }

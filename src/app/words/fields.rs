@@ -37,8 +37,22 @@ pub fn info(path: &str) -> Option<&'static Control> {
     field_info(path)?.control.as_ref()
 }
 
+/// The coefficients of a polynomial force, from the constant one.
+const POWERS: [(&str, &str); 4] = [
+    ("constant force", "N"),
+    ("coefficient of x", "N/m"),
+    ("coefficient of x²", "N/m²"),
+    ("coefficient of x³", "N/m³"),
+];
+
 /// Name of a field on the screen, and its unit.
 pub fn name_and_unit(path: &str) -> (String, &'static str) {
+    let power = path.strip_prefix("mechanism.coefficients_si.").and_then(|power| power.parse::<usize>().ok());
+    if let Some(power) = power {
+        let (name, unit) = POWERS.get(power).copied().unwrap_or(("", ""));
+        let name = if name.is_empty() { format!("coefficient of x to the {power}") } else { name.to_owned() };
+        return (name, unit);
+    }
     let number = field_info(path).and_then(|field| Some((field.name?, field.unit())));
     let file = || match without_indices(path).as_str() {
         "mechanism.path" => Some(("table of the force", "")),

@@ -5,7 +5,6 @@ use std::time::Duration;
 
 use crate::app::words::fields::in_words;
 use crate::mechanics::Mechanism;
-use crate::numeric::short;
 use crate::output::{Chart, Cut, NoPicture, Overlay, SweepPicture, View, csv, shown_columns, sweep_chart};
 use crate::questions::{Grid, SweepCells, Table};
 use crate::scene::{FieldPath, Scene};
@@ -145,10 +144,15 @@ impl Map {
         fields(self) == fields(other) && has_columns
     }
 
-    /// Length of the settled window in s.
-    pub fn window_s(&self) -> String {
-        let run = self.question.scene.run;
-        short(run.duration_s - run.settle_s.unwrap_or(0.5 * run.duration_s))
+    /// Whether it is of the scene of a question over the same fields.
+    pub(super) fn is_of_scene(&self, question: &MapQuestion) -> bool {
+        let mut scene = self.question.scene.scene.clone();
+        for axis in &question.axes {
+            let path = FieldPath::new(&axis.field);
+            let is_set = path.get(&question.scene.scene).is_none_or(|value| path.set(&mut scene, value));
+            debug_assert!(is_set, "both maps have the fields of the axes");
+        }
+        scene == question.scene.scene
     }
 
     /// The rows of the sweep with these columns beside the standard ones, with stand-ins for the cells that

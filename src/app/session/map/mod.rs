@@ -107,8 +107,10 @@ pub struct Mapping {
     /// The axes of the part of the map that is enlarged.
     pub enlarged: Option<[SweepAxis; 2]>,
     map: Option<Map>,
-    /// The previous map, shown until the new one has a result everywhere.
-    previous: Option<Map>,
+    /// The previous map, shown until the new one has a result everywhere, and whether it is of the same scene.
+    previous: Option<(Map, bool)>,
+    /// A map that was whole, to come back to.
+    kept: Option<Map>,
     /// The cells of the map that have come and are not in it yet.
     pub(super) cells: Background<CellsQuestion, (u64, Cell)>,
     pub version: u64,
@@ -123,7 +125,8 @@ impl Mapping {
     pub fn shown(&self) -> Option<(&Map, bool)> {
         let newest = self.map.as_ref().filter(|map| map.is_covered() || self.previous.is_none());
         let current = self.waiting.is_none() && self.problem.is_none();
-        newest.map(|map| (map, current)).or_else(|| self.previous.as_ref().map(|map| (map, false)))
+        let previous = || self.previous.as_ref().map(|(map, is_same)| (map, current && *is_same));
+        newest.map(|map| (map, current)).or_else(previous)
     }
 
     /// Positions of the scene so far on the axes of the map that is shown, the oldest first.
@@ -193,7 +196,8 @@ impl Mapping {
         }
         self.version += u64::from(map.add(cells));
         if map.is_covered() {
-            self.previous = None;
+            self.kept =
+                self.previous.take().map(|previous| previous.0).filter(Map::is_whole).or(self.kept.take());
         }
     }
 }
@@ -263,11 +267,24 @@ impl Session {
         }
         self.map.version += 1;
         self.map.cells.resume();
-        match Map::new(&question, self.model().mechanism()) {
+        let kept = self.map.kept.take_if(|map| map.question == question);
+        let kept = kept.or_else(|| Some(self.map.previous.take_if(|(map, _)| map.question == question)?.0));
+        match kept.map_or_else(|| Map::new(&question, self.model().mechanism()), Ok) {
             Ok(map) => {
                 let mapping = &mut self.map;
-                let old = mapping.map.take().filter(Map::is_covered).or_else(|| mapping.previous.take());
-                mapping.previous = old.filter(|old| old.stands_in_for(&map));
+                let newest = mapping.map.take().filter(Map::is_covered);
+                let old = newest.or_else(|| mapping.previous.take().map(|previous| previous.0));
+                let old = old.filter(|old| old.stands_in_for(&map));
+                mapping.previous = None;
+                match old {
+                    Some(old) if map.is_covered() => mapping.kept = Some(old).filter(Map::is_whole),
+                    old => {
+                        mapping.previous = old.map(|old| {
+                            let is_same = old.is_of_scene(&question);
+                            (old, is_same)
+                        })
+                    }
+                }
                 (mapping.map, mapping.problem) = (Some(map), None);
                 self.run_cells();
             }

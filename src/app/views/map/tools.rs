@@ -15,36 +15,34 @@ use super::super::axes::{field_ui, range_id, range_row_ui};
 use super::super::memory::MapLook;
 
 /// Width in points of the title; a longer one is cut, but complete in the list and beside the colours.
-const TITLE: f32 = 150.0;
+const TITLE: f32 = 130.0;
 
-/// Width in points below which the choices are in a menu.
-const NARROW: f32 = 560.0;
-
-/// Quantity, axes, looks, further choices and progress in one row, which wraps.
+/// Quantity, axes, further choices and progress in one row, which wraps.
 pub fn tools_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     // what no step of a lesson explains is in the menu
-    let is_short = context.session.is_lesson || ui.available_width() < NARROW;
+    let is_lesson = context.session.is_lesson;
     egui::Frame::new().inner_margin(egui::Margin::symmetric(8, 0)).show(ui, |ui| {
         ui.horizontal_wrapped(|ui| {
             quantity_ui(ui, &mut context.session.map);
-            if !is_short {
+            if !is_lesson {
                 fields_ui(ui, context);
-                look_ui(ui, &mut context.memory.map_look, context.session.map.quantity());
             }
             choices_ui(ui, "Options", |ui| {
                 ui.label(format!("Every cell is a separate run {}.", start_in_words(context)));
-                if is_short {
-                    ui.horizontal(|ui| fields_ui(ui, context));
-                    let quantity = context.session.map.quantity();
-                    ui.horizontal(|ui| look_ui(ui, &mut context.memory.map_look, quantity));
-                }
+                let quantity = context.session.map.quantity();
+                ui.horizontal(|ui| look_ui(ui, &mut context.memory.map_look, quantity));
                 trail_items_ui(ui, context);
                 ui.separator();
+                if is_lesson {
+                    ui.horizontal(|ui| fields_ui(ui, context));
+                }
                 if let Some(axes) = context.session.map_axes() {
                     ranges_items_ui(ui, context, &axes);
                 }
+                ui.separator();
+                again_ui(ui, &mut context.session.map);
             });
-            progress_ui(ui, context);
+            progress_ui(ui, &mut context.session.map);
         });
     });
 }
@@ -140,26 +138,30 @@ fn ranges_items_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axes: &[SweepAxis
     }
 }
 
-fn progress_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
-    let mapping = &mut context.session.map;
+/// Stops a map that is computed, or goes on with it.
+fn progress_ui(ui: &mut Ui, mapping: &mut Mapping) {
     let Some(map) = mapping.map() else { return };
     let (known, all) = (map.known, map.count());
-    let took = map.took.as_secs_f64();
     if mapping.is_running() {
         if ui.button("Stop").on_hover_text("Leave the map as it is now.").clicked() {
             mapping.stop();
         }
         return bar_ui(ui, (known, all), 50.0);
     }
-    let (text, hover) = if known == all {
-        let coarse = map.coarse_after.unwrap_or(map.took).as_secs_f64();
-        let hover = format!("Coarse after {coarse:.2} s, all {all} runs after {took:.1} s. Runs them again.");
-        ("Recompute", hover)
-    } else {
-        ("Continue", format!("{known} of {all} runs are done. Runs the others."))
-    };
-    if ui.button(text).on_hover_text(hover).clicked() {
+    let hover = format!("{known} of {all} runs are done. Runs the others.");
+    if known < all && ui.button("Continue").on_hover_text(hover).clicked() {
         mapping.go_on();
+    }
+}
+
+/// Computes a map that is whole again.
+fn again_ui(ui: &mut Ui, mapping: &mut Mapping) {
+    let Some(map) = mapping.map().filter(|map| map.known == map.count()) else { return };
+    let (coarse, took) = (map.coarse_after.unwrap_or(map.took).as_secs_f64(), map.took.as_secs_f64());
+    ui.label(format!("Coarse after {coarse:.2} s, all {} runs after {took:.1} s.", map.count()));
+    if ui.button("Recompute").clicked() {
+        mapping.go_on();
+        ui.close();
     }
 }
 
