@@ -2,10 +2,11 @@
 
 use eframe::egui::{Key, Modifiers, PointerButton, accesskit::Role, vec2};
 use egui_kittest::{Harness, kittest::Queryable as _};
+use interwell::app::session::Session;
 use interwell::app::session::explore::WalkQuantity;
 use interwell::app::views::View;
 use interwell::app::window::{Command, Window};
-use interwell::scene::{Layout, Start};
+use interwell::scene::{Layout, Start, Stops};
 use interwell_studies::study::{Direction, Signal};
 
 use crate::cursors::drag;
@@ -216,4 +217,30 @@ fn undo_begins_again_at_the_start_before() {
     assert_eq!((session.player.time(), session.player.state().x), (0.0, 0.5e-3));
     assert!(session.redo());
     assert_eq!((session.player.time(), session.player.state().x), (0.0, 1e-3));
+}
+
+/// A stop that has pushed the mass of a paused motion leaves it where it was when it is undone.
+#[test]
+fn undo_brings_a_pushed_mass_back() {
+    let mut session = session("paper", &[]);
+    while session.player.time() < 0.02 || session.player.state().x.abs() < 1.2e-3 {
+        _ = session.player.tick(0.01);
+    }
+    session.player.set_playing(false);
+    let state = |session: &Session| (session.player.state().t, session.player.state().x);
+    let before = state(&session);
+    session.edit_once(|scene| scene.stops = Stops::Rigid { travel_limit_mm: 0.2, restitution: 0.36 });
+    let pushed = state(&session);
+    assert!(before.1.abs() > 1e-3 && pushed.1.abs() <= 0.2e-3 + 1e-12, "{before:?} {pushed:?}");
+    assert!(session.undo());
+    assert_eq!(state(&session), before);
+    assert!(session.redo());
+    assert_eq!(state(&session), pushed);
+    // a motion that has gone on since goes on
+    session.player.set_playing(true);
+    (0..8).for_each(|_| _ = session.player.tick(0.1));
+    let on = state(&session);
+    assert!(session.undo());
+    assert_eq!(state(&session).0, on.0);
+    assert!((state(&session).1 - on.1).abs() < 1e-12);
 }

@@ -163,9 +163,7 @@ fn a_map_waits_for_the_first_prediction() {
     assert!(!harness.state().lesson().unwrap().is_covering());
     assert!(go_to(&mut harness, |step| matches!(step, Step::Do { .. })));
     assert_eq!(harness.query_all_by_label("Covered").count(), 0);
-    for tool in ["Options", "Once a period"] {
-        assert!(is_anywhere(&harness, tool), "{tool}");
-    }
+    assert!(is_anywhere(&harness, "Options"));
 }
 
 #[test]

@@ -8,7 +8,7 @@ use crate::scene::{Excitation, FieldPath, Mechanism, Scene, Stops, check};
 
 use super::Session;
 use super::build::{fault_message, first_stops, solve};
-use super::editor::Editor;
+use super::editor::{Editor, Moment, Placed};
 use super::player::opening_speed;
 use super::prepared::SharedModel;
 
@@ -22,7 +22,15 @@ const PRESS_GAP: f64 = 1.0;
 impl Session {
     /// Changes the scene as part of a gesture; see [`Editor::edit`].
     pub fn edit(&mut self, change: impl FnOnce(&mut Scene)) -> bool {
+        if !self.editor.in_gesture() {
+            self.editor.at(self.moment());
+        }
         self.editor.edit(change)
+    }
+
+    fn moment(&self) -> Moment {
+        let now = self.player.watch().now();
+        (now.t, (now.x, now.v))
     }
 
     /// Changes the mechanism as part of a gesture, if the changed one can be solved and run. Returns whether
@@ -87,18 +95,29 @@ impl Session {
 
     fn move_in_history(&mut self, step: impl FnOnce(&mut Editor) -> bool) -> bool {
         self.end_gesture();
-        let start = self.scene().start;
+        let (start, now) = (self.scene().start, self.moment());
+        self.editor.at(now);
         let moved = step(&mut self.editor);
-        if let Some((x, v)) = self.editor.take_placed() {
-            self.leave_reference();
-            self.player.place(x, v);
-            self.note_move();
-        } else if moved {
-            self.apply();
-            self.ask_thresholds();
-            if self.scene().start != start {
-                self.restart();
+        match self.editor.take_placed() {
+            Some(Placed::Mass((x, v))) => {
+                self.leave_reference();
+                self.player.place(x, v);
+                self.note_move();
             }
+            placed if moved => {
+                self.apply();
+                self.ask_thresholds();
+                match placed {
+                    _ if self.scene().start != start => self.restart(),
+                    // a paused mass goes back to where the change found it
+                    Some(Placed::Motion((t, mass))) if t == now.0 && mass != self.moment().1 => {
+                        self.player.place(mass.0, mass.1);
+                        self.note_move();
+                    }
+                    _ => {}
+                }
+            }
+            _ => {}
         }
         moved
     }

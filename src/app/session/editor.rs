@@ -21,10 +21,25 @@ const PASTED: &str = "the pasted scene";
 type State = (f64, f64);
 
 /// What one step changes back: the scene, or the state of the mass.
+/// The live time of a motion in s, and the state of the mass then.
+pub type Moment = (f64, State);
+
+/// What a step brings back of the motion.
+#[derive(Debug, Clone, Copy)]
+pub enum Placed {
+    Mass(State),
+    /// The motion when its scene was left, unless it has gone on since.
+    Motion(Moment),
+}
+
 #[derive(Debug, Clone)]
 enum Step {
-    Scene(Box<Scene>),
-    Mass { from: State, to: State },
+    /// Another scene, and the motion when it was left.
+    Scene(Box<Scene>, Option<Moment>),
+    Mass {
+        from: State,
+        to: State,
+    },
 }
 
 #[derive(Debug, Clone)]
@@ -36,7 +51,9 @@ pub struct Editor {
     undo: Vec<Step>,
     redo: Vec<Step>,
     /// Where the step that was taken last has placed the mass.
-    placed: Option<State>,
+    placed: Option<Placed>,
+    /// The motion before the current gesture.
+    moment: Option<Moment>,
     /// The scene before the current gesture.
     gesture: Option<Scene>,
 }
@@ -44,7 +61,16 @@ pub struct Editor {
 impl Editor {
     pub fn new(document: Document) -> Self {
         let (saved, named) = (document.scene.clone(), document.scene.clone());
-        Self { document, saved, named, undo: Vec::new(), redo: Vec::new(), placed: None, gesture: None }
+        Self {
+            document,
+            saved,
+            named,
+            undo: Vec::new(),
+            redo: Vec::new(),
+            placed: None,
+            moment: None,
+            gesture: None,
+        }
     }
 
     /// An editor on the scene of a lesson or of a link, which differs from the scene that its source names.
@@ -156,7 +182,12 @@ impl Editor {
         let Some(before) = self.gesture.take().filter(|before| *before != self.document.scene) else {
             return;
         };
-        self.push(Step::Scene(Box::new(before)));
+        self.push(Step::Scene(Box::new(before), self.moment));
+    }
+
+    /// Notes the motion before the next change.
+    pub fn at(&mut self, moment: Moment) {
+        self.moment = Some(moment);
     }
 
     /// Adds a move of the mass by hand as one undo step.
@@ -167,8 +198,8 @@ impl Editor {
         }
     }
 
-    /// The state of the mass that an undo or a redo has brought back, once.
-    pub fn take_placed(&mut self) -> Option<State> {
+    /// What an undo or a redo has brought back of the motion, once.
+    pub fn take_placed(&mut self) -> Option<Placed> {
         self.placed.take()
     }
 
@@ -199,9 +230,10 @@ impl Editor {
     pub fn undo(&mut self) -> bool {
         self.end_gesture();
         let Some(step) = self.undo.pop() else { return false };
-        if let Step::Mass { from, .. } = step {
-            self.placed = Some(from);
-        }
+        self.placed = match step {
+            Step::Mass { from, .. } => Some(Placed::Mass(from)),
+            Step::Scene(_, moment) => moment.map(Placed::Motion),
+        };
         let back = self.taken(step);
         self.redo.push(back);
         true
@@ -211,9 +243,10 @@ impl Editor {
     pub fn redo(&mut self) -> bool {
         self.end_gesture();
         let Some(step) = self.redo.pop() else { return false };
-        if let Step::Mass { to, .. } = step {
-            self.placed = Some(to);
-        }
+        self.placed = match step {
+            Step::Mass { to, .. } => Some(Placed::Mass(to)),
+            Step::Scene(_, moment) => moment.map(Placed::Motion),
+        };
         let back = self.taken(step);
         self.undo.push(back);
         true
@@ -222,9 +255,9 @@ impl Editor {
     /// Takes a step. Returns the one that leads back.
     fn taken(&mut self, step: Step) -> Step {
         match step {
-            Step::Scene(mut scene) => {
+            Step::Scene(mut scene, _) => {
                 std::mem::swap(&mut self.document.scene, &mut scene);
-                Step::Scene(scene)
+                Step::Scene(scene, self.moment)
             }
             step => step,
         }
@@ -236,7 +269,7 @@ impl Editor {
     pub fn go_to(&mut self, link: &str) -> bool {
         self.end_gesture();
         let has_link = |step: &Step| {
-            let Step::Scene(scene) = step else { return false };
+            let Step::Scene(scene, _) = step else { return false };
             let mut document = self.document.clone();
             document.scene.clone_from(scene);
             document.link().is_ok_and(|other| other == link)
@@ -267,7 +300,7 @@ impl Editor {
         let before = std::mem::replace(&mut document.files, Files::beside(path));
         let mut now = document.scene.clone();
         for step in self.undo.iter_mut().chain(&mut self.redo) {
-            let Step::Scene(scene) = step else { continue };
+            let Step::Scene(scene, _) = step else { continue };
             update_names(scene, &before, &mut self.document.scene, &mut now);
         }
         (self.saved, self.named) = (document.scene.clone(), document.scene.clone());

@@ -14,8 +14,8 @@ use eframe::egui::{
     pos2, vec2,
 };
 use egui_plot::{
-    AxisHints, ColorConflictHandling, Corner, GridInput, GridMark, HPlacement, HoverPosition, Legend, Plot,
-    PlotBounds, PlotPoint, PlotTransform,
+    ColorConflictHandling, Corner, GridInput, GridMark, HoverPosition, Legend, Plot, PlotBounds, PlotPoint,
+    PlotTransform,
 };
 
 use crate::app::ui::style::{CONTROL, GRAB, Style};
@@ -35,7 +35,7 @@ use super::zoom::Ends;
 const APART: (f32, f32) = (80.0, 40.0);
 
 /// Least distance in points of the numbers on a low vertical axis.
-const LEAST: f32 = 16.0;
+pub const LEAST: f32 = 16.0;
 
 /// Height in points of a horizontal axis, and that of a plot below which it has no name.
 const LEVEL: f32 = 36.0;
@@ -44,6 +44,9 @@ const NAMELESS: f32 = 160.0;
 /// Margins in points beside a plot, and above and below it.
 const MARGIN: f32 = 8.0;
 const ABOVE: f32 = 7.0;
+
+/// Least width in points of what is read.
+const READING: f32 = 110.0;
 
 /// Share of an axis below which a value is read as zero.
 const ZERO: f64 = 1e-4;
@@ -62,8 +65,8 @@ pub struct Plotted {
     /// which the menu was asked.
     pub clicked: Option<(f64, f64)>,
     transform: PlotTransform,
-    /// Whether what is read stands above, since the legend does not.
-    reads_above: bool,
+    /// The place of the legend, under which nothing is pointed at.
+    legend: Rect,
     /// The name of the curve under the pointer, and its point there.
     nearest: Option<(String, (f64, f64))>,
 }
@@ -86,7 +89,7 @@ impl Plotted {
 
     /// The values of the axes under the pointer.
     pub fn pointed(&self) -> Option<(f64, f64)> {
-        Some(self.values(self.response.hover_pos()?))
+        Some(self.values(self.response.hover_pos().filter(|at| !self.legend.contains(*at))?))
     }
 
     /// The handle of the upright line at a value, or at the edge beyond which it lies. A drag that begins
@@ -113,7 +116,10 @@ impl Plotted {
 
     /// Writes what is read in its corner.
     pub fn write(&self, ui: &Ui, style: &Style, text: &str) {
-        plated_at(ui.painter(), style, self.frame(), self.reads_above, text);
+        let frame = self.frame();
+        let is_beside = self.legend.top() < frame.center().y;
+        let right = if is_beside { self.legend.left().max(frame.left() + READING) } else { frame.right() };
+        plated_at(ui.painter(), style, frame.with_max_x(right), text);
     }
 
     /// Writes the values of the curve under the pointer.
@@ -163,15 +169,11 @@ where
     })
 }
 
-/// Writes what is read in the upper or the lower left corner of a picture.
-pub fn plated_at(painter: &Painter, style: &Style, frame: Rect, is_above: bool, text: &str) {
+/// Writes what is read in the upper left corner of a picture.
+pub fn plated_at(painter: &Painter, style: &Style, frame: Rect, text: &str) {
     let inside = frame.shrink(4.0);
-    let place = match is_above {
-        true => (inside.left_top(), Align2::LEFT_TOP),
-        false => (inside.left_bottom(), Align2::LEFT_BOTTOM),
-    };
     let galley = painter.layout(with_minus(text), style.small(), style.ink(), inside.width());
-    plated(painter, style, place, galley);
+    plated(painter, style, (inside.left_top(), Align2::LEFT_TOP), galley);
 }
 
 /// The width in points of a text in the letters of a picture.
@@ -180,7 +182,7 @@ pub fn width(ui: &Ui, style: &Style, text: &str) -> f32 {
 }
 
 /// The name of an axis, or its unit where a length in points has no room for it.
-fn name_within(ui: &Ui, style: &Style, axis: &PlotAxis, length: f32) -> String {
+pub fn name_within(ui: &Ui, style: &Style, axis: &PlotAxis, length: f32) -> String {
     let unit = axis.unit().filter(|_| width(ui, style, &axis.label) > length);
     unit.unwrap_or(&axis.label).to_owned()
 }
@@ -207,6 +209,22 @@ fn corner(view: View) -> Corner {
         _ if view.is_over_time() => Corner::LeftBottom,
         _ => Corner::RightTop,
     }
+}
+
+/// About the place of a legend with these names in a frame.
+fn legend_place(ui: &Ui, style: &Style, frame: Rect, corner: Corner, names: &HashSet<&str>) -> Rect {
+    if names.is_empty() {
+        return Rect::NOTHING;
+    }
+    let widest = names.iter().map(|name| width(ui, style, name)).fold(0.0, f32::max);
+    let size = vec2(widest + BESIDE_NAME, ROW * names.len() as f32 + 8.0);
+    let align = match corner {
+        Corner::LeftTop => Align2::LEFT_TOP,
+        Corner::RightTop => Align2::RIGHT_TOP,
+        Corner::LeftBottom => Align2::LEFT_BOTTOM,
+        Corner::RightBottom => Align2::RIGHT_BOTTOM,
+    };
+    align.align_size_within_rect(size, frame)
 }
 
 fn legend(corner: Corner) -> Legend {
@@ -242,6 +260,10 @@ pub fn single_click<T: Clone + Send + Sync + 'static>(
         click = None;
     } else if let Some(place) = response.interact_pointer_pos().filter(|_| response.clicked()) {
         click = Some((now, at(place)));
+    }
+    if known.is_some() {
+        // for the views that were drawn before this one
+        ui.ctx().request_repaint();
     }
     if let Some((then, _)) = click {
         // a frame after that time, though no pointer moves
@@ -371,10 +393,12 @@ pub fn part_ui(
         let PlotPoint { x, y } = transform.value_from_position(at);
         (x, y)
     };
-    let clicked = single_click(ui, id.with("click"), &response, values);
+    let legend = legend_place(ui, style, *transform.frame(), corner(view), &names);
+    let clicked = single_click(ui, id.with("click"), &response, |at| (values(at), legend.contains(at)));
+    let clicked = clicked.filter(|clicked| !clicked.1).map(|clicked| clicked.0);
     let nearest = nearest.into_inner();
-    let reads_above = corner(view) != Corner::RightTop;
-    let mut plotted = Plotted { response, clicked, transform, reads_above, nearest };
+    let nearest = nearest.filter(|_| response.hover_pos().is_some_and(|at| !legend.contains(at)));
+    let mut plotted = Plotted { response, clicked, transform, legend, nearest };
     let moved = plotted.transform.bounds();
     for (axis, before, now) in [(axes[0], ends[0], moved.range_x()), (axes[1], ends[1], moved.range_y())] {
         let now = (*now.start(), *now.end());
@@ -391,45 +415,6 @@ pub fn part_ui(
         changed_ui(ui, memory, (view, axes), name, (area, plotted.frame()));
     }
     plotted
-}
-
-/// Draws a scale of colours in `frame`, with its numbers at the right.
-pub fn scale_ui(ui: &mut Ui, style: &Style, frame: Rect, scale: &Panel) {
-    let words = |mark: GridMark, _: &RangeInclusive<f64>| {
-        let near = |tick: &&(f64, String)| (tick.0 - mark.value).abs() < 1e-9;
-        scale.y.ticks.iter().find(near).map_or_else(String::new, |tick| tick.1.clone())
-    };
-    let ticks = |_: GridInput| {
-        let apart = LEAST / frame.height() * scale.y.ticks.len() as f32;
-        let ticks = scale.y.ticks.iter().step_by(apart.ceil().max(1.0) as usize);
-        ticks.map(|tick| GridMark { value: tick.0, step_size: 1.0 }).collect()
-    };
-    let axis = AxisHints::new_y()
-        .placement(HPlacement::Right)
-        .label(name_within(ui, style, &scale.y, frame.height()))
-        .formatter(words);
-    let id = ui.scope_id().with("scale");
-    let plot = Plot::new("scale")
-        .id(id)
-        .width(frame.width() + UPRIGHT)
-        .height(frame.height())
-        .show_axes([false, true])
-        .custom_y_axes(vec![axis.min_thickness(UPRIGHT)])
-        .y_grid_spacer(ticks)
-        .show_grid(false)
-        .show_x(false)
-        .show_y(false)
-        .sense(Sense::hover());
-    let area = Rect::from_min_size(frame.min, vec2(frame.width() + UPRIGHT, frame.height()));
-    ui.scope_builder(UiBuilder::new().max_rect(area), |ui| {
-        ui.style_mut().text_styles.insert(TextStyle::Body, style.small());
-        plot.show(ui, |plot| {
-            plot.set_plot_bounds(PlotBounds::from_min_max([0.0, 0.0], [1.0, 1.0]));
-            for layer in &scale.layers {
-                plot.add(LayerItem::new(id.with("colours"), ("", layer), scale, style, false));
-            }
-        });
-    });
 }
 
 /// The tool in the corner of a picture whose axes were changed, which brings them back.

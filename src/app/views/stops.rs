@@ -55,15 +55,19 @@ fn limit_number(session: &Session, mm: f64) -> String {
     with_minus(&shown(mm, decimals(key_step(session))))
 }
 
+/// Height in points of a row of travel limits.
+const LIMIT_ROW: f32 = 18.0;
+
 /// Writes the travel limits outside of the stops, and of those that a question asks about, in `rect`.
 pub(super) fn travel_limits(painter: &Painter, context: &ViewContext<'_>, rect: Rect) {
     let style = context.style;
-    for stops in [shown_stops(context.session).0, context.memory.asked_stops] {
+    // those that a question asks about stand above those that are there
+    for (row, stops) in [shown_stops(context.session).0, context.memory.asked_stops].into_iter().enumerate() {
         for (mm, side) in stops.into_iter().zip([-1.0, 1.0]) {
             let Some(mm) = mm else { continue };
             let x = context.span.screen_from_world(mm / 1e3, rect) + side * (WALL + 4.0);
-            let align = if side > 0.0 { Align2::LEFT_TOP } else { Align2::RIGHT_TOP };
-            let at = (pos2(x, rect.top() + 4.0), align);
+            let align = if side > 0.0 { Align2::LEFT_BOTTOM } else { Align2::RIGHT_BOTTOM };
+            let at = (pos2(x, rect.bottom() - 4.0 - LIMIT_ROW * row as f32), align);
             let number = limit_number(context.session, mm);
             let number = painter.layout_no_wrap(number, style.small(), style.ink());
             if rect.x_range().contains(x + side * number.size().x) {

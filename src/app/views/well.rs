@@ -190,7 +190,9 @@ fn barrier(panel: &mut Panel, model: &Model, level: &Level<'_>, ends: [(f64, f64
         let name = if left == right {
             format!("{left} from a stop")
         } else {
-            format!("{left} and {right} from the stops")
+            // the unit stands once if they share it
+            let shared = left.split_once(' ').filter(|(_, unit)| right.ends_with(unit));
+            format!("{}, {right} from the stops", shared.map_or(left.as_str(), |(number, _)| number))
         };
         panel.layer(Role::Joined, name, Marks::Path(marks));
     }

@@ -1,6 +1,7 @@
 //! View of the map: every combination of two fields, each run from rest.
 
 mod pointer;
+mod scale;
 mod surface;
 mod tools;
 mod trail;
@@ -18,12 +19,9 @@ use crate::app::words::kind::Kind;
 use crate::app::words::numbers::three;
 use crate::app::words::status::{speed, threshold};
 use crate::dynamics::Summary;
-use crate::output::{
-    Cell as DrawnCell, Cells, Colours, Marks, Panel, PlotAxis, RMS, Role, View as MapShape, suited_unit,
-    words_of,
-};
+use crate::output::{Marks, Panel, RMS, View as MapShape, suited_unit, words_of};
 use crate::scene::{Stops, SweepAxis};
-use interwell_studies::study::{Edges, Read, SummaryField, label_and_unit};
+use interwell_studies::study::{Read, SummaryField, label_and_unit};
 
 use super::labels::haloed;
 use super::layer::by_kind;
@@ -46,8 +44,6 @@ const NAMES: [&str; 3] = ["map", "cut across", "cut upward"];
 const CUT: f32 = 0.33;
 /// Width in points of the scale of colours.
 const BAR: f32 = 14.0;
-/// Number of its steps.
-const STEPS: usize = 128;
 
 /// Half the diagonal in points of the mark of the best stops.
 const BEST: f32 = 7.0;
@@ -128,38 +124,13 @@ impl Panels {
         let mut scale = None;
         for panel in &mut panels {
             if let (Some(axis), Some(cells)) = (panel.bar.take(), panel.cells()) {
-                scale = Some(scale_of(&axis, &cells.colours));
+                scale = Some(scale::scale_of(&axis, &cells.colours));
             }
             let layers = std::mem::take(&mut panel.layers);
             panel.layers = layers.into_iter().flat_map(by_kind).collect();
         }
         Self { panels, scale }
     }
-}
-
-/// The colours along an axis, over its shares from 0 to 1.
-fn scale_of(axis: &PlotAxis, colours: &Colours) -> Panel {
-    let shares: Vec<f64> = (0..STEPS).map(|i| (i as f64 + 0.5) / STEPS as f64).collect();
-    let is_signed = matches!(colours, Colours::Signed(_));
-    let value = |share: &f64| if is_signed { axis.low + share * (axis.high - axis.low) } else { *share };
-    let ticks = axis.ticks.iter().map(|(value, words)| (axis.share(*value), words.clone())).collect();
-    let mut panel =
-        Panel::new(PlotAxis::given(0.0, 1.0, Vec::new(), ""), PlotAxis::given(0.0, 1.0, ticks, &axis.label));
-    panel.draw(
-        Role::Motion,
-        Marks::Cells(Cells {
-            across: Edges { values: vec![0.5], edges: vec![0.0, 1.0] },
-            up: Edges::new(&shares),
-            cells: shares.iter().map(|share| DrawnCell::Value(value(share))).collect(),
-            colours: if is_signed {
-                colours.clone()
-            } else {
-                Colours::Scale(PlotAxis::between(0.0, 1.0, ""))
-            },
-            missing: String::new(),
-        }),
-    );
-    panel
 }
 
 /// The map from above, with cuts through the cell of the scene beside it.
@@ -204,7 +175,8 @@ fn flat_ui(ui: &mut Ui, context: &mut ViewContext<'_>, area: Rect, whole: [Ends;
     let Some(plotted) = plots.first() else { return };
     let frame = plotted.frame();
     if let Some(scale) = &drawn.scale {
-        scale_ui(ui, &style, frame, scale);
+        let left = frame.right() + BAR;
+        scale::scale_ui(ui, &style, frame.with_min_x(left).with_max_x(left + BAR), scale);
     }
     let painter = ui.painter().with_clip_rect(frame);
     trail::draw(&painter, plotted, &style, &trail);
@@ -234,15 +206,6 @@ fn flat_ui(ui: &mut Ui, context: &mut ViewContext<'_>, area: Rect, whole: [Ends;
     let cell_under = |at| cell_at(MAP, plotted.values(at));
     let moved = pointer::cross_hair_ui(ui, &style, (at, scene), frame, map.size(), &cell_under);
     pointer::perform(context, chosen, moved);
-}
-
-/// The scale of the colours at the right of a frame.
-fn scale_ui(ui: &mut Ui, style: &Style, frame: Rect, scale: &Panel) {
-    let place = Rect::from_min_max(
-        pos2(frame.right() + BAR, frame.top()),
-        pos2(frame.right() + 2.0 * BAR, frame.bottom()),
-    );
-    super::plot::scale_ui(ui, style, place, scale);
 }
 
 /// Rings the cell of the scene in each cut.

@@ -42,7 +42,7 @@ pub fn surface_ui(ui: &mut Ui, context: &mut ViewContext<'_>, area: Rect) {
         if let Some(at) = height(&pane, cell).and_then(|z| at_height(&pane, cell, z)) {
             painter.circle_stroke(at, 5.0, style.cell_stroke());
         }
-        plated_at(&painter, &style, area, true, &reading(map, quantity, cell));
+        plated_at(&painter, &style, area, &reading(map, quantity, cell));
     }
     let clicked = single_click(ui, ui.scope_id().with("click"), &pane.response, |at| pane.surface_cell(at));
     if let Some((column, row)) = clicked.flatten() {
