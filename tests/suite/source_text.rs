@@ -6,7 +6,7 @@ use std::path::Path;
 use crate::layers::sources;
 
 /// Folders whose files keep to both limits.
-const FOLDERS: [&str; 10] = [
+const FOLDERS: [&str; 9] = [
     "benches",
     "examples",
     "fuzz/fuzz_targets",
@@ -15,7 +15,6 @@ const FOLDERS: [&str; 10] = [
     "src",
     "studies/src",
     "tests",
-    "web/examples",
     "web/src",
 ];
 

@@ -46,7 +46,14 @@ pub fn basins_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     match &level {
         Some(Ok(_)) => {}
         Some(Err(problem)) => empty_ui(ui, &style, frame, &sentence(problem)),
-        None => empty_ui(ui, &style, frame, "The basins are being computed, first a coarse picture."),
+        None => {
+            let so_far = basins.running_for().map(|time| format!(" {} s so far.", time.as_secs()));
+            if so_far.is_some() {
+                ui.ctx().request_repaint_after_secs(1.0);
+            }
+            let text = "The basins are being computed, first a coarse picture.";
+            empty_ui(ui, &style, frame, &format!("{text}{}", so_far.unwrap_or_default()));
+        }
     }
     let shared = std::mem::replace(&mut context.span, plotted.span());
     stops_ui(ui, context, frame, (frame.top(), frame.bottom()), (0.0, false));

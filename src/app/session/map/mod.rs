@@ -107,7 +107,7 @@ pub struct Mapping {
     /// The axes of the part of the map that is enlarged.
     pub enlarged: Option<[SweepAxis; 2]>,
     map: Option<Map>,
-    /// The previous map, shown until the new one has a result everywhere, and whether it is of the same scene.
+    /// The previous map, shown until the new one has a result everywhere, and whether it is of its scene.
     previous: Option<(Map, bool)>,
     /// A map that was whole, to come back to.
     kept: Option<Map>,

@@ -137,7 +137,7 @@ impl Panels {
 fn flat_ui(ui: &mut Ui, context: &mut ViewContext<'_>, area: Rect, whole: [Ends; 2]) {
     let (style, look) = (context.style, context.memory.map_look);
     let trail = if look.trail { context.session.map.trail_places() } else { Vec::new() };
-    let Some((map, _)) = context.session.map.shown() else { return };
+    let Some((map, is_current)) = context.session.map.shown() else { return };
     let quantity = context.session.map.quantity();
     let (place, scene) = (map.place(context.session.scene()), map.nearest_cell(context.session.scene()));
     let has_cuts = look.cuts && area.width() > ROOM_FOR_CUTS.x && area.height() > ROOM_FOR_CUTS.y;
@@ -198,6 +198,7 @@ fn flat_ui(ui: &mut Ui, context: &mut ViewContext<'_>, area: Rect, whole: [Ends;
             point_out(&painter, plotted, &style, map, cell);
             plotted.write(ui, &style, &reading(map, quantity, cell));
         }
+        None if !is_current => plotted.write(ui, &style, "of the scene before"),
         None if place.contains(&None) || !is_inside(map, place) => {
             plotted.write(ui, &style, &place_in_words(context, place, quantity));
         }
