@@ -9,8 +9,8 @@ use interwell::scene::{Layout, Start, Stops, SweepAxis};
 use crate::cursors::{drag, wheel};
 use crate::shared::axis;
 use crate::support::{
-    LONG, WIDE, choose_in_map, click_on, press, press_with_ctrl, session, wait_for_threads, wait_until,
-    window,
+    LONG, WIDE, choose_in_map, click_on, painted, press, press_with_ctrl, session, wait_for_threads,
+    wait_until, window,
 };
 use crate::written::arguments;
 
@@ -46,7 +46,15 @@ fn it_fills_and_a_click_is_one_step() {
     assert!(overlay.first_crossing.as_ref().is_some_and(|line| line.rows() > 0));
     let place = harness.get_by_role_and_label(Role::Image, "map").rect();
     let (before, state) = (harness.state().session.scene().clone(), harness.state().session.player.state());
-    // the cell at the middle is 2 mm and 1 g
+    // the cell at the middle is 2 mm and 1 g, and is read in one line
+    let rms = 1e3 * map(harness.state()).cell(4, 2).unwrap().0.summary().unwrap().rms_velocity.unwrap();
+    harness.hover_at(place.center());
+    harness.run_steps(2);
+    let texts = painted(&harness).into_iter().map(|text| text.0);
+    let reading =
+        texts.filter(|text| text.starts_with("2 mm, 1 g: interwell; RMS velocity ")).collect::<Vec<_>>();
+    let read = reading[0].trim_end_matches(" mm/s").rsplit(' ').next().unwrap().parse::<f64>().unwrap();
+    assert!(reading.len() == 1 && (read / rms - 1.0).abs() < 5e-3, "{reading:?} {rms}");
     harness.drag_at(place.center());
     harness.run_steps(1);
     harness.drop_at(place.center());
