@@ -9,12 +9,12 @@ use std::f64::consts::TAU;
 use std::sync::atomic::AtomicBool;
 
 use interwell::dynamics::STANDARD_GRAVITY;
+use interwell::questions::{Progress, Simulation, Threshold};
 use interwell::system::threads::Pool;
 use interwell_studies::study::{
-    Answer, Basins, Branch, BranchEvent, BranchOptions, Carry, Cells, EvenRange, ExponentOptions, Family,
-    Grid, Onset, Orbit, Scan, Searched, SectionAt, SectionOptions, Sections, Signal, SpectrumOptions, Starts,
-    Sweep, SweepOptions, Table, Task, branch, check_lesson, exponents, result_fields, spectrum, threshold,
-    threshold_table,
+    Answer, Basins, Branch, BranchEvent, BranchOptions, Carry, EvenRange, ExponentOptions, Family, Grid,
+    Onset, Orbit, Scan, SectionAt, SectionOptions, Sections, Signal, SpectrumOptions, Starts, Sweep,
+    SweepOptions, Table, Task, branch, check_lesson, exponents, result_fields, spectrum, threshold,
 };
 
 /// Times that each study is done.
@@ -241,13 +241,11 @@ fn sweep(name: &str, changes: &[&str], axes: &[&str], carry: Option<Carry>, pool
 }
 
 fn threshold_of(pool: &Pool) {
-    let document = shared::changed("paper-unconstrained", &[]);
-    let values = (1..=200).map(|i| 0.01 * f64::from(i)).collect();
-    let scan = Scan { field: "excitation.amplitude_g".into(), values, resolution: 1e-5, until_settled: None };
-    let never = AtomicBool::new(false);
-    let task = Task { tick: &|| (), cancel: &never };
-    let cells = Cells::new(&document.scene, &document.files, Grid::of_one());
-    threshold_table(&cells, &Searched::Scan(scan), Onset::Interwell, pool, &task).unwrap();
+    let simulation = Simulation::new(&shared::changed("paper-unconstrained", &[])).unwrap();
+    let field = Some("excitation.amplitude_g=0.01:2:0.01".to_owned());
+    let (of, resolution) = (Onset::Interwell, Some(1e-5));
+    let study = Threshold { field, of, resolution, ..Threshold::default() };
+    study.run(&simulation, &Progress::none().threads(pool.count())).unwrap();
 }
 
 fn lessons(pool: &Pool) {

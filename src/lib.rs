@@ -93,8 +93,8 @@ pub use interwell_kernel::{dynamics, mechanics, numeric, scene, system};
 pub use interwell_studies::{output, questions};
 #[doc(no_inline)]
 pub use questions::{
-    Basins, Best, Branch, Compare, Curve, Error, Escape, Exponents, Identify, Orbit, ProbableThreshold,
-    Progress, Section, Simulation, Spectrum, Sweep, Threshold,
+    Basins, Best, Branch, Compare, Curve, Error, Escape, Exponents, Identify, Orbit, Progress, Section,
+    Simulation, Spectrum, Sweep, Threshold,
 };
 
 /// Compiles the program in the README.

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import difflib
 import reprlib
-from typing import Any, Iterable, Mapping
+from typing import Any, Callable, Iterable, Mapping, Union
 
 import numpy as np
 import numpy.typing as npt
 
 from ._errors import Fault, SceneError
+
+Over = Mapping[str, npt.ArrayLike]
+Progress = Union[bool, Callable[[int, Union[int, None]], None]]
 
 
 def _wrong(field: str, value: str, problem: str) -> SceneError:
@@ -106,3 +109,17 @@ def _near(name: str, names: list[str]) -> str:
         near = difflib.get_close_matches(last, [known.rpartition(".")[2] for known in names], n=1)
         found = [known for known in names if known.rpartition(".")[2] in near]
     return f"; did you mean {' or '.join(found[:3])}?" if found else ""
+
+
+def _word(name: str, value: str | None, words: tuple[str, ...]) -> str | None:
+    """Return one of some words, or nothing."""
+    if value is not None and value not in words:
+        given = value if isinstance(value, str) else _shown(value)
+        raise _wrong(name, given, f"give one of {', '.join(words)}")
+    return value
+
+
+def _over(over: Over | None) -> tuple[list[tuple[str, list[float]]], dict[str, npt.NDArray[Any]]]:
+    given = _mapping("over", {} if over is None else over, '{"mass_g": [10, 20]}')
+    arrays = {field: _numbers(field, values) for field, values in given.items()}
+    return [(field, array.tolist()) for field, array in arrays.items()], arrays

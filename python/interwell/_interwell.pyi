@@ -100,54 +100,10 @@ def sweep(
     threads: int | None = None,
     progress: _Told = None,
 ) -> Answer: ...
-def section(
+def ask(
+    study: str,
     scene: Simulation,
-    over: _Over,
-    at: str,
-    phase_deg: float = 0.0,
-    skip: int | None = None,
-    keep: int | None = None,
-    until_settled: float | None = None,
-    carry: str | None = None,
-    threads: int | None = None,
-    progress: _Told = None,
-) -> Answer: ...
-def exponents(
-    scene: Simulation,
-    over: _Over,
-    periods: int | None = None,
-    until_settled: float | None = None,
-    threads: int | None = None,
-    progress: _Told = None,
-) -> Answer: ...
-def escape(
-    scene: Simulation,
-    over: _Over,
-    runs: int | None = None,
-    within: float | None = None,
-    until: str = "well",
-    threads: int | None = None,
-    progress: _Told = None,
-) -> Answer: ...
-def threshold(
-    scene: Simulation,
-    over: _Over,
-    field: str | None,
-    of: str,
-    resolution: float | None = None,
-    until_settled: float | None = None,
-    melnikov: bool = False,
-    threads: int | None = None,
-    progress: _Told = None,
-) -> Answer: ...
-def probable_threshold(
-    scene: Simulation,
-    over: _Over,
-    field: str | None,
-    probability: float,
-    runs: int | None = None,
-    within: float | None = None,
-    resolution: float | None = None,
+    arguments: dict[str, Any],
     threads: int | None = None,
     progress: _Told = None,
 ) -> Answer: ...
@@ -182,13 +138,6 @@ def locus(
     phase_deg: float = 0.0,
     progress: _Told = None,
     begin: tuple[float, float, float] | int | None = None,
-) -> Answer: ...
-def spectrum(
-    scene: Simulation,
-    of: str,
-    taper: str,
-    rate_hz: float | None = None,
-    until_settled: float | None = None,
 ) -> Answer: ...
 def basins(
     scene: Simulation,

@@ -10,13 +10,11 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _interwell
-from ._check import _count, _entries, _mapping, _names, _near, _number, _numbers, _real, _shown
-from ._check import _whole, _without, _wrong
+from ._check import Over, Progress, _count, _entries, _mapping, _names, _near, _number, _numbers, _over
+from ._check import _real, _shown, _whole, _without, _word, _wrong
 from ._errors import SceneError
+from ._studies import Studies
 from ._table import Array, Basins, Grid, Identified, Run, Table, _write
-
-Over = Mapping[str, npt.ArrayLike]
-Progress = Union[bool, Callable[[int, Union[int, None]], None]]
 
 
 # fields whose values are texts
@@ -87,12 +85,6 @@ def _changes(fields: Mapping[str, Any], prefix: str = "") -> list[tuple[str, str
         else:
             changes.append((path, _value(value)))
     return changes
-
-
-def _over(over: Over | None) -> tuple[list[tuple[str, list[float]]], dict[str, Array]]:
-    given = _mapping("over", {} if over is None else over, '{"mass_g": [10, 20]}')
-    arrays = {field: _numbers(field, values) for field, values in given.items()}
-    return [(field, array.tolist()) for field, array in arrays.items()], arrays
 
 
 def _uncertain(field: str, law: Any) -> str:
@@ -167,7 +159,7 @@ def presets() -> dict[str, str]:
     return dict(_interwell.presets())
 
 
-class Scene(Mapping[str, Any]):
+class Scene(Studies, Mapping[str, Any]):
     """A scene: mass, mechanism, damping, stops, excitation, start and run.
 
     Parameters
@@ -216,6 +208,24 @@ class Scene(Mapping[str, Any]):
         is_built_in = self._simulation.name == f"built-in {source}"
         self._folder = None if is_built_in else os.path.dirname(os.path.abspath(source))
         self._changed = False
+
+    def _ask(
+        self,
+        study: str,
+        parts: str,
+        over: Over | None,
+        threads: int | None,
+        progress: Progress,
+        arguments: dict[str, Any],
+        cells: bool,
+    ) -> Table:
+        axes, arrays = _over(over)
+        given = {name: value for name, value in arguments.items() if value is not None}
+        if axes:
+            given["over"] = axes
+        with _Told(progress, parts) as told:
+            answer = _interwell.ask(study, self._simulation, given, _count("threads", threads), told)
+        return Grid(answer, arrays) if arrays and cells else Table(answer)
 
     @classmethod
     def _of(cls, simulation: _interwell.Simulation, before: Scene | None = None) -> Scene:
@@ -769,74 +779,6 @@ class Scene(Mapping[str, Any]):
             )
         return Grid(answer, arrays, carry)
 
-    def section(
-        self,
-        over: Over | None = None,
-        *,
-        at: str = "phase",
-        phase_deg: float = 0.0,
-        skip: int | None = None,
-        keep: int | None = None,
-        until_settled: float | None = None,
-        carry: str | None = None,
-        threads: int | None = None,
-        progress: Progress = False,
-    ) -> Table:
-        """Return the state once a forcing period, or at every impact; over a field a bifurcation diagram.
-
-        Parameters
-        ----------
-        over : mapping of str to array_like of float, optional
-            Fields and their values, the slowest first; without it the section is that of the scene.
-        at : str
-            ``"phase"`` or ``"impacts"``.
-        phase_deg : float
-            Phase of the drive in degrees, for ``at="phase"``.
-        skip, keep : int, optional
-            Forcing periods that are skipped, at most 1e9, and those that are kept, 1 to 4194304, in place of
-            the scene's run. Both belong together. More skipped periods leave less of a transient.
-        until_settled, carry, threads, progress
-            See :meth:`sweep`.
-
-        Returns
-        -------
-        Table
-            A row for each state or impact: the fields, with ``carry`` the ``direction``, ``index`` (within
-            the run, from 0), ``t_s``, then ``x_m``, ``v_m_per_s``, or at impacts ``side``, ``phase_deg``,
-            ``v_in_m_per_s``.
-
-        Raises
-        ------
-        SceneError
-            If an argument is wrong, the drive does not repeat (impacts of the scene's own run need no
-            period), or the settled window holds no forcing period. With ``carry`` as for :meth:`sweep`.
-
-        Notes
-        -----
-        The states are a section of Poincaré, taken from the polynomial of the integrator. Motions that begin
-        to graze a stop have bifurcations of their own (Nordmark 1991).
-
-        Examples
-        --------
-        >>> scene.section().rows
-        15
-        """
-        axes, _ = _over(over)
-        with _Told(progress, "runs") as told:
-            answer = _interwell.section(
-                self._simulation,
-                axes,
-                at,
-                _number("phase_deg", phase_deg),
-                _count("skip", skip, 2**64),
-                _count("keep", keep, 2**64),
-                _real("until_settled", until_settled),
-                carry,
-                _count("threads", threads),
-                told,
-            )
-        return Table(answer)
-
     def threshold(
         self,
         field: str | None = None,
@@ -925,8 +867,8 @@ class Scene(Mapping[str, Any]):
         >>> bool(found["low"][0] <= found["value"][0] <= found["high"][0])
         True
         """
-        axes, _ = _over(over)
         searched = field
+        _word("of", of, ("release", "crossing", "interwell"))
         if range is not None:
             low, high = _entries("range", range, "(first, last)", 2)
             if not low < high:
@@ -939,24 +881,12 @@ class Scene(Mapping[str, Any]):
             if searched is None or range is None:
                 raise _wrong("step", _shown(step), "give a `range` too")
             searched += f":{_value(step)}"
-        if probability is None:
-            _without("leave it out, or give `probability` too", runs=(runs, None), within=(within, None))
-            with _Told(progress, "values") as told:
-                answer = _interwell.threshold(
-                    self._simulation, axes, searched, of, finest, longest, melnikov,
-                    _count("threads", threads), told
-                )
-            return Table(answer)
-        _without(
-            "leave it out, or leave out `probability`",
-            of=(of, "crossing"), until_settled=(until_settled, None), melnikov=(melnikov, False),
-        )
-        with _Told(progress, "runs") as told:
-            answer = _interwell.probable_threshold(
-                self._simulation, axes, searched, _number("probability", probability),
-                _count("runs", runs), _real("within", within), finest, _count("threads", threads), told
-            )
-        return Table(answer)
+        arguments = {
+            "field": searched, "of": of, "resolution": finest, "until_settled": longest,
+            "probability": _real("probability", probability), "runs": _count("runs", runs),
+            "within": _real("within", within), "melnikov": melnikov,
+        }
+        return self._ask("threshold", "values", over, threads, progress, arguments, False)
 
     def basins(
         self,
@@ -1207,181 +1137,6 @@ class Scene(Mapping[str, Any]):
                 _count("period", period), _number("phase_deg", phase_deg), told, _begin(begin)
             )
         return Table(answer)
-
-    def exponents(
-        self,
-        over: Over | None = None,
-        *,
-        periods: int | None = None,
-        until_settled: float | None = None,
-        threads: int | None = None,
-        progress: Progress = False,
-    ) -> Table:
-        """Return the Lyapunov exponents of the settled motion in 1/s.
-
-        Parameters
-        ----------
-        over : mapping of str to array_like of float, optional
-            Fields and their values: a row for each cell.
-        periods : int, optional
-            Forcing periods that a motion is averaged over which does not repeat, 1 to 1e7; by default 1000.
-            More take longer and reduce the standard errors.
-        until_settled : float, optional
-            Time in s up to which a run goes on until its motion repeats; by default 1000 forcing periods
-            beyond the scene's run.
-        threads, progress
-            See :meth:`sweep`.
-
-        Returns
-        -------
-        Table or Grid
-            ``exponent_1_per_s``, ``exponent_1_se``, ``exponent_2_per_s``, ``exponent_2_se`` (standard
-            errors), ``sum_per_s``, ``exact_sum_per_s``, ``dimension``, each float64; a :class:`Grid` with
-            ``over``. Where there may be a circuit also ``exponent_3_per_s``, ``exponent_3_se``. The exponents
-            are ``-inf`` where the mass rests on a stop, except that of a circuit.
-
-        Raises
-        ------
-        SceneError
-            If an argument is wrong, or the drive changes and does not repeat.
-        ComputationError
-            If the motion ends early or touches a stop without speed; in a grid that cell has NaN.
-
-        Notes
-        -----
-        Of a motion that repeats, ln of the multipliers over its period; else averages (Benettin et al. 1980),
-        through impacts by Müller (1995). The dimension is that of Kaplan and Yorke (1979) of the states once
-        a forcing period.
-
-        Examples
-        --------
-        >>> weak = scene.set(stops="None", excitation={"amplitude_g": 0.2})
-        >>> weak.exponents()["sum_per_s"].round(3)
-        array([-3.337])
-        """
-        axes, arrays = _over(over)
-        with _Told(progress, "cells") as told:
-            answer = _interwell.exponents(
-                self._simulation, axes, _count("periods", periods),
-                _real("until_settled", until_settled),
-                _count("threads", threads), told
-            )
-        return Grid(answer, arrays) if arrays else Table(answer)
-
-    def escape(
-        self,
-        over: Over | None = None,
-        *,
-        runs: int | None = None,
-        within: float | None = None,
-        until: str = "well",
-        threads: int | None = None,
-        progress: Progress = False,
-    ) -> Table:
-        """Return how often, and after which time, a motion under noise leaves its well.
-
-        Parameters
-        ----------
-        over : mapping of str to array_like of float, optional
-            Fields and their values: a row for each cell.
-        runs : int, optional
-            Runs of each cell, 1 to 1e6, by default 100; run number i, from 0, has the seed of the scene
-            plus i.
-        within : float, optional
-            Time in s at which a run without an escape ends; by default the duration of the scene's run.
-        until : str
-            ``"well"``: the mass first reaches the well behind the barrier, or the middle between the barrier
-            and a stop before it. ``"crossing"``: it first crosses the top, from which it may fall back.
-        threads, progress
-            See :meth:`sweep`.
-
-        Returns
-        -------
-        Table or Grid
-            ``runs``, ``escaped`` and ``ended_early`` (counts), ``observed_s``; ``escape_rate_per_s``,
-            ``escape_rate_low_per_s`` and ``escape_rate_high_per_s`` (a 95 % interval);
-            ``mean_first_passage_s`` with ``mean_first_passage_low_s`` and ``mean_first_passage_high_s``;
-            ``median_first_passage_s``; ``kramers_rate_per_s``, NaN where it does not hold; each float64.
-            ``kramers_fails`` is the condition that fails there, or empty. A :class:`Grid` with ``over``.
-
-        Raises
-        ------
-        SceneError
-            If an argument is wrong, the scene has no noise or one well, or its start lies on the barrier.
-
-        Notes
-        -----
-        The rate is the number of escapes over the time observed, runs without an escape included, with an
-        interval from chi-squared quantiles (Garwood 1936; Epstein and Sobel 1953; Cox 1953). The median is
-        that of Kaplan and Meier (1958), Kramers' rate that of Hänggi, Talkner and Borkovec (1990, equation
-        4.33) with the factor of Mel'nikov and Meshkov (1986) for weak damping.
-
-        Examples
-        --------
-        >>> noisy = scene.set(excitation="Noise(rms_g: 1, low_hz: 0.5, high_hz: 10, seed: 5)")
-        >>> table = noisy.escape(runs=8, within=4)
-        >>> bool(table["escape_rate_low_per_s"][0] <= table["escape_rate_high_per_s"][0])
-        True
-        """
-        axes, arrays = _over(over)
-        with _Told(progress, "runs") as told:
-            answer = _interwell.escape(
-                self._simulation, axes, _count("runs", runs), _real("within", within), until,
-                _count("threads", threads), told
-            )
-        return Grid(answer, arrays) if arrays else Table(answer)
-
-    def spectrum(
-        self,
-        of: str = "x",
-        *,
-        taper: str = "auto",
-        rate_hz: float | None = None,
-        until_settled: float | None = None,
-    ) -> Table:
-        """Return amplitude and power spectral density of the settled motion.
-
-        Parameters
-        ----------
-        of : str
-            ``"x"`` (displacement, m), ``"v"`` (velocity, m/s) or ``"accel"`` (acceleration of the base,
-            m/s²).
-        taper : str
-            ``"hann"``, ``"none"``, or ``"auto"``: none where the motion repeats.
-        rate_hz : float, optional
-            Samples a second, raised until a forcing period has a whole number of them; by default at least
-            128 in the shortest period of excitation and mechanism. With impacts a higher rate folds less
-            back.
-        until_settled : float, optional
-            See :meth:`run`.
-
-        Returns
-        -------
-        Table
-            A row for each line from 0 to half the rate: ``frequency_hz``, ``amplitude`` (half of peak to
-            peak) and ``psd`` (one-sided, square of the unit per Hz), each float64. ``table.words`` has the
-            settings.
-
-        Raises
-        ------
-        SceneError
-            If an argument is wrong, the rate makes more than 1e7 samples or too few, or the settled window
-            has no length.
-        ComputationError
-            If the run ends early.
-
-        Notes
-        -----
-        Amplitude and density are scaled as in Heinzel et al. (2002).
-
-        Examples
-        --------
-        >>> table = scene.spectrum("accel")
-        >>> table["amplitude"][table["frequency_hz"] == 3.0].round(6)
-        array([14.709975])
-        """
-        rate, longest = _real("rate_hz", rate_hz), _real("until_settled", until_settled)
-        return Table(_interwell.spectrum(self._simulation, of, taper, rate, longest))
 
     def compare(
         self,

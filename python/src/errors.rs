@@ -36,11 +36,6 @@ fn in_python(text: String) -> String {
     }
 }
 
-/// What came of a question, or the exception.
-pub fn checked<T>(py: Python<'_>, found: Result<T, Error>) -> PyResult<T> {
-    found.map_err(|error| raised(py, &error))
-}
-
 /// The variant that is called `word`, or the exception that lists all.
 pub fn named<T: Copy>(
     py: Python<'_>,

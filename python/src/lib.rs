@@ -3,6 +3,7 @@
 //! Nothing is computed here.
 
 mod answer;
+mod declared;
 mod errors;
 mod function;
 mod grid;
@@ -22,15 +23,10 @@ fn _interwell(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<answer::Answer>()?;
     module.add_function(wrap_pyfunction!(scene::presets, module)?)?;
     module.add_function(wrap_pyfunction!(grid::sweep, module)?)?;
-    module.add_function(wrap_pyfunction!(grid::section, module)?)?;
-    module.add_function(wrap_pyfunction!(grid::exponents, module)?)?;
-    module.add_function(wrap_pyfunction!(grid::escape, module)?)?;
-    module.add_function(wrap_pyfunction!(grid::threshold, module)?)?;
-    module.add_function(wrap_pyfunction!(grid::probable_threshold, module)?)?;
+    module.add_function(wrap_pyfunction!(declared::ask, module)?)?;
     module.add_function(wrap_pyfunction!(motion::orbit, module)?)?;
     module.add_function(wrap_pyfunction!(motion::branch, module)?)?;
     module.add_function(wrap_pyfunction!(motion::locus, module)?)?;
-    module.add_function(wrap_pyfunction!(motion::spectrum, module)?)?;
     module.add_function(wrap_pyfunction!(motion::basins, module)?)?;
     module.add_function(wrap_pyfunction!(motion::compare, module)?)?;
     module.add_function(wrap_pyfunction!(motion::best, module)?)?;

@@ -3,17 +3,14 @@
 use std::path::PathBuf;
 
 use interwell_kernel::dynamics::MapState;
-use interwell_kernel::numeric::Taper;
-use interwell_studies::output::{
-    SpectrumQuantity, basins_chart, branch_chart, comparison_chart, loci_chart, spectrum_chart,
-};
+use interwell_studies::output::{basins_chart, branch_chart, comparison_chart, loci_chart};
 use interwell_studies::questions::{
-    Basins, Begin, Best, Branch, BranchEvent, Compare, Error, FieldRange, Locus, Orbit, Signal, Spectrum,
+    Basins, Begin, Best, Branch, BranchEvent, Compare, FieldRange, Locus, Orbit,
 };
 use pyo3::prelude::*;
 
 use crate::answer::Answer;
-use crate::errors::{named, raised, renamed};
+use crate::errors::{named, renamed};
 use crate::scene::Simulation;
 use crate::work::{Way, work};
 
@@ -109,36 +106,6 @@ pub fn locus(
     let found = work(py, &way, |progress| question.run(&scene.inner, progress))?;
     let answer = Answer::new(py, found.table(), scene.caption()).told(found.remarks());
     Ok(answer.drawn(move |_, asked| Ok(loci_chart(&found.loci, phase_deg, asked.ranges))))
-}
-
-#[pyfunction]
-#[pyo3(signature = (scene, of, taper, rate_hz=None, until_settled=None))]
-pub fn spectrum(
-    scene: &Simulation,
-    py: Python<'_>,
-    of: &str,
-    taper: &str,
-    rate_hz: Option<f64>,
-    until_settled: Option<f64>,
-) -> PyResult<Answer> {
-    let of = named(py, "of", of, &Signal::ALL, Signal::name)?;
-    let taper = match taper {
-        "auto" => None,
-        "hann" => Some(Taper::Hann),
-        "none" => Some(Taper::None),
-        _ => return Err(raised(py, &Error::argument("taper", taper, "give auto, hann or none"))),
-    };
-    let question = Spectrum { of, taper, rate_hz, until_settled };
-    let found = work(py, &Way::default(), |progress| question.run(&scene.inner, progress))?;
-    let answer = Answer::new(py, found.table().clone(), scene.caption()).told(vec![found.describe()]);
-    Ok(answer.drawn(move |_, asked| {
-        let quantity = match asked.quantity.as_deref() {
-            None | Some("amplitude") => SpectrumQuantity::Amplitude,
-            Some("psd") => SpectrumQuantity::Density,
-            Some(other) => return Err(Error::argument("quantity", other, "give amplitude or psd")),
-        };
-        Ok(spectrum_chart(&found, quantity, asked.ranges))
-    }))
 }
 
 /// A row a start, and a row an attractor.

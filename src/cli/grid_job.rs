@@ -1,11 +1,11 @@
 //! Run of a study over a grid by a command: its outputs, progress, rows, picture and manifest.
 
-use interwell::output::{Chart, Manifest, Ranges, header, rows};
+use interwell::output::{Chart, Manifest, Ranges};
 use interwell::questions::Error;
 use interwell::questions::Table;
 use interwell::scene::Document;
 use interwell::system::threads::Pool;
-use interwell_studies::study::{GridStudy, IMPACTS, Question, Shard, Slice, SweepEnd, Tally, Task};
+use interwell_studies::study::{GridStudy, Question, Slice, SweepEnd, Tally, Task};
 
 use super::support::Watch;
 use super::{Common, Failure, Output, Outputs, Picture, bar, interrupt};
@@ -60,22 +60,6 @@ impl<'a> GridJob<'a> {
             }
             Ok(write(&mut self.outputs, table, tally)? || self.picture.is_some())
         })
-    }
-
-    /// Runs all rows and writes them to `--out` as they are computed, without [`IMPACTS`], which pictures
-    /// alone need. Returns the tally, and the number of rows.
-    pub fn stream<Q: Question>(
-        &mut self,
-        study: &GridStudy<Q>,
-        unit: &str,
-    ) -> Result<(Tally, usize), Failure> {
-        self.outputs.write(Output::DATA, header(&study.empty_table().without(IMPACTS)))?;
-        let mut count = 0;
-        let tally = self.run(study, &study.slice(Shard::WHOLE), 0, unit, |outputs, table, _| {
-            count += table.rows();
-            outputs.stream(Output::DATA, &rows(&table.without(IMPACTS), 0..usize::MAX))
-        })?;
-        Ok((tally, count))
     }
 
     /// Draws the rows, writes the manifest and gives the outputs their names. Returns the wall-clock time

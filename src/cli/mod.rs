@@ -6,8 +6,7 @@ mod best;
 mod check;
 mod compare;
 mod curve;
-mod escape;
-mod exponents;
+mod declared;
 mod failure;
 mod given;
 mod grid_job;
@@ -23,26 +22,37 @@ mod pages;
 mod picture;
 mod presets;
 mod progress;
-mod section;
 mod shard;
 mod simulate;
-mod spectrum;
 mod support;
 mod sweep;
-mod threshold;
 
+use std::error::Error as _;
 use std::io::Write;
 use std::process::ExitCode;
 
 use clap::FromArgMatches;
-use clap::error::ErrorKind;
+use clap::error::{ContextKind, ErrorKind};
 use interwell::numeric::visible;
+
+/// Commands whose studies declare them.
+macro_rules! declared {
+    ($($command:ident: $study:ident)*) => {$(
+        mod $command {
+            pub use super::declared::run;
+            pub type Arguments = super::declared::Arguments<interwell::questions::$study>;
+        }
+    )*};
+}
+
+declared!(escape: Escape exponents: Exponents section: Section spectrum: Spectrum threshold: Threshold);
 
 pub use failure::Failure;
 pub use options::{Options, command_names};
 
 use failure::refuse;
-use options::{ChartOptions, Common, PlotOptions, Word, whole};
+use interwell_studies::study::whole;
+use options::{ChartOptions, Common, PlotOptions, Word};
 use outputs::{Output, Outputs, write_alone};
 use picture::{Picture, caption};
 use progress::{ask, bar};
@@ -60,6 +70,14 @@ pub fn parse() -> Result<Options, ExitCode> {
             let wrong = std::env::args_os().find(|text| text.to_str().is_none()).unwrap_or_default();
             let remedy = "rename the file, or go to its folder and name it from there";
             say(&format!("error: `{}` is not valid UTF-8: {remedy}", wrong.to_string_lossy()));
+            ExitCode::from(2)
+        }
+        ErrorKind::ValueValidation if error.source().is_some() => {
+            let context = |kind| error.get(kind).map(ToString::to_string).unwrap_or_default();
+            let (argument, value) = (context(ContextKind::InvalidArg), context(ContextKind::InvalidValue));
+            let option = argument.split(' ').next().unwrap_or_default();
+            let problem = error.source().map(ToString::to_string).unwrap_or_default();
+            say(&format!("error: {option} {value}: {problem}"));
             ExitCode::from(2)
         }
         _ => {

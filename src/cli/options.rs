@@ -1,13 +1,12 @@
 //! The arguments of the command line, and the text of `--help`.
 
-use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
 use clap::{ArgGroup, Args, CommandFactory, Parser, Subcommand};
 use interwell::system::threads::{MAX_THREADS, processors};
 
 use super::pages::{Page, VERSION};
-use super::{Failure, say};
+use super::{Failure, say, whole};
 
 const USAGE: &str = "interwell [SCENE]
        interwell --headless COMMAND [SCENE] [OPTIONS]";
@@ -72,16 +71,18 @@ pub enum Word {
     Page(Page),
 }
 
-/// Defines the commands: help, name, variant, positional argument in the usage line, the common options that
+/// Defines the commands: help or the study that has it, name, variant, positional argument in the usage line,
+/// the common options that
 /// the command refuses, and those that it accepts but ignores. Its help lists neither.
 macro_rules! commands {
-    ($($(#[doc = $help:literal])+ $word:ident $variant:ident $scene:literal
-        $(refuses $($refused:literal)+)? $(ignores $($ignored:literal)+)?;)*) => {
+    ($($(#[doc = $help:literal])* $word:ident $variant:ident $scene:literal
+        $(asks $study:ident)? $(refuses $($refused:literal)+)? $(ignores $($ignored:literal)+)?;)*) => {
         /// A command of `--headless`.
         #[derive(Debug, Subcommand)]
         pub enum Command {
             $(
-                $(#[doc = $help])+
+                $(#[doc = $help])*
+                $(#[command(about = super::declared::about::<interwell::questions::$study>())])?
                 #[command(override_usage = concat!("interwell \
                     --headless ", stringify!($word), $scene, " \
                     [OPTIONS]"))]
@@ -138,24 +139,19 @@ commands! {
     sweep Sweep " [SCENE]";
     /// Join the parts of a sweep that `sweep --shard` computed
     merge Merge " PART..." refuses "set" "tolerance" "jobs";
-    /// The state once a forcing period or at every impact; over a field the bifurcation diagram
-    section Section " [SCENE]";
-    /// The least value of a field from which on a motion from rest is released, crosses or is interwell
-    threshold Threshold " [SCENE]";
+    section Section " [SCENE]" asks Section;
+    threshold Threshold " [SCENE]" asks Threshold;
     /// Scenes side by side under one sine: least amplitudes, speed, reach, band of frequencies, sensitivity
     compare Compare " [SCENE]..";
     /// The values of some fields at which a result is largest, in one environment or several, with margins
     best Best " [SCENE] --over FIELD=A:B";
-    /// Amplitude and power spectral density of the settled motion over frequency: CSV
-    spectrum Spectrum " [SCENE]" ignores "jobs";
+    spectrum Spectrum " [SCENE]" asks Spectrum ignores "jobs";
     /// The attractor that each of many starts goes to: CSV with a row for each start
     basins Basins " [SCENE] --x-mm A:B:N --v A:B:N";
     /// The periodic motion near that of a run, with its multipliers; or a branch of motions over a field
     orbit Orbit " [SCENE]" ignores "jobs";
-    /// Lyapunov exponents of the settled motion, with their standard errors, sum and dimension
-    exponents Exponents " [SCENE]";
-    /// How often motions under noise leave their well: rate and mean time with intervals, and Kramers' rate
-    escape Escape " [SCENE]";
+    exponents Exponents " [SCENE]" asks Exponents;
+    escape Escape " [SCENE]" asks Escape;
     /// Damping ratio, restitution or force curve from a measured record, each number with its interval
     identify Identify " FILE --of damping|restitution|force" refuses "set" "tolerance" ignores "jobs";
     /// List the lessons; print, check or begin one
@@ -165,12 +161,14 @@ commands! {
     accuracy Accuracy " [SCENE]" ignores "jobs";
 }
 
-/// The command line for clap; the help of each command hides the options that it does not use.
+/// The command line for clap; the help of each command hides the options that it does not use, and has of the
+/// documentation of its study the first sentence.
 pub fn command_line() -> clap::Command {
     COMMANDS.iter().fold(Options::command(), |command, (word, refused, ignored)| {
         let unused = refused.iter().chain(*ignored);
-        command
-            .mut_subcommand(word, |sub| unused.fold(sub, |sub, name| sub.mut_arg(name, |arg| arg.hide(true))))
+        command.mut_subcommand(word, |sub| {
+            unused.fold(sub.long_about(None::<&str>), |sub, name| sub.mut_arg(name, |arg| arg.hide(true)))
+        })
     })
 }
 
@@ -179,17 +177,6 @@ pub fn command_names() -> String {
     let names: Vec<&str> = COMMANDS.iter().map(|command| command.0).collect();
     let (last, others) = names.split_last().unwrap_or((&"", &[]));
     format!("{} or {last}", others.join(", "))
-}
-
-/// A parser for clap that reads a whole number in a range; its error names the range.
-pub fn whole<T: TryFrom<u64>>(
-    range: RangeInclusive<u64>,
-) -> impl Fn(&str) -> Result<T, String> + Clone + Send + Sync + 'static {
-    move |text| {
-        let number = text.trim().parse().ok().filter(|number| range.contains(number));
-        let wrong = || format!("give a whole number from {} to {}", range.start(), range.end());
-        number.and_then(|number| T::try_from(number).ok()).ok_or_else(wrong)
-    }
 }
 
 /// The options of every command, before its name or after it.

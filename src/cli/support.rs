@@ -9,6 +9,7 @@ use interwell::questions::{Error, Grid, Simulation};
 use interwell::scene::{Document, SceneError, read_number};
 use interwell::system::clock::{ProcessClock, WallClock};
 use interwell::system::threads::Pool;
+pub use interwell_studies::study::counted;
 
 use super::{Common, Failure, Outputs, interrupt, refuse};
 
@@ -191,11 +192,6 @@ pub fn finite(option: &str, text: &str, remedy: &str) -> Result<f64, Failure> {
 /// The finite number that was given to `option`, if any.
 pub fn if_given(option: &str, text: Option<&str>, remedy: &str) -> Result<Option<f64>, Failure> {
     text.map(|text| finite(option, text, remedy)).transpose()
-}
-
-/// A number of things, such as `1 cell` or `2 cells`.
-pub fn counted(count: u64, name: &str) -> String {
-    format!("{count} {name}{}", if count == 1 { "" } else { "s" })
 }
 
 /// The range `A:B` as given to `option`; an error that says what to write if it is none.

@@ -16,4 +16,9 @@ pub mod output;
 #[macro_use]
 #[doc(hidden)]
 pub mod study;
+mod escape;
+mod exponents;
 pub mod questions;
+mod section;
+mod spectrum;
+mod threshold;

@@ -1,6 +1,7 @@
 //! The documents: every field, column and word of the program stands in them, and what they show works.
 
 mod alternatives;
+mod declared;
 
 use std::fs;
 use std::path::Path;

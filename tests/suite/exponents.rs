@@ -7,23 +7,23 @@ use std::f64::consts::TAU;
 use std::sync::atomic::AtomicBool;
 
 use interwell::dynamics::{EventKind, Jacobian, Model, STANDARD_GRAVITY};
-use interwell_studies::study::{ExponentOptions, Exponents, NoExponents, average_exponents, exponents};
+use interwell_studies::study::{ExponentOptions, Lyapunov, NoExponents, average_exponents, exponents};
 
 use crate::support::{build, documented, model, near, near_relative, of_kind, preset, run, unit_well};
 
 static NEVER: AtomicBool = AtomicBool::new(false);
 
-fn of(model: &Model) -> Exponents {
+fn of(model: &Model) -> Lyapunov {
     exponents(model, &ExponentOptions::default(), &NEVER).unwrap()
 }
 
-fn over(model: &Model, periods: u32) -> Exponents {
+fn over(model: &Model, periods: u32) -> Lyapunov {
     exponents(model, &ExponentOptions { periods, ..ExponentOptions::default() }, &NEVER).unwrap()
 }
 
 /// Asserts both exponents of a periodic motion, and their sum, relatively.
 #[track_caller]
-fn both(found: &Exponents, first: f64, second: f64, bound: f64) {
+fn both(found: &Lyapunov, first: f64, second: f64, bound: f64) {
     near_relative(found.first.per_s, first, bound);
     near_relative(found.second.per_s, second, bound);
     assert_eq!((found.first.error, found.second.error), (0.0, 0.0));

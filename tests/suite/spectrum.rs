@@ -13,17 +13,17 @@ use super::support::*;
 const PLAIN: SpectrumOptions =
     SpectrumOptions { signal: Signal::Displacement, taper: None, rate_hz: None, until_settled: None };
 
-fn of(model: &Model, options: SpectrumOptions) -> Spectrum {
+fn of(model: &Model, options: SpectrumOptions) -> SpectrumAnswer {
     spectrum(model, &options, &Task { tick: &|| (), cancel: &AtomicBool::new(false) }).unwrap()
 }
 
 /// Frequencies, amplitudes and densities.
-fn lines(spectrum: &Spectrum) -> [&[f64]; 3] {
+fn lines(spectrum: &SpectrumAnswer) -> [&[f64]; 3] {
     ["frequency_hz", "amplitude", "psd"].map(|name| spectrum.table().numbers(name).unwrap())
 }
 
 /// The density, integrated.
-fn power(spectrum: &Spectrum) -> f64 {
+fn power(spectrum: &SpectrumAnswer) -> f64 {
     let [frequency, _, density] = lines(spectrum);
     density.iter().sum::<f64>() * frequency[1]
 }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use anyhow::{Result, ensure};
+use anyhow::{Result, anyhow, ensure};
 
 use crate::app::session::explore::STARTS;
 use crate::app::session::map::over;
@@ -15,15 +15,17 @@ use crate::numeric::extent;
 use crate::output::{
     Caption, Chart, Figure, Overlay, Ranges, RunPanel, SpectrumQuantity, SweepPicture, Theme, View,
     basins_chart, can_show, compared_name, comparison_chart, comparison_title, curve_chart, measured_chart,
-    measured_force_chart, mechanism_chart, run_chart, scene_accuracy_chart, section_chart, shown_columns,
-    spectrum_chart, sweep_chart, well_chart,
+    measured_force_chart, mechanism_chart, run_chart, scene_accuracy_chart, shown_columns, spectrum_chart,
+    sweep_chart, well_chart,
 };
 use crate::questions::{
-    Accuracy, Basins, Carry, Compare, Curve, EvenRange, Grid, Progress, Scheme, Section, SectionOptions,
-    Signal, Simulation, Spectrum, Sweep,
+    Accuracy, Basins, Carry, Compare, Curve, EvenRange, Grid, Progress, Scheme, Section, Signal, Simulation,
+    Spectrum, Sweep,
 };
 use crate::scene::{Document, FieldPath, arguments};
-use interwell_studies::study::{Keep, default_positions, metres, stop_positions};
+use interwell_studies::study::{
+    Answered, Framing, Keep, Scenes, Study, answer_in, default_positions, metres, stop_positions,
+};
 
 use super::figure::{FigureOrder, Subject};
 
@@ -163,17 +165,21 @@ impl Drawing<'_> {
     }
 
     fn diagram(&self, subject: &Subject) -> Result<Chart> {
-        let options = SectionOptions { carry: Some(Carry::Both), ..SectionOptions::default() };
-        let question = Section { over: Vec::new(), options };
-        let grid = self.grid(subject)?;
-        let rows = question.in_cells(&self.document, grid.clone(), &self.progress)?;
-        Ok(section_chart(&rows, Some(&grid), Some(0.0), (None, None), Ranges::default()))
+        let study = Section { carry: Some(Carry::Both), ..Section::default() };
+        self.answered(&study, &self.grid(subject)?)
     }
 
     fn section(&self) -> Result<Chart> {
-        let simulation = self.simulation()?;
-        let (rows, _) = Section::default().of_one(&simulation, &self.progress)?;
-        Ok(section_chart(&rows, None, Some(0.0), simulation.model().stop_positions(), Ranges::default()))
+        self.answered(&Section::default(), &Grid::of_one())
+    }
+
+    /// The picture of the answer of a study over this grid.
+    fn answered<S: Study>(&self, study: &S, grid: &Grid) -> Result<Chart> {
+        let scenes = Scenes { document: &self.document, grid, mechanism: None };
+        let Answered { table, chart, .. } = answer_in(study, &scenes, &self.progress)?;
+        let chart = chart.ok_or_else(|| anyhow!("`{}` has no picture of this", S::NAME))?;
+        let framing = Framing { quantity: None, ranges: Ranges::default(), cancel: self.progress.stop() };
+        Ok(chart(&table, &framing)?)
     }
 
     fn compare(&self, other: &str, origin: &str, caption: &mut Caption) -> Result<Chart> {

@@ -21,9 +21,6 @@
 //! | [`Simulation::compared_force`] | [`measured_force_chart`] |
 //! | [`Simulation::impact`] | [`contact_chart`] |
 //! | [`Sweep`] | [`sweep_chart`] |
-//! | [`Section`] | [`section_chart`] |
-//! | [`Threshold`], [`ProbableThreshold`] | [`threshold_chart`] |
-//! | [`Escape`], [`Exponents`], over a field | [`escape_chart`], [`exponents_chart`] |
 //! | [`Branch`], [`Locus`] | [`branch_chart`], [`loci_chart`] |
 //! | [`Spectrum`] | [`spectrum_chart`] |
 //! | [`Basins`] | [`basins_chart`] |
@@ -39,11 +36,6 @@
 //! [`Simulation::compared_force`]: crate::questions::Simulation::compared_force
 //! [`Accuracy`]: crate::questions::Accuracy
 //! [`Sweep`]: crate::questions::Sweep
-//! [`Section`]: crate::questions::Section
-//! [`Threshold`]: crate::questions::Threshold
-//! [`ProbableThreshold`]: crate::questions::ProbableThreshold
-//! [`Escape`]: crate::questions::Escape
-//! [`Exponents`]: crate::questions::Exponents
 //! [`Branch`]: crate::questions::Branch
 //! [`Locus`]: crate::questions::Locus
 //! [`Spectrum`]: crate::questions::Spectrum
@@ -92,6 +84,9 @@ pub use json::{identified, landscape, summary};
 pub use manifest::{Made, Manifest, Provenance, manifest_path, merged_manifest};
 pub use plan::{plan, plan_differences};
 pub use plot::*;
+pub(crate) use plot::{
+    Drawn, Point, as_numbers, ascending, each_line, few_lines, label, map, of_rows, spans, swept_axis,
+};
 pub use text::aligned;
 
 pub use crate::numeric::push_number;

@@ -30,7 +30,6 @@
 //! | [`Section`] | states once per period or at impacts; over a field a bifurcation diagram | [`Table`] |
 //! | [`Simulation::thresholds`] | the amplitudes that release the mass and make it cross | [`Thresholds`] |
 //! | [`Threshold`] | the smallest value of a field that releases the mass or makes it cross | [`Table`] |
-//! | [`ProbableThreshold`] | the value of a field at which a share of runs under noise crosses | [`Table`] |
 //! | [`Escape`] | how often a motion under noise leaves its well, beside Kramers' rate | [`Table`] |
 //! | [`Exponents`] | Lyapunov exponents: whether the motion is chaotic | [`Table`] |
 //! | [`Orbit`] | the periodic orbit near the motion, with its multipliers | [`OrbitAnswer`] |
@@ -86,7 +85,6 @@ mod compare;
 mod design;
 mod distance;
 mod error;
-mod escape;
 mod grid;
 mod kept;
 mod lesson;
@@ -98,8 +96,12 @@ mod record;
 mod remarks;
 mod simulation;
 mod sweep;
-mod threshold;
 
+pub use crate::escape::{Escape, Until};
+pub use crate::exponents::{Exponents, Lyapunov};
+pub use crate::section::{Section, SectionKind};
+pub use crate::spectrum::{Signal, Spectrum, SpectrumAnswer};
+pub use crate::threshold::{Found, Onset, Threshold};
 #[doc(hidden)]
 pub use accuracy::check_accuracy;
 pub use accuracy::{Accuracy, AccuracyAnswer};
@@ -109,11 +111,12 @@ pub use distance::{Distance, DistanceAnswer};
 #[doc(hidden)]
 pub use error::longest_wait;
 pub use error::{Error, FaultAt};
-pub use escape::{Escape, ProbableThreshold};
-pub use grid::{Exponents, Section};
+pub(crate) use grid::{check_until, drive_alone, settles};
 #[doc(hidden)]
 pub use lesson::{JudgedStep, check_lessons};
-pub use motion::{Basins, BasinsAnswer, Curve, FlexuresAnswer, Spectrum};
+pub(crate) use motion::may_have_circuit;
+pub use motion::{Basins, BasinsAnswer, Curve, FlexuresAnswer};
+pub(crate) use orbits::phase;
 pub use orbits::{Branch, BranchesAnswer, Locus, LocusAnswer, Orbit};
 #[doc(hidden)]
 pub use parts::{stops_that_cross, thresholds, walks};
@@ -125,7 +128,6 @@ pub use simulation::Simulation;
 pub use sweep::Sweep;
 #[doc(hidden)]
 pub use sweep::{SweepCells, assign as assign_uncertain};
-pub use threshold::Threshold;
 
 pub use crate::mechanics::flexure::State as FlexureState;
 pub use crate::scene::Uncertain;
@@ -134,9 +136,8 @@ pub use crate::study::accuracy::methods::{Scheme, Statistics};
 pub use crate::study::accuracy::scene::{AtTolerance, Course, Lateness, StepSize, Tolerances, Trust};
 pub use crate::study::{
     Answer, Attractor, Begin, BestDesign, BestQuestion, Branch as BranchAnswer, BranchEnd, BranchEvent,
-    Carry, Column, Comparison, Estimate, EvenRange, ExponentOptions, Exponents as ExponentsAnswer,
-    FieldRange, ForceComparison, Found, Grid, Identified, Identity, Locus as OneLocus, LocusEnd, LocusEvent,
-    MeasuredMotion, Onset, Optimum, Orbit as OrbitAnswer, Rated, Recorded, Sampling, Searched, SectionAt,
-    SectionOptions, Shares, Signal, Spectrum as SpectrumAnswer, Spread, Table, Thresholds, Tried, Until,
-    Values,
+    Carry, Column, Comparison, Estimate, EvenRange, ExponentOptions, FieldRange, ForceComparison, Grid,
+    Identified, Identity, Locus as OneLocus, LocusEnd, LocusEvent, MeasuredMotion, Optimum,
+    Orbit as OrbitAnswer, Rated, Recorded, Sampling, SectionAt, SectionOptions, Shares, Spread, Table,
+    Thresholds, Tried, Values,
 };

@@ -1,18 +1,15 @@
-//! Questions about one scene: force curve, spectrum and basins of attraction.
+//! Questions about one scene: force curve and basins of attraction.
 
-use super::grid::check_until;
 use super::{Error, Progress, Simulation};
 use std::sync::Arc;
 
 use crate::mechanics::Mechanism;
 use crate::mechanics::flexure::State;
-use crate::numeric::{Taper, number_text};
 use crate::scene::{Axis, Document, Transducer};
 use crate::study::{
-    self, Answer, CURVE_PICTURE_POINTS, CURVE_POINTS, EvenRange, ForceComparison, NoBasins, NoSpectrum,
-    Signal, Spectrum as SpectrumAnswer, SpectrumOptions, Starts, StartsError, StatesError, Table,
-    compare_force, curve, default_positions, even_positions, full_curve, shapes, spectrum, states,
-    stress_warning,
+    self, Answer, CURVE_PICTURE_POINTS, CURVE_POINTS, EvenRange, ForceComparison, NoBasins, Starts,
+    StartsError, StatesError, Table, compare_force, curve, default_positions, even_positions, full_curve,
+    shapes, states, stress_warning,
 };
 
 /// Force, potential and stiffness of the mechanism over displacement.
@@ -169,76 +166,6 @@ pub fn may_have_circuit(document: &Document, axes: &[Axis]) -> bool {
         Transducer::Piezoelectric { .. } => swept("load_kohm"),
     };
     cells_may_have || document.scene.transducer.has_state()
-}
-
-/// Amplitude and power spectral density of a settled motion.
-///
-/// The table of the answer has one row per line, from 0 to half the rate: `frequency_hz`, `amplitude` (half
-/// of peak to peak; m, m/s or m/s^2 by the signal) and `psd` (one-sided, the square of that unit per Hz).
-///
-/// # Method
-///
-/// The settled window is sampled evenly, over whole periods where the drive repeats. Where the motion
-/// repeats too, its lines are exact and no window function is needed; otherwise that of von Hann is taken,
-/// and amplitude and density are scaled as in Heinzel et al. (2002). Components above half the rate fold
-/// back: a higher `rate_hz` reduces this, which matters with impacts. Two runs are made, one for the verdict
-/// and one for the samples.
-///
-/// # Errors
-///
-/// [`Error::Argument`] for `rate_hz` (at most 1e7 samples) or `until_settled`; [`Error::Unfit`] if
-/// the settled window has no length; [`Error::Failed`] if the run ends early.
-///
-/// # Example
-///
-/// ```
-/// # use interwell_studies as interwell;
-/// use interwell::questions::{Progress, Signal, Simulation, Spectrum};
-///
-/// // The base moves with one sine of 1.5 g at 3 Hz.
-/// let question = Spectrum { of: Signal::BaseAcceleration, ..Spectrum::default() };
-/// let answer = question.run(&Simulation::preset("nominal-cubic")?, &Progress::none())?;
-/// let table = answer.table();
-/// let frequencies = table.numbers("frequency_hz").unwrap();
-/// let line = frequencies.iter().position(|frequency| (frequency - 3.0).abs() < 1e-9).unwrap();
-/// assert!((table.numbers("amplitude").unwrap()[line] - 1.5 * 9.806_65).abs() < 1e-9);
-/// # Ok::<(), interwell::questions::Error>(())
-/// ```
-#[derive(Debug, Clone, PartialEq)]
-pub struct Spectrum {
-    /// The signal.
-    pub of: Signal,
-    /// Window function; by default none if the motion repeats, else that of von Hann.
-    pub taper: Option<Taper>,
-    /// Samples per second, raised until a forcing period has a whole number of them.
-    pub rate_hz: Option<f64>,
-    /// The run continues until its motion repeats, at most up to this time in s.
-    pub until_settled: Option<f64>,
-}
-
-impl Default for Spectrum {
-    fn default() -> Self {
-        Self { of: Signal::Displacement, taper: None, rate_hz: None, until_settled: None }
-    }
-}
-
-impl Spectrum {
-    /// Runs the scene and transforms its settled window.
-    pub fn run(&self, simulation: &Simulation, progress: &Progress) -> Result<SpectrumAnswer, Error> {
-        let document = simulation.document();
-        check_until(self.until_settled, document, simulation.model())?;
-        let Self { of: signal, taper, rate_hz, until_settled } = *self;
-        let options = SpectrumOptions { signal, taper, rate_hz, until_settled };
-        spectrum(simulation.model(), &options, &progress.silent()).map_err(|problem| match problem {
-            NoSpectrum::Cancelled => Error::Cancelled,
-            NoSpectrum::EndedEarly { .. } => Error::failed(document, problem),
-            NoSpectrum::NoWindow(..) => Error::unfit(document, problem),
-            NoSpectrum::Rate(_) => {
-                let given = rate_hz.map_or_else(|| "(default)".to_owned(), number_text);
-                Error::argument("rate_hz", given, format!("{}: {problem}", document.name))
-            }
-        })
-    }
 }
 
 /// The attractor that each start goes to, and the share of the starts that go to each attractor.

@@ -452,7 +452,7 @@ fn check_period(period: Option<u32>) -> Result<(), Error> {
 }
 
 /// The phase in forcing periods.
-pub(super) fn phase(degrees: f64) -> Result<f64, Error> {
+pub(crate) fn phase(degrees: f64) -> Result<f64, Error> {
     match degrees.is_finite() {
         true => Ok(degrees / 360.0),
         false => Err(Error::number("phase_deg", degrees, "give a phase in degrees, such as 90")),

@@ -97,17 +97,17 @@ impl<'a> Progress<'a> {
     }
 
     /// Whether that flag is set.
-    pub(super) fn is_stopped(&self) -> bool {
+    pub(crate) fn is_stopped(&self) -> bool {
         self.stop.load(Ordering::Relaxed)
     }
 
     /// A task that counts nothing.
-    pub(super) fn silent(&self) -> Task<'a> {
+    pub(crate) fn silent(&self) -> Task<'a> {
         Task { tick: &|| (), cancel: self.stop }
     }
 
     /// The answer of `work`, which does not look at the flag, from a thread of its own.
-    pub(super) fn unless_stopped<T: Send + 'static>(
+    pub(crate) fn unless_stopped<T: Send + 'static>(
         &self,
         work: impl FnOnce() -> Result<T, Error> + Send + 'static,
     ) -> Result<T, Error> {
@@ -126,7 +126,7 @@ impl<'a> Progress<'a> {
     }
 
     /// Runs `work` with a task that counts its parts; `all` is their number, if it is known.
-    pub(super) fn task<R>(&self, all: Option<u64>, work: impl FnOnce(&Task) -> R) -> R {
+    pub(crate) fn task<R>(&self, all: Option<u64>, work: impl FnOnce(&Task) -> R) -> R {
         let done = AtomicU64::new(0);
         if let Some(report) = self.report {
             report(0, all);
@@ -140,14 +140,14 @@ impl<'a> Progress<'a> {
     }
 
     /// Runs `work` with a thread pool and a task that counts its parts, which are `all`.
-    pub(super) fn shared<R>(&self, all: u64, work: impl FnOnce(&Pool, &Task) -> R) -> Result<R, Error> {
+    pub(crate) fn shared<R>(&self, all: u64, work: impl FnOnce(&Pool, &Task) -> R) -> Result<R, Error> {
         self.pool(|pool| self.task(Some(all), |task| work(pool, task)))
     }
 
     /// Runs `work` with a thread pool, a task that counts its parts, and a function that it calls with the
     /// number of parts that are left to do, so far as it is known: at the beginning, and whenever it turns
     /// out to be another.
-    pub(super) fn planned<R>(
+    pub(crate) fn planned<R>(
         &self,
         work: impl FnOnce(&Pool, &Task, &(dyn Fn(u64) + Sync)) -> R,
     ) -> Result<R, Error> {
@@ -166,7 +166,7 @@ impl<'a> Progress<'a> {
         self.pool(|pool| work(pool, &Task { tick: &tick, cancel: self.stop }, &plan))
     }
 
-    pub(super) fn pool<R>(&self, work: impl FnOnce(&Pool) -> R) -> Result<R, Error> {
+    pub(crate) fn pool<R>(&self, work: impl FnOnce(&Pool) -> R) -> Result<R, Error> {
         let count = self.threads.unwrap_or_else(processors);
         if !(1..=usize::from(MAX_THREADS)).contains(&count) {
             return Err(Error::argument("threads", count, format!("give 1 to {MAX_THREADS}")));

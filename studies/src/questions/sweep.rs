@@ -1,13 +1,13 @@
 //! Sweeps: a run for each cell of a grid, with bands where inputs are uncertain.
 
-use super::grid::{Over, all_rows, settles};
+use super::grid::{all_rows, settles};
 use super::{Error, Progress, Simulation};
 use crate::numeric::number_text;
 use crate::scene::{
     Axis, Document, FieldPath, SceneError, Uncertain, field_info, find_name, is_whole, read_number,
 };
 use crate::study::{
-    self, Carry, Cell, DIRECTION, Draws, Grid, MAX_CELLS, MAX_DRAWS, STANDARD_COLUMNS, SUMMARY_FIELDS,
+    self, Carry, Cell, DIRECTION, Draws, Grid, MAX_CELLS, MAX_DRAWS, Over, STANDARD_COLUMNS, SUMMARY_FIELDS,
     SummaryField, SweepOptions, Table, Variation, share_in_range,
 };
 

@@ -7,7 +7,6 @@ use super::amplitudes::{crossing, frees_at};
 use super::bisection::multiple;
 use super::grid::{is_of_mechanism, name_of};
 use super::settled::{followed, settled_within, shared_runs};
-use super::thresholds::{Above, from_rest};
 use super::{Cancelled, Family, Found, Onset, Result, SummaryField, Table, Task};
 use crate::dynamics::{Model, Run, Summary};
 use crate::mechanics::Mechanism;
@@ -15,6 +14,7 @@ use crate::numeric::elementary;
 use crate::numeric::round::decade;
 use crate::scene::{Excitation, FieldPath, Files, STANDARD_GRAVITY, Scene, numeric_fields};
 use crate::system::threads::Pool;
+use crate::threshold::{Above, from_rest};
 
 /// A scene of a comparison, with the common excitation.
 #[derive(Debug, Clone)]

@@ -6,13 +6,13 @@ use serde::{Deserialize, Serialize};
 
 use super::bisection::multiple;
 use super::settled::followed;
-use super::thresholds::{Above, Search, from_rest};
 use super::{Cancelled, Family, Found, Onset, Task, Verdict};
 use crate::dynamics::{Model, Request, STANDARD_GRAVITY};
 use crate::mechanics::{Landscape, Mechanism};
 use crate::numeric::round::{ONE_TWO_FIVE, round_down};
 use crate::scene::{Files, Scene, Stops};
 use crate::system::threads::Pool;
+use crate::threshold::{Above, Search, from_rest};
 
 /// Threshold amplitudes in g of motions from rest at the frequency of the scene.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -33,7 +33,7 @@ pub struct Thresholds {
 /// position and the barrier, which slow shaking needs to cross. The values go from 0 in even steps to twice
 /// that amplitude, and on in steps of 1 % to thirty times. Without a barrier it is 1 g, and they end at 2 g.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Upward {
+pub(crate) struct Upward {
     /// Ascending.
     pub values: Vec<f64>,
     pub resolution: f64,
@@ -85,7 +85,7 @@ pub fn thresholds(scene: &Scene, mechanism: &Arc<Mechanism>, task: &Task) -> Opt
 /// The smallest amplitude in g of a harmonic drive whose settled motion from rest crosses, and the largest
 /// amplitude searched. Runs continue up to `until_settled` in s, if given. `None` without such a drive, or
 /// without a barrier between the stops.
-pub(super) fn crossing(
+pub(crate) fn crossing(
     scene: &Scene,
     mechanism: &Arc<Mechanism>,
     pool: Option<&Pool>,
@@ -132,7 +132,7 @@ fn stops(scene: &Scene) -> [Option<f64>; 2] {
 }
 
 /// The amplitude in m/s^2 of a harmonic drive whose inertial force is that of the mass on its stop.
-pub(super) fn frees_at(scene: &Scene, mechanism: &Mechanism) -> Option<f64> {
+pub(crate) fn frees_at(scene: &Scene, mechanism: &Mechanism) -> Option<f64> {
     scene.harmonic()?;
     let right = stops(scene)[1]?;
     let well = mechanism.landscape.right_stable()?.x;

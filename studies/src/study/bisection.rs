@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Trial {
+pub(crate) enum Trial {
     NotBegun,
     UnderWay,
     Known(bool),
@@ -11,7 +11,7 @@ pub(super) enum Trial {
 
 /// The next value of a bisection to evaluate: the one that follows from the known answers or, while that is
 /// under way, one that may be needed after it. `None` if `ahead` values are under way or no value is left.
-pub(super) fn next_between(
+pub(crate) fn next_between(
     trial: impl Fn(f64) -> Trial,
     span: (f64, f64),
     resolution: f64,
@@ -36,14 +36,14 @@ pub(super) fn next_between(
 }
 
 /// The multiple of `resolution` in the middle between two values; `None` if none lies between them.
-pub(super) fn between(low: f64, high: f64, resolution: f64) -> Option<f64> {
+pub(crate) fn between(low: f64, high: f64, resolution: f64) -> Option<f64> {
     let middle = multiple(0.5 * (low + high), resolution);
     let near = [middle, multiple(middle - resolution, resolution), multiple(middle + resolution, resolution)];
     near.into_iter().find(|value| *value > low && *value < high)
 }
 
 /// The multiple of `unit` nearest to a value; for a decimal unit, the double nearest to the decimal.
-pub(super) fn multiple(value: f64, unit: f64) -> f64 {
+pub(crate) fn multiple(value: f64, unit: f64) -> f64 {
     let count = (value / unit).round();
     let whole = (1.0 / unit).round();
     if (whole * unit - 1.0).abs() < 1e-9 { count / whole } else { count * unit }

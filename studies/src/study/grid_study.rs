@@ -75,16 +75,16 @@ pub trait Question: Default + Sync {
 }
 
 /// Number of cells with small results that a thread may begin ahead.
-pub(super) const AHEAD: u64 = 4096;
+pub(crate) const AHEAD: u64 = 4096;
 
-pub(super) type Built = Result<Arc<Mechanism>, BuildError>;
+pub(crate) type Built = Result<Arc<Mechanism>, BuildError>;
 
 /// A scene, the grid over it, and the mechanisms that its cells share.
 #[derive(Debug)]
 pub struct Cells {
-    pub(super) base: Scene,
-    pub(super) grid: Grid,
-    pub(super) files: Files,
+    pub(crate) base: Scene,
+    pub(crate) grid: Grid,
+    pub(crate) files: Files,
     draws: Draws,
     mechanisms: Vec<Mutex<Option<Built>>>,
     /// Mechanisms built so far.
@@ -116,8 +116,13 @@ impl Cells {
         Self { base, files, grid, draws, mechanisms, built }
     }
 
+    /// The scene over which the grid is.
+    pub(crate) fn scene(&self) -> &Scene {
+        &self.base
+    }
+
     /// The columns of the swept fields, a row for each cell.
-    pub(super) fn table(&self) -> Table {
+    pub(crate) fn table(&self) -> Table {
         self.grid.table(|| 0..self.grid.cells())
     }
 
@@ -154,7 +159,7 @@ impl Cells {
 
     /// Checks all cells; wrong are those in which `faults` finds any, or whose mechanism is wrong. A
     /// mechanism that is not solved is no fault.
-    pub(super) fn check(
+    pub(crate) fn check(
         &self,
         pool: &Pool,
         task: &Task,
@@ -174,7 +179,7 @@ impl Cells {
 
     /// The answers for `parts` parts of each cell, from the scene of the cell, its mechanism or why it has
     /// none, and the number of the part.
-    pub(super) fn map<R: Send>(
+    pub(crate) fn map<R: Send>(
         &self,
         parts: usize,
         pool: &Pool,
@@ -475,7 +480,7 @@ fn places(count: u64) -> Vec<Mutex<Option<Built>>> {
 }
 
 /// The columns of the swept fields and, if `walked`, of the direction; an answer has `count` rows.
-pub(super) fn fields<A>(grid: &Grid, rows: &[Row<A>], count: impl Fn(&A) -> usize, walked: bool) -> Table {
+pub(crate) fn fields<A>(grid: &Grid, rows: &[Row<A>], count: impl Fn(&A) -> usize, walked: bool) -> Table {
     let each = || rows.iter().flat_map(|row| std::iter::repeat_n(row, count(&row.answer)));
     let table = grid.table(|| each().map(|row| row.index));
     if !walked {

@@ -6,11 +6,11 @@
 
 /// An enum whose variants each have a word for arguments and tables, or a clause for sentences.
 macro_rules! words {
-    ($(#[$about:meta])* $name:ident { $($(#[$of:meta])* $variant:ident = $word:literal,)+ }) => {
+    ($(#[$about:meta])* $name:ident { $($(#[doc = $of:literal])* $variant:ident = $word:literal,)+ }) => {
         $(#[$about])*
         #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
         pub enum $name {
-            $($(#[$of])* $variant,)+
+            $($(#[doc = $of])* #[serde(rename = $word)] $variant,)+
         }
 
         impl $name {
@@ -29,6 +29,19 @@ macro_rules! words {
                 Self::ALL.into_iter().find(|one| one.name() == word)
             }
         }
+
+        impl clap::ValueEnum for $name {
+            fn value_variants<'a>() -> &'a [Self] {
+                &Self::ALL
+            }
+
+            fn to_possible_value(&self) -> Option<clap::builder::PossibleValue> {
+                let words = match self {
+                    $(Self::$variant => concat!($($of),*),)+
+                };
+                Some(clap::builder::PossibleValue::new(self.name()).help(words.trim()))
+            }
+        }
     };
 }
 
@@ -36,42 +49,43 @@ pub(crate) use words;
 
 pub mod accuracy;
 mod alternatives;
-mod amplitudes;
+pub(crate) mod amplitudes;
 mod basins;
 mod best;
-mod bisection;
+pub(crate) mod bisection;
 mod contact;
 mod curve;
-mod escape;
-mod exponents;
+mod declared;
 mod fields;
 mod grid;
-mod grid_study;
+pub(crate) mod grid_study;
 mod identify;
 mod inspect;
 mod lesson;
 mod map;
 mod measured;
-mod melnikov;
 mod models;
-mod orbit;
-mod section;
-mod settled;
-mod simulate;
+pub(crate) mod orbit;
+pub(crate) mod settled;
+pub(crate) mod simulate;
 mod slice;
-mod spectrum;
 mod sweep;
 mod table;
-mod thresholds;
 mod trace;
 mod uncertain;
-mod walk;
+pub(crate) mod walk;
 mod watch;
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::dynamics::{Outcome, Run};
 
+pub use crate::escape::{NoKramers, depopulation, kramers_rate};
+pub use crate::exponents::{Estimate, ExponentOptions, Lyapunov, NoExponents, average_exponents, exponents};
+pub use crate::section::{IMPACTS, MAX_SECTION, SectionAt, SectionOptions, Sections, section};
+pub use crate::spectrum::{Signal, SpectrumAnswer, SpectrumOptions, spectrum};
+pub(crate) use crate::threshold::NoThresholds;
+pub use crate::threshold::{Found, Onset, Scan, Verdict, melnikov_threshold, threshold};
 pub use alternatives::{Alternative, Rated, alternatives};
 pub(crate) use alternatives::{SEARCHED_SPAN, comparison_parts, comparison_table};
 pub(crate) use amplitudes::stops_that_cross;
@@ -90,14 +104,15 @@ pub use curve::{
     metres, states, stop_positions,
 };
 pub(crate) use curve::{full_curve, shapes, small_amplitude_frequency, stress_warning};
-pub use escape::{Chance, NoKramers, Until, depopulation, kramers_rate};
-pub(crate) use escape::{EscapeOptions, escape_table, probable_threshold_table};
-pub use exponents::{Estimate, ExponentOptions, Exponents, NoExponents, average_exponents, exponents};
-pub(crate) use exponents::{ExponentCells, drive_fault};
+pub use declared::{
+    Answered, Framing, Heading, Over, PICTURE, Remark, Rows, Scenes, Spelling, Streamed, Study, answer,
+    answer_in, counted, number, whole,
+};
+pub(crate) use declared::{ColumnOf, column, even, over_fields, study_methods};
 pub(crate) use fields::InJson;
 pub use fields::{RMS_VELOCITY, Read, SUMMARY_FIELDS, SummaryField};
 pub use grid::{Grid, GridError, Levels, MAX_CELLS, STRIDES};
-pub(crate) use grid_study::Row;
+pub(crate) use grid_study::{Built, Row};
 pub use grid_study::{Cells, GridStudy, Question};
 pub use identify::{
     FORCE_POINTS, Identified, Identity, Unidentified, damping, force, restitution, restitution_of_times,
@@ -108,32 +123,25 @@ pub(crate) use lesson::{Unjudged, options_that_hold};
 pub use map::{Edges, first_crossing, release_line};
 pub(crate) use map::{first_crossing_edge, line_meets};
 pub use measured::{Comparison, ForceComparison, MeasuredMotion, NoComparison, compare, compare_force};
-pub use melnikov::melnikov_threshold;
-pub(crate) use melnikov::{suits_melnikov, with_melnikov};
 pub(crate) use models::ModelUse;
 pub use orbit::{
     Begin, Branch, BranchEnd, BranchEvent, BranchOptions, FieldRange, Locus, LocusEnd, LocusEvent, NoOrbit,
     Orbit, begun, branch, branches_table, loci, loci_table, orbit, orbit_near, switched,
 };
-pub use section::{IMPACTS, MAX_SECTION, SectionAt, SectionOptions, Sections, section};
 pub(crate) use settled::followed_until;
 pub use settled::{Standing, lasts, settled, standing};
 pub use simulate::{
     Keep, Recorded, Sampling, ended_remedy, events_table, sample_times, samples_table, simulate,
 };
 pub use slice::{Shard, Slice};
-pub(crate) use spectrum::NoSpectrum;
-pub use spectrum::{Signal, Spectrum, SpectrumOptions, spectrum};
 pub(crate) use sweep::CellFaults;
 pub use sweep::{Cell, DIRECTION, STANDARD as STANDARD_COLUMNS, Sweep, SweepEnd, SweepOptions, Tally};
 pub use table::{Column, Table, Values, label_and_unit, with_unit};
-pub(crate) use thresholds::NoThresholds;
-pub use thresholds::{Found, Onset, Scan, Searched, Verdict, threshold, threshold_table};
 pub use trace::{Trace, between, simulate_with_trace};
 pub use uncertain::MAX_DRAWS;
 pub(crate) use uncertain::{Draws, Variation, share_in_range};
-pub(crate) use walk::NoModel;
 pub use walk::{Carry, Direction, Family, Visit, up_and_down};
+pub(crate) use walk::{NoModel, choice_fault, excitation_fault};
 pub use watch::{Watch, continued_scene, watched_events};
 
 /// Progress and cancellation of a long study.
@@ -152,7 +160,7 @@ impl Task<'_> {
     }
 
     /// An error if the study was cancelled.
-    fn check_cancelled(&self) -> Result<()> {
+    pub(crate) fn check_cancelled(&self) -> Result<()> {
         if self.is_cancelled() { Err(Cancelled) } else { Ok(()) }
     }
 

@@ -11,7 +11,7 @@ use crate::system::threads::{Pool, Queue, UnderWay, share_from};
 /// Number of forcing periods after the scene's own run in which a motion is awaited to repeat: five times the
 /// length of nearly all transients of the prototype. Just above a threshold transients can be arbitrarily
 /// long: without stops, five of 40 amplitudes within 1 % of it take between 1000 and 4500 periods.
-pub(super) const PATIENCE: u32 = 1000;
+pub(crate) const PATIENCE: u32 = 1000;
 
 /// Smallest number of forcing periods, for sums of sines whose common period is long beside the fastest sine.
 const MIN_PATIENCE: f64 = 16.0;
@@ -37,7 +37,7 @@ pub fn widened(model: Model) -> Model {
 
 /// The model to run and the request to continue the run until it repeats, at most up to `until` in s (by
 /// default [`followed_until`]).
-pub(super) fn followed<'a>(model: Model, until: Option<f64>) -> (Model, Request<'a>) {
+pub(crate) fn followed<'a>(model: Model, until: Option<f64>) -> (Model, Request<'a>) {
     let model = widened(model);
     let until_settled = until.or(Some(followed_until(&model)));
     (model, Request { until_settled, ..Request::default() })
@@ -50,7 +50,7 @@ pub fn settled(model: &Model, cancel: &AtomicBool) -> Option<Summary> {
 }
 
 /// Like [`settled`], with another limit of time in s if `until` is given.
-pub(super) fn settled_within(model: &Model, until: Option<f64>, cancel: &AtomicBool) -> Option<Summary> {
+pub(crate) fn settled_within(model: &Model, until: Option<f64>, cancel: &AtomicBool) -> Option<Summary> {
     let model = &widened(model.clone());
     let until_settled = until.or(model.forcing_period().map(|_| followed_until(model)));
     let ramp = until_settled.and_then(|until| model.ramp_end().map(|end| end.min(until)));
@@ -100,7 +100,7 @@ pub fn standing(model: &Model, state: &Sample) -> Option<Standing> {
 
 /// The answers of `count` runs in order. `model` returns the model and the request of a run, or its answer if
 /// there is nothing to run; `answer` evaluates the run. `None` if the task was cancelled.
-pub(super) fn shared_runs<'q, R: Send>(
+pub(crate) fn shared_runs<'q, R: Send>(
     pool: Option<&Pool>,
     task: &'q Task,
     count: usize,
@@ -112,7 +112,7 @@ pub(super) fn shared_runs<'q, R: Send>(
 }
 
 /// Like [`shared_runs`], for the indices that `take` returns, which `answer` gets too.
-pub(super) fn runs_from<'q, R: Send>(
+pub(crate) fn runs_from<'q, R: Send>(
     pool: Option<&Pool>,
     task: &'q Task,
     take: &(dyn Fn(UnderWay) -> Option<usize> + Sync),

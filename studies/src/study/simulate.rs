@@ -183,7 +183,7 @@ fn short_contact(model: &Model) -> Option<String> {
 }
 
 /// Largest number of samples of one run, which take 1 GB of memory.
-pub(super) const MAX_SAMPLES: u64 = 10_000_000;
+pub(crate) const MAX_SAMPLES: u64 = 10_000_000;
 
 /// Why a run cannot be sampled as requested.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

@@ -101,7 +101,7 @@ fn add(counts: &mut BTreeMap<Box<str>, u64>, word: &str, n: u64) {
 }
 
 impl Tally {
-    pub(super) fn count(&mut self, cell: &Cell) {
+    pub(crate) fn count(&mut self, cell: &Cell) {
         self.cells += 1;
         self.ended_early += u64::from(cell.summary().is_some_and(|row| row.outcome.ended_at().is_some()));
         self.not_converged += u64::from(*cell == Cell::Unsolved);

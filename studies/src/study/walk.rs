@@ -100,7 +100,7 @@ impl Carry {
 /// Cells that are run one after the other. The first run begins at the start of its scene, each further one
 /// in the state of the run before after a whole number of forcing periods. A single cell is a walk of length
 /// 1.
-pub(super) struct Walk {
+pub(crate) struct Walk {
     /// The first of its cells in the order of the grid.
     begin: u64,
     /// Number of its cells.
@@ -115,7 +115,7 @@ pub(super) struct Walk {
 
 /// The model of the last run of a walk, and the state from which the next one continues.
 #[derive(Default)]
-pub(super) struct Carried(Option<(Model, MapState)>);
+pub(crate) struct Carried(Option<(Model, MapState)>);
 
 impl Carried {
     /// The next model, which continues from the run before.
@@ -145,7 +145,7 @@ impl Walk {
 }
 
 /// The fault of a drive without a period, which `what` needs.
-pub(super) fn without_a_period(model: &Model, scene: &Scene, what: &str) -> Option<Fault> {
+pub(crate) fn without_a_period(model: &Model, scene: &Scene, what: &str) -> Option<Fault> {
     let problem = format!(
         "has no period that repeats, which {what} needs; take a Sine, or a Sum of sines whose frequencies \
          have a common period"
@@ -153,12 +153,12 @@ pub(super) fn without_a_period(model: &Model, scene: &Scene, what: &str) -> Opti
     (!model.repeats()).then(|| excitation_fault(scene, problem))
 }
 
-pub(super) fn excitation_fault(scene: &Scene, problem: String) -> Fault {
+pub(crate) fn excitation_fault(scene: &Scene, problem: String) -> Fault {
     choice_fault(scene, "excitation", problem)
 }
 
 /// A fault of a choice of a scene, such as its excitation, named by its kind.
-pub(super) fn choice_fault(scene: &Scene, field: &str, problem: String) -> Fault {
+pub(crate) fn choice_fault(scene: &Scene, field: &str, problem: String) -> Fault {
     let kind = FieldPath::new(field).word(scene);
     Fault { field: field.into(), value: kind.unwrap_or_else(|| "None".to_owned()), problem }
 }
@@ -213,7 +213,7 @@ pub fn up_and_down(
 
 /// Runs the family at one value after the other, each run from the final state of the one before, until
 /// `each` returns false. Values without a model are skipped; returns their number.
-pub(super) fn walk_over(
+pub(crate) fn walk_over(
     family: &Family,
     values: &[f64],
     request: &Request,

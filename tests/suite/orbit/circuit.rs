@@ -90,7 +90,7 @@ impl Oscillator {
     }
 }
 
-fn exponents_of(model: &Model) -> interwell_studies::study::Exponents {
+fn exponents_of(model: &Model) -> interwell_studies::study::Lyapunov {
     let options = ExponentOptions { periods: 50, ..ExponentOptions::default() };
     exponents(model, &options, &AtomicBool::new(false)).unwrap()
 }

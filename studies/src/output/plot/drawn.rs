@@ -3,7 +3,7 @@
 use crate::study::{Column, Table, Values};
 
 /// Rows of several kinds, distinguished by the column `series`.
-pub(super) struct Drawn {
+pub(crate) struct Drawn {
     series: Vec<&'static str>,
     numbers: Vec<(String, Vec<f64>)>,
     words: Vec<(&'static str, Vec<&'static str>)>,
@@ -40,7 +40,7 @@ impl Drawn {
 }
 
 /// One series: these columns of numbers or counts, in the rows that are `shown`.
-pub(super) fn of_rows(
+pub(crate) fn of_rows(
     series: &'static str,
     rows: &Table,
     names: &[&str],
@@ -55,7 +55,7 @@ pub(super) fn of_rows(
 }
 
 /// The values of a column of numbers or counts; none of words.
-pub(super) fn as_numbers(column: &Column) -> Option<Vec<f64>> {
+pub(crate) fn as_numbers(column: &Column) -> Option<Vec<f64>> {
     match &column.values {
         Values::Numbers(values) => Some(values.clone()),
         Values::Counts(values) => Some(values.iter().map(|n| n.map_or(f64::NAN, |n| n as f64)).collect()),

@@ -118,7 +118,7 @@ pub(super) fn surface(picture: &SweepPicture, (x, y): (&str, &str)) -> Chart {
 }
 
 /// The quantity as colour over the fields `x` and `y`, beside it the quantity along cuts through the map.
-pub(super) fn map(picture: &SweepPicture, (x, y): (&str, &str), cuts: &[Cut]) -> Chart {
+pub(crate) fn map(picture: &SweepPicture, (x, y): (&str, &str), cuts: &[Cut]) -> Chart {
     let SweepPicture { rows, ranges, .. } = *picture;
     let quantity = Quantity::of(rows, picture.quantity);
     let cells = cells(rows, (x, y), &quantity, |_| true);

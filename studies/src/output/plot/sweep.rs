@@ -115,6 +115,16 @@ pub fn can_show<'a>(
     }
 }
 
+/// Checks that `what` can be shown over the field of this grid.
+#[doc(hidden)]
+pub fn can_show_over_field(grid: &Grid, what: &'static str) -> Result<(), NoPicture> {
+    match grid.axes().len() {
+        1 if grid.cells() > MAX_PICTURE_CELLS => Err(NoPicture::Cells(grid.cells())),
+        1 => Ok(()),
+        n => Err(NoPicture::OneField(what, n)),
+    }
+}
+
 /// Largest number of values of a field that are shown as lines, one per value, instead of a map.
 const FEW: usize = 6;
 /// Smallest ratio of the number of values of the other field to these.
@@ -182,7 +192,7 @@ pub fn sweep_chart(picture: &SweepPicture) -> Result<Chart, NoPicture> {
 
 /// Of two swept fields, the one on the horizontal axis and the one with a line per value, if one has few
 /// values.
-pub(super) fn few_lines<'a>(rows: &Table, grid: &'a Grid) -> Option<(&'a str, &'a str)> {
+pub(crate) fn few_lines<'a>(rows: &Table, grid: &'a Grid) -> Option<(&'a str, &'a str)> {
     let [a, b] = grid.columns() else { return None };
     let count = |name: &str| distinct(rows.numbers(name).unwrap_or_default()).len();
     let few = |of: &str, beside: &str| are_few(count(of), count(beside));
@@ -288,14 +298,14 @@ fn lines(picture: &SweepPicture, x: &str, each: &[SeriesLine]) -> Chart {
 }
 
 /// One of several lines over a field: its rows in ascending order, its name and its role.
-pub(super) struct SeriesLine {
+pub(crate) struct SeriesLine {
     pub order: Vec<usize>,
     pub name: String,
     pub role: Role,
 }
 
 /// A line over the field `x` for each value of `series`, or one of all rows.
-pub(super) fn each_line(rows: &Table, x: &str, series: Option<&str>) -> Vec<SeriesLine> {
+pub(crate) fn each_line(rows: &Table, x: &str, series: Option<&str>) -> Vec<SeriesLine> {
     let places = rows.numbers(x).unwrap_or_default();
     let Some(name) = series.filter(|_| rows.rows() > 0) else {
         return vec![SeriesLine {

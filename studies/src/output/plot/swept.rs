@@ -143,18 +143,18 @@ pub(super) fn is_transient(rows: &Table, row: usize) -> bool {
     settled == Some("false") && steady.is_some() && !(is_irregular && steady == Some("true"))
 }
 
-pub(super) fn label(rows: &Table, name: &str) -> String {
+pub(crate) fn label(rows: &Table, name: &str) -> String {
     rows.column(name).map_or_else(|| name.to_owned(), Column::label)
 }
 
 /// The horizontal axis of the swept field `x`.
-pub(super) fn swept_axis(rows: &Table, x: &str, range: Option<(f64, f64)>) -> PlotAxis {
+pub(crate) fn swept_axis(rows: &Table, x: &str, range: Option<(f64, f64)>) -> PlotAxis {
     let values = rows.numbers(x).unwrap_or_default();
     PlotAxis::around(values.iter().copied(), 0.02, &label(rows, x)).or_given(range)
 }
 
 /// The rows that are `shown`, in ascending order of these values.
-pub(super) fn ascending(values: &[f64], shown: impl Fn(usize) -> bool) -> Vec<usize> {
+pub(crate) fn ascending(values: &[f64], shown: impl Fn(usize) -> bool) -> Vec<usize> {
     let mut order: Vec<usize> = (0..values.len()).filter(|row| shown(*row)).collect();
     order.sort_by(|a, b| values[*a].total_cmp(&values[*b]));
     order
@@ -180,7 +180,7 @@ pub(super) fn marks(
 }
 
 /// The cells about some of the `places`, those of these rows.
-pub(super) fn spans(places: &[f64], rows: impl Iterator<Item = usize>) -> Marks {
+pub(crate) fn spans(places: &[f64], rows: impl Iterator<Item = usize>) -> Marks {
     let Edges { edges, .. } = &Edges::new(places);
     let around = |row: usize| {
         let above = edges.partition_point(|edge| *edge <= places[row]).clamp(1, edges.len() - 1);

@@ -39,7 +39,7 @@ const GOOD: Accuracy = Accuracy { change: 1e-12, step: 1e-10 };
 
 /// Residual and step, in the units, below each of which Newton's method ends at once.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Accuracy {
+pub(crate) struct Accuracy {
     pub change: f64,
     pub step: f64,
 }
@@ -47,7 +47,7 @@ pub(super) struct Accuracy {
 /// Units of the coordinates of a point: length in m, speed in m/s, state of the circuit in A or V (1 without
 /// one), and the range of the field.
 #[derive(Debug, Clone, Copy)]
-pub(in crate::study) struct Units {
+pub(crate) struct Units {
     pub length: f64,
     pub speed: f64,
     pub electrical: f64,
@@ -84,7 +84,7 @@ impl Units {
 }
 
 #[derive(Debug, Clone)]
-pub(super) struct Point {
+pub(crate) struct Point {
     /// Displacement, velocity, state of the circuit and field in the units. Without a circuit its state is 0,
     /// and so are its derivatives.
     pub at: Vector4<f64>,
@@ -105,7 +105,7 @@ impl Point {
 }
 
 /// M equations in N = M + 1 unknowns, evaluated at a guess.
-pub(super) struct Equations<const N: usize, const M: usize, T> {
+pub(crate) struct Equations<const N: usize, const M: usize, T> {
     /// Where they are evaluated: at the guess, or at the nearest admissible point.
     pub at: SVector<f64, N>,
     /// Residuals, which must become 0.
@@ -117,7 +117,7 @@ pub(super) struct Equations<const N: usize, const M: usize, T> {
 
 /// The solution of M equations in N = M + 1 unknowns in the plane through a guess and normal to `across`, by
 /// Newton's method, with the length of the last step; `None` if it does not converge.
-pub(super) fn newton<const N: usize, const M: usize, T>(
+pub(crate) fn newton<const N: usize, const M: usize, T>(
     guess: SVector<f64, N>,
     across: &SVector<f64, N>,
     accuracy: Accuracy,
@@ -156,7 +156,7 @@ fn bordered<const N: usize>(rows: &[SVector<f64, N>], last: &SVector<f64, N>) ->
 }
 
 /// The tangent of the curve of solutions of equations with these derivatives, in the direction of `along`.
-pub(super) fn tangent<const N: usize>(
+pub(crate) fn tangent<const N: usize>(
     slopes: &[SVector<f64, N>],
     along: &SVector<f64, N>,
 ) -> Option<SVector<f64, N>>
@@ -174,7 +174,7 @@ where
 /// the field at which the scene does too, it is the mirrored map over half a period. Its multipliers are
 /// roots of those over the period; -1 breaks the symmetry.
 #[derive(Clone, Copy)]
-pub(super) struct Corrector<'a> {
+pub(crate) struct Corrector<'a> {
     pub family: &'a Family<'a>,
     pub phase: f64,
     pub periods: u32,

@@ -28,7 +28,7 @@ use crate::dynamics::{
 use crate::scene::column_names;
 pub use begin::{Begin, begun, orbit};
 use corrector::Corrector;
-pub(super) use corrector::Units;
+pub(crate) use corrector::Units;
 pub use events::BranchEvent;
 pub use locus::{FieldRange, Locus, LocusEnd, LocusEvent, loci, loci_table};
 pub use switch::switched;
@@ -267,7 +267,7 @@ fn largest(change: [f64; 3]) -> f64 {
 
 /// The step of Newton's method to a fixed point of a map with these derivatives, which is `off` at present:
 /// (1 - J) step = off. `None` where the matrix is singular.
-pub(super) fn newton_step(jacobian: &Jacobian, off: [f64; 3]) -> Option<[f64; 3]> {
+pub(crate) fn newton_step(jacobian: &Jacobian, off: [f64; 3]) -> Option<[f64; 3]> {
     jacobian.newton_step(off)
 }
 

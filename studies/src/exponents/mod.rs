@@ -14,22 +14,191 @@
 //! one, are then minus infinity.
 
 mod average;
+mod chart;
 mod orbit;
 mod tangent;
 
+use std::ops::RangeInclusive;
 use std::sync::atomic::AtomicBool;
+
+use clap::Args;
+use serde::{Deserialize, Serialize};
 
 use crate::dynamics::{MapState, Model, Outcome, Request, Run};
 use crate::numeric::elementary;
-use crate::scene::{Fault, Scene};
+use crate::output::{NoPicture, can_show_over_field};
+use crate::questions::{Error, Progress, Simulation, check_until, may_have_circuit, settles};
+use crate::scene::{Document, Fault, Scene};
 use crate::study::grid_study::fields;
 use crate::study::settled::PATIENCE;
 use crate::study::walk::without_a_period;
-use crate::study::{Cell, Grid, GridStudy, Question, Row, Table, Tally, followed_until};
+use crate::study::{
+    Answered, Cell, Grid, GridStudy, Heading, Over, Question, Row, Scenes, Streamed, Study, Table, Tally,
+    counted, followed_until, number, study_methods, whole,
+};
 use average::average;
 pub use average::average_exponents;
 use orbit::of_orbit;
 use tangent::Tangent;
+
+/// Lyapunov exponents of the settled motion, with their standard errors, sum and dimension.
+///
+/// The rates in 1/s at which small perturbations grow or decay.
+///
+/// # Method
+///
+/// Of a motion that repeats, ln|multiplier| over its period; otherwise averages over
+/// `periods`, 1 to 1e7 (Benettin et al. 1980), through impacts by saltation (Müller 1995), with
+/// standard errors by batch means (Flegal and Jones 2010). More periods cost more and reduce these errors.
+///
+/// # Errors
+///
+/// [`Error::Argument`] for wrong fields, `periods` or `until_settled`; [`Error::Scene`], in a grid
+/// [`Error::Cells`], if the drive changes and does not repeat; [`Error::Failed`] if the motion ends early or
+/// touches a stop without speed (in a grid the values of that cell are missing).
+///
+/// # Example
+///
+/// ```
+/// # use interwell_studies as interwell;
+/// use interwell::questions::{Exponents, Progress, Simulation};
+///
+/// // Inside one well the exponents add up to -c/m, here -2 ratio sqrt(stiffness / mass).
+/// let simulation = Simulation::preset("nominal-cubic")?.with("stops", "None")?;
+/// let weak = simulation.with("excitation.amplitude_g", 0.2)?;
+/// let table = Exponents::default().run(&weak, &Progress::none())?;
+/// let sum = table.numbers("sum_per_s").unwrap()[0];
+/// assert!((sum + 2.0 * 0.023 * (80.0_f64 / 15.2e-3).sqrt()).abs() < 1e-6);
+/// # Ok::<(), interwell::questions::Error>(())
+/// ```
+#[derive(Debug, Clone, PartialEq, Args, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+#[command(after_help = EXAMPLES)]
+#[group(skip)]
+pub struct Exponents {
+    /// The fields, the slowest first; if there are none, the exponents are those of the scene.
+    #[arg(skip)]
+    pub over: Over,
+    /// Forcing periods over which a motion that does not repeat is averaged, 1 to 10000000; without a drive
+    /// periods of small oscillations
+    #[arg(long, value_name = "N", allow_hyphen_values = true, default_value_t = ExponentOptions::PERIODS)]
+    #[arg(value_parser = whole::<u32>(1..=10_000_000))]
+    pub periods: u32,
+    /// Follow the motion, window after window, until it repeats, or up to this time in s, before anything
+    /// is averaged [default: 1000 forcing periods after the scene's run]
+    #[arg(long, value_name = "MAX_S", allow_hyphen_values = true)]
+    #[arg(value_parser = number("not a time; give seconds, such as 300"))]
+    pub until_settled: Option<f64>,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  interwell --headless exponents duffing-chaos
+  interwell --headless exponents paper-unconstrained --set excitation.amplitude_g=1.3 --periods 10000
+  interwell --headless exponents duffing --over excitation.amplitude_g=0.02:0.068:0.0005 --plot e.png
+  interwell --headless exponents paper --over stops.travel_limit_mm=3:7:1 --over stops.restitution=0.3,0.9
+
+A rest on a stop ends every dependence on the earlier motion: all exponents are then minus infinity, -inf.";
+
+const AVERAGED: RangeInclusive<u32> = 1..=10_000_000;
+
+impl Default for Exponents {
+    fn default() -> Self {
+        Self { over: Vec::new(), periods: ExponentOptions::PERIODS, until_settled: None }
+    }
+}
+
+study_methods!(Exponents);
+
+impl Study for Exponents {
+    const NAME: &'static str = "exponents";
+    const SCENE: &'static str = "Scene file or built-in scene; its drive has a period, or there is none";
+    const PARTS: &'static str = "cells";
+    const PYTHON: &'static str = "\
+>>> weak = scene.set(stops=\"None\", excitation={\"amplitude_g\": 0.2})
+>>> weak.exponents()[\"sum_per_s\"].round(3)
+array([-3.337])";
+
+    fn over(&self) -> &Over {
+        &self.over
+    }
+
+    fn check(&self, _: &Scenes) -> Result<(), Error> {
+        match AVERAGED.contains(&self.periods) {
+            true => Ok(()),
+            false => Err(Error::argument("periods", self.periods, format!("give 1 to {}", AVERAGED.end()))),
+        }
+    }
+
+    /// The exponents of the scene alone.
+    fn answer(&self, scenes: &Scenes, progress: &Progress) -> Result<Answered, Error> {
+        let (model, document) = (scenes.model()?, scenes.document);
+        let found = self.of_model(&model, document, progress)?;
+        Ok(Answered::new(found.table()).told([found.describe(model.repeats())]))
+    }
+
+    fn streamed(&self, scenes: &Scenes, progress: &Progress) -> Result<Option<Streamed>, Error> {
+        if scenes.grid.axes().is_empty() {
+            return Ok(None);
+        }
+        let (document, grid, scene) = (scenes.document, scenes.grid.clone(), scenes.scene().clone());
+        let circuits = may_have_circuit(document, grid.axes());
+        let study = GridStudy::new(&document.scene, &document.files, grid.clone());
+        let study = study.with(ExponentOptions { circuits, ..self.options() });
+        Ok(Some(Streamed {
+            rows: Box::new(settles(study, self.until_settled, document, progress)?),
+            remark: described,
+            manifest: |manifest, grid, tally| manifest.of_exponents(grid, tally),
+            chart: Box::new(move |rows, framing| Ok(chart::chart(rows, &grid, &scene, framing.ranges))),
+        }))
+    }
+
+    fn can_draw(&self, grid: &Grid) -> Result<(), NoPicture> {
+        can_show_over_field(grid, "exponents")
+    }
+
+    fn columns() -> Vec<Vec<Heading>> {
+        Vec::new()
+    }
+}
+
+impl Exponents {
+    /// The exponents of the scene itself, whatever `over` says, and how they were computed.
+    pub fn of_one(&self, simulation: &Simulation, progress: &Progress) -> Result<Lyapunov, Error> {
+        self.of_model(simulation.model(), simulation.document(), progress)
+    }
+
+    fn of_model(&self, model: &Model, document: &Document, progress: &Progress) -> Result<Lyapunov, Error> {
+        if let Some(fault) = drive_fault(model, &document.scene) {
+            return Err(Error::faults_of(document, vec![fault]));
+        }
+        check_until(self.until_settled, document, model)?;
+        exponents(model, &self.options(), progress.stop()).map_err(|problem| match problem {
+            NoExponents::Cancelled => Error::Cancelled,
+            _ => Error::failed(document, problem),
+        })
+    }
+
+    fn options(&self) -> ExponentOptions {
+        ExponentOptions { periods: self.periods, until_settled: self.until_settled, circuits: false }
+    }
+}
+
+/// The number of cells, and of those without exponents.
+fn described(tally: &Tally, _: usize, seconds: f64) -> String {
+    let mut text = format!("{} in {seconds:.2} s", counted(tally.cells, "cell"));
+    if tally.resting > 0 {
+        text += &format!(", {} with a rest on a stop, so that all exponents are -inf", tally.resting);
+    }
+    if tally.without_exponents > 0 {
+        text += &format!(
+            ", {} without exponents (the motion ended early, touched a stop without speed, or the flexures \
+             have no solution)",
+            tally.without_exponents
+        );
+    }
+    text
+}
 
 /// Number of forcing periods of a window in which a repetition after up to 12 of them is recognised.
 const WINDOW: f64 = 36.0;
@@ -43,7 +212,7 @@ pub fn exponents(
     model: &Model,
     options: &ExponentOptions,
     cancel: &AtomicBool,
-) -> Result<Exponents, NoExponents> {
+) -> Result<Lyapunov, NoExponents> {
     let (run, until_settled) = match model.forcing_period().filter(|_| model.repeats()) {
         Some(period) => {
             let window = (model.duration() - model.settle()).max(WINDOW * period);
@@ -74,10 +243,7 @@ pub fn exponents(
     found.map_or_else(|| average(&tangent, state, options.periods, cancel), Ok)
 }
 
-/// The exponents of every cell of a grid.
-pub type ExponentCells = GridStudy<ExponentOptions>;
-
-type Found = Option<Exponents>;
+type Found = Option<Lyapunov>;
 
 impl Question for ExponentOptions {
     type Answer = Found;
@@ -121,7 +287,7 @@ pub fn drive_fault(model: &Model, scene: &Scene) -> Option<Fault> {
 }
 
 fn with_columns(mut table: Table, found: &[Found], has_circuit: bool) -> Table {
-    let number = |of: fn(&Exponents) -> f64| move |cell: &Found| cell.as_ref().map(of);
+    let number = |of: fn(&Lyapunov) -> f64| move |cell: &Found| cell.as_ref().map(of);
     let estimate =
         |place: usize, of: fn(Estimate) -> f64| move |cell: &Found| cell.as_ref()?.estimates()[place].map(of);
     for place in 0..if has_circuit { 3 } else { 2 } {
@@ -135,7 +301,7 @@ fn with_columns(mut table: Table, found: &[Found], has_circuit: bool) -> Table {
     table
         .each("sum_per_s", found, number(|exponents| exponents.sum))
         .each("exact_sum_per_s", found, |cell| cell.as_ref()?.exact_sum)
-        .each("dimension", found, number(Exponents::dimension))
+        .each("dimension", found, number(Lyapunov::dimension))
 }
 
 /// How exponents are computed.
@@ -186,7 +352,7 @@ impl Estimate {
 /// motions that begin side by side then part by exp(first t).
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
-pub struct Exponents {
+pub struct Lyapunov {
     /// The larger one.
     pub first: Estimate,
     /// The second one. NaN if stops are compliant and the contraction is lost in rounding.
@@ -211,7 +377,7 @@ const CLEAR: f64 = 3.0;
 /// logarithm of the number of periods.
 const BEYOND_SHEAR: f64 = 3.0;
 
-impl Exponents {
+impl Lyapunov {
     /// The exponents of a motion that has rested on a stop within these forcing periods.
     fn of_rest(period: Option<u32>, span: (u32, f64), tangent: &Tangent) -> Self {
         let nothing = f64::NEG_INFINITY;

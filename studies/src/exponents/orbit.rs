@@ -1,7 +1,7 @@
-//! Exponents of a periodic orbit, from its multipliers.
+//! Lyapunov of a periodic orbit, from its multipliers.
 
 use super::tangent::{Passed, Tangent};
-use super::{Estimate, Exponents, Found, NoExponents};
+use super::{Estimate, Found, Lyapunov, NoExponents};
 use crate::dynamics::MapState;
 use crate::numeric::elementary;
 use crate::study::orbit::newton_step;
@@ -26,12 +26,12 @@ pub(super) fn of_orbit(tangent: &Tangent, start: MapState, periods: u32) -> Resu
     let Some((orbit, distance, moved)) = find(tangent, start, periods)? else { return Ok(None) };
     let time = tangent.map.period() * f64::from(periods);
     if orbit.jacobian.is_zero() {
-        return Ok(Some(Exponents::of_rest(Some(periods), (periods, time), tangent)));
+        return Ok(Some(Lyapunov::of_rest(Some(periods), (periods, time), tangent)));
     }
     let growths = growths(&orbit);
     let first = growths[0];
     let stays = first <= NEUTRAL || (distance <= ROUNDING && !moved);
-    Ok(stays.then(|| Exponents {
+    Ok(stays.then(|| Lyapunov {
         first: Estimate::exact(first / time),
         second: Estimate::exact(growths[1] / time),
         third: growths.get(2).map(|growth| Estimate::exact(growth / time)),

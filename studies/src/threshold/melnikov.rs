@@ -6,13 +6,23 @@
 //! Holmes 1983, section 4.5). It has zeros for some t_0 if the amplitude a of the base's acceleration is
 //! above c integral of v^2 dt / (m |integral of v exp(i w t) dt|).
 
-use super::grid_study::Cells;
-use super::thresholds::from_rest;
-use super::{NoThresholds, Table, Task};
+use super::chart::MELNIKOV;
+use super::{NoThresholds, from_rest};
 use crate::dynamics::Model;
 use crate::mechanics::Homoclinic;
 use crate::scene::Scene;
+use crate::study::{Cells, Heading, Table, Task};
 use crate::system::threads::Pool;
+
+/// The columns and what they mean.
+pub(super) fn headings() -> Vec<Heading> {
+    let words = "Melnikov's threshold in the unit of the amplitude, of a `Sine`, a `Cosine` or a `Force`: \
+                 the least amplitude at which the stable and the unstable manifold of the barrier meet, to \
+                 first order in damping and drive (Guckenheimer and Holmes 1983, section 4.5), for the \
+                 well in which the mass rests; empty where it does not apply, which a remark explains";
+    let [g, m_per_s2, n] = MELNIKOV;
+    [(g, ""), (m_per_s2, ""), (n, words)].map(|(name, words)| Heading { name, words }).into()
+}
 
 /// Melnikov's threshold in m/s^2 of the base's acceleration under a sine of this frequency in Hz, for the
 /// well in which the model starts; `None` where it does not apply.
@@ -58,8 +68,10 @@ pub fn with_melnikov(table: Table, cells: &Cells, pool: &Pool, task: &Task) -> R
         let threshold = model.and_then(|model| melnikov_threshold(&model, drive.frequency_hz));
         Ok(threshold.map(|acceleration| drive.amplitude_of(acceleration)))
     })?;
-    let unit =
-        cells.base.harmonic().and_then(|drive| drive.amplitude_path().strip_prefix("excitation.amplitude"));
+    let unit = cells
+        .scene()
+        .harmonic()
+        .and_then(|drive| drive.amplitude_path().strip_prefix("excitation.amplitude"));
     Ok(table.each(&format!("melnikov{}", unit.unwrap_or("_g")), &found, |found| *found))
 }
 

@@ -1,46 +1,27 @@
 //! Picture of thresholds: over one field lines, over two a map or lines.
 
-use super::axis::{PlotAxis, Ranges};
-use super::chart::{Chart, Marks, Panel, Side};
-use super::drawn::{as_numbers, of_rows};
-use super::figure::Point;
-use super::map::map;
-use super::role::Role;
-use super::sweep::{NoPicture, each_line, few_lines};
-use super::swept::{SweepPicture, ascending, label, swept_axis};
+use super::Onset;
 use crate::numeric::short;
+use crate::output::{
+    Chart, Marks, Panel, PlotAxis, Point, Ranges, Role, Side, SweepPicture, as_numbers, ascending, each_line,
+    few_lines, label, map, of_rows, swept_axis,
+};
 use crate::scene::{Scene, column_names};
-use crate::study::{Grid, Onset, Table, Values};
+use crate::study::{Grid, Table, Values};
 
 /// The column of Melnikov's threshold, in the unit of the amplitude.
-const MELNIKOV: [&str; 3] = ["melnikov_g", "melnikov_m_per_s2", "melnikov_n"];
+pub(super) const MELNIKOV: [&str; 3] = ["melnikov_g", "melnikov_m_per_s2", "melnikov_n"];
 
-/// Whether thresholds over this grid can be shown.
-#[doc(hidden)]
-pub fn can_show_thresholds(grid: &Grid) -> Result<(), NoPicture> {
-    match grid.axes().len() {
-        0 => Err(NoPicture::SingleThreshold),
-        1 | 2 => Ok(()),
-        n => Err(NoPicture::Fields(n)),
-    }
-}
-
-/// The picture of the thresholds of a `field`, given by its dotted path, from the rows of
-/// [`Threshold`](crate::questions::Threshold): a line over one field; over two fields one line per value of a
-/// field with few values, otherwise a map. Over one field the vertical axis is that of the threshold.
-///
-/// # Errors
-///
-/// [`NoPicture::SingleThreshold`] without a grid, [`NoPicture::Fields`] over more than two fields.
-pub fn threshold_chart(
+/// The thresholds of a `field`, given by its dotted path: a line over one field; over two fields one line per
+/// value of a field with few values, otherwise a map. Over one field the vertical axis is that of the
+/// threshold.
+pub(super) fn chart(
     rows: &Table,
-    grid: &Grid,
-    scene: &Scene,
+    (grid, scene): (&Grid, &Scene),
     field: &str,
     onset: Onset,
     ranges: Ranges,
-) -> Result<Chart, NoPicture> {
-    can_show_thresholds(grid)?;
+) -> Chart {
     let least = format!("least_{}", column_names(&[field]).concat());
     let values = rows.numbers("value").unwrap_or_default();
     let rows = &rows.clone().with(&least, Values::Numbers(values.to_vec()));
@@ -67,7 +48,7 @@ pub fn threshold_chart(
             format!("the least value at which {what}")
         }
     };
-    Ok(chart)
+    chart
 }
 
 /// The threshold, which is the column `least`, over the field `x`; a line for each value of `series`.

@@ -4,12 +4,191 @@
 //! forcing periods and, if the motion repeats, of its periods; its spectrum then consists of exact lines and
 //! needs no window function. All other motions are weighted by the window function of von Hann.
 
+mod chart;
+
+use clap::Args;
 use serde::{Deserialize, Serialize};
 
-use super::simulate::MAX_SAMPLES;
-use super::{Table, Task, Values};
 use crate::dynamics::{Model, Outcome, Request, Sample};
-use crate::numeric::{Taper, periodogram, short};
+use crate::numeric::{Taper, number_text, periodogram, short};
+use crate::output::{NoPicture, Ranges};
+use crate::questions::{Error, Progress, Simulation, check_until};
+use crate::scene::Document;
+use crate::study::simulate::MAX_SAMPLES;
+use crate::study::{Answered, Grid, Heading, PICTURE, Scenes, Study, Table, Task, Values, number};
+pub use chart::{SpectrumQuantity, spectrum_chart};
+
+/// Amplitude and power spectral density of the settled motion over frequency.
+///
+/// # Method
+///
+/// The settled window is sampled evenly, over whole periods where the drive repeats. Where the motion
+/// repeats too, its lines are exact and no window function is needed; otherwise that of von Hann is taken,
+/// and amplitude and density are scaled as in Heinzel et al. (2002). Components above half the rate fold
+/// back: a higher `rate_hz` reduces this, which matters with impacts. Two runs are made, one for the verdict
+/// and one for the samples.
+///
+/// # Errors
+///
+/// [`Error::Argument`] for `rate_hz` (at most 1e7 samples) or `until_settled`; [`Error::Unfit`] if
+/// the settled window has no length; [`Error::Failed`] if the run ends early.
+///
+/// # Example
+///
+/// ```
+/// # use interwell_studies as interwell;
+/// use interwell::questions::{Progress, Signal, Simulation, Spectrum};
+///
+/// // The base moves with one sine of 1.5 g at 3 Hz.
+/// let question = Spectrum { of: Signal::BaseAcceleration, ..Spectrum::default() };
+/// let answer = question.run(&Simulation::preset("nominal-cubic")?, &Progress::none())?;
+/// let table = answer.table();
+/// let frequencies = table.numbers("frequency_hz").unwrap();
+/// let line = frequencies.iter().position(|frequency| (frequency - 3.0).abs() < 1e-9).unwrap();
+/// assert!((table.numbers("amplitude").unwrap()[line] - 1.5 * 9.806_65).abs() < 1e-9);
+/// # Ok::<(), interwell::questions::Error>(())
+/// ```
+#[derive(Debug, Clone, PartialEq, Args, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+#[command(after_help = EXAMPLES)]
+#[group(skip)]
+pub struct Spectrum {
+    /// Signal
+    #[arg(long, value_name = "SIGNAL", default_value = "x")]
+    pub of: Signal,
+    /// Weights of the samples
+    #[arg(long, value_name = "TAPER", default_value = "auto")]
+    pub taper: Weights,
+    /// Samples a second, increased until a forcing period has a whole number of them [default: 128 or more
+    /// in the shortest period of excitation and mechanism]
+    #[arg(long, value_name = "HZ", allow_hyphen_values = true)]
+    #[arg(value_parser = number(RATE))]
+    pub rate_hz: Option<f64>,
+    /// Follow the motion, window after window, until it repeats, or up to this time in s; the spectrum is of
+    /// the last window. Needs a drive that repeats
+    #[arg(long, value_name = "MAX_S", allow_hyphen_values = true)]
+    #[arg(value_parser = number("not a time; give seconds, such as 300"))]
+    pub until_settled: Option<f64>,
+    /// With a picture: the column that is shown
+    #[arg(long, value_name = "COLUMN", default_value = "amplitude")]
+    #[arg(requires = "plot", help_heading = PICTURE)]
+    #[serde(skip)]
+    pub quantity: SpectrumQuantity,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  interwell --headless spectrum paper --out lines.csv --plot lines.png
+  interwell --headless spectrum duffing-chaos --of v --plot chaos.png --quantity psd --plot-x 0:1
+  interwell --headless spectrum paper-unconstrained --set excitation.amplitude_g=1.2 --until-settled 300
+  interwell --headless spectrum random-shaking --of accel --taper none --rate-hz 4096
+
+Frequencies above half the rate are folded back below it; impacts excite all frequencies, so compare with a
+higher --rate-hz.";
+
+const RATE: &str = "give a number of samples a second above 0, such as 2048";
+
+words! {
+    /// Weights of the samples.
+    Weights {
+        /// None where the motion repeats, whose samples are whole periods of it so that its lines are exact,
+        /// and those of von Hann elsewhere.
+        Auto = "auto",
+        /// Those of von Hann.
+        Hann = "hann",
+        /// None.
+        None = "none",
+    }
+}
+
+impl Default for Spectrum {
+    fn default() -> Self {
+        let (of, taper, quantity) = (Signal::Displacement, Weights::Auto, SpectrumQuantity::Amplitude);
+        Self { of, taper, rate_hz: None, until_settled: None, quantity }
+    }
+}
+
+impl Study for Spectrum {
+    const NAME: &'static str = "spectrum";
+    const PARTS: &'static str = "runs";
+    const GRID: bool = false;
+    const PYTHON: &'static str = "\
+>>> table = scene.spectrum(\"accel\")
+>>> table[\"amplitude\"][table[\"frequency_hz\"] == 3.0].round(6)
+array([14.709975])";
+
+    fn check(&self, _: &Scenes) -> Result<(), Error> {
+        match self.rate_hz {
+            Some(rate) if !(rate > 0.0) => Err(Error::number("rate_hz", rate, RATE)),
+            _ => Ok(()),
+        }
+    }
+
+    fn answer(&self, scenes: &Scenes, progress: &Progress) -> Result<Answered, Error> {
+        let found = self.of_model(&scenes.model()?, scenes.document, progress)?;
+        let answer = Answered::new(found.table().clone()).told([found.describe()]);
+        let study = self.clone();
+        Ok(answer.drawn(move |_, framing| {
+            let quantity = match framing.quantity {
+                None => study.quantity,
+                Some(word) => SpectrumQuantity::named(word)
+                    .ok_or_else(|| Error::argument("quantity", word, "give amplitude or psd"))?,
+            };
+            study.check_ranges(&framing.ranges)?;
+            Ok(spectrum_chart(&found, quantity, framing.ranges))
+        }))
+    }
+
+    fn can_draw(&self, _: &Grid) -> Result<(), NoPicture> {
+        Ok(())
+    }
+
+    fn check_ranges(&self, ranges: &Ranges) -> Result<(), Error> {
+        match ranges.y {
+            Some((low, high)) if !(low > 0.0) => {
+                let problem = "the axis is logarithmic; give two numbers above 0, such as 1e-9:1e-2";
+                Err(Error::argument("plot_y", format!("{low}:{high}"), problem))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn columns() -> Vec<Vec<Heading>> {
+        Vec::new()
+    }
+}
+
+impl Spectrum {
+    /// Runs the scene and transforms its settled window.
+    pub fn run(&self, simulation: &Simulation, progress: &Progress) -> Result<SpectrumAnswer, Error> {
+        self.of_model(simulation.model(), simulation.document(), progress)
+    }
+
+    fn of_model(
+        &self,
+        model: &Model,
+        document: &Document,
+        progress: &Progress,
+    ) -> Result<SpectrumAnswer, Error> {
+        check_until(self.until_settled, document, model)?;
+        let (rate_hz, until_settled) = (self.rate_hz, self.until_settled);
+        let taper = match self.taper {
+            Weights::Auto => None,
+            Weights::Hann => Some(Taper::Hann),
+            Weights::None => Some(Taper::None),
+        };
+        let options = SpectrumOptions { signal: self.of, taper, rate_hz, until_settled };
+        spectrum(model, &options, &progress.silent()).map_err(|problem| match problem {
+            NoSpectrum::Cancelled => Error::Cancelled,
+            NoSpectrum::EndedEarly { .. } => Error::failed(document, problem),
+            NoSpectrum::NoWindow(..) => Error::unfit(document, problem),
+            NoSpectrum::Rate(_) => {
+                let given = rate_hz.map_or_else(|| "(default)".to_owned(), number_text);
+                Error::argument("rate_hz", given, format!("{}: {problem}", document.name))
+            }
+        })
+    }
+}
 
 words! {
     /// What the spectrum is of.
@@ -49,10 +228,10 @@ pub struct SpectrumOptions {
 
 /// A spectrum, and how it was computed. SI.
 ///
-/// It is the answer of the question [`Spectrum`](crate::questions::Spectrum); [`table`](Self::table) has its
+/// It is the answer of [`Spectrum`]; [`table`](Self::table) has its
 /// lines, [`describe`](Self::describe) what it was made from in one sentence.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Spectrum {
+pub struct SpectrumAnswer {
     /// `frequency_hz,amplitude,psd`, one-sided, from 0 to half the rate, with one row per line.
     pub(crate) table: Table,
     /// The signal.
@@ -73,7 +252,7 @@ pub struct Spectrum {
     pub forcing_hz: Vec<f64>,
 }
 
-impl Spectrum {
+impl SpectrumAnswer {
     /// `frequency_hz,amplitude,psd`, one-sided, from 0 to half the rate, with one row per line.
     pub fn table(&self) -> &Table {
         &self.table
@@ -125,7 +304,7 @@ const DEFAULT_SAMPLES: f64 = 4096.0;
 ///
 /// Frequencies above half the rate are folded back below it, which is negligible in a smooth motion. With
 /// impacts the velocity jumps, and amplitudes fall only like 1/f, those of the displacement like 1/f^2.
-pub fn spectrum(model: &Model, options: &SpectrumOptions, task: &Task) -> Result<Spectrum, NoSpectrum> {
+pub fn spectrum(model: &Model, options: &SpectrumOptions, task: &Task) -> Result<SpectrumAnswer, NoSpectrum> {
     let request =
         Request { cancel: Some(task.cancel), until_settled: options.until_settled, ..Request::default() };
     let summary = model.run(&request).summary;
@@ -146,7 +325,7 @@ pub fn spectrum(model: &Model, options: &SpectrumOptions, task: &Task) -> Result
         .with("amplitude", Values::Numbers(lines.amplitude))
         .with("psd", Values::Numbers(lines.density));
     let tones = model.excitation().tones.iter().filter(|tone| !tone.noise);
-    Ok(Spectrum {
+    Ok(SpectrumAnswer {
         table,
         signal: options.signal,
         taper,

@@ -11,16 +11,17 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use serde::{Deserialize, Serialize};
 
-use super::amplitudes::{Upward, frees_at};
-use super::bisection::{Trial, between, multiple, next_between};
-use super::grid_study::{Built, Cells};
-use super::settled::{followed, runs_from};
-use super::walk::excitation_fault;
-use super::{Cancelled, CellFaults, Family, NoModel, Table, Task};
 use crate::dynamics::{Model, Outcome, Regime, Run, Summary};
 use crate::mechanics::Mechanism;
 use crate::numeric::rounded;
 use crate::scene::{Fault, Files, Scene, Start};
+use crate::study::amplitudes::{Upward, frees_at};
+use crate::study::bisection::{Trial, between, multiple, next_between};
+use crate::study::settled::{followed, runs_from};
+use crate::study::{
+    Built, Cancelled, CellFaults, Cells, ColumnOf, Family, Heading, NoModel, Table, Task, column,
+    excitation_fault,
+};
 use crate::system::threads::{Pool, Queue, UnderWay};
 
 /// The values that are tried for a threshold, and its resolution.
@@ -145,9 +146,9 @@ impl From<Cancelled> for NoThresholds {
     }
 }
 
-/// The thresholds of every cell, with the columns of [`Threshold`](crate::questions::Threshold). Ticks
-/// [`Searched::ticks`] times for each cell. All cells are checked before the first run.
-pub fn threshold_table(
+/// The thresholds of every cell. Ticks [`Searched::ticks`] times for each. All cells are checked before the
+/// first run.
+pub(super) fn table(
     cells: &Cells,
     searched: &Searched,
     onset: Onset,
@@ -186,24 +187,66 @@ pub fn threshold_table(
         }
     };
     let found = cells.map(1, pool, task, of_cell)?;
-    Ok(cells
-        .table()
-        .each("of", &found, |_| onset.name())
-        .each("value", &found, |found| found.value)
-        .each("low", &found, |found| found.low)
-        .each("high", &found, |found| found.high)
-        .each("undecided", &found, |found| Some(found.undecided))
-        .each("windows", &found, |found| found.value.map(|_| found.windows))
-        .each("step", &found, |found| found.step)
-        .each("resolution", &found, |found| found.resolution))
+    Ok(cells.table().with_columns(&columns(onset), &found))
 }
 
-pub(super) fn from_rest(scene: &Scene) -> Scene {
+/// The columns and what they mean.
+pub(super) fn headings() -> Vec<Heading> {
+    columns(Onset::Crossing).into_iter().map(|column| column.heading).collect()
+}
+
+fn columns(onset: Onset) -> Vec<ColumnOf<'static, Found>> {
+    vec![
+        column("of", "`release`, `crossing` or `interwell`", move |_: &Found| onset.name()),
+        column(
+            "value",
+            "the least value that does it, in the field's unit; empty where there is none in the range, and \
+             standard error says of how many rows",
+            |found: &Found| found.value,
+        ),
+        column(
+            "low",
+            "the last value below it, of those tried, that is known not to do it",
+            |found: &Found| found.low,
+        ),
+        column(
+            "high",
+            "the first value from it on, of those tried, that is known to do it",
+            |found: &Found| found.high,
+        ),
+        column(
+            "undecided",
+            "`true` where the answer at `value`, or just below it, is not known; where `value` is empty, \
+             that at the end of the range. `low` and `high` then lie further apart than the resolution, or \
+             one is empty",
+            |found: &Found| Some(found.undecided),
+        ),
+        column(
+            "windows",
+            "how often the answer changes above `value`: twice for each gap, once more where it ends with no",
+            |found: &Found| found.value.map(|_| found.windows),
+        ),
+        column(
+            "step",
+            "distance of the steps on both sides of `value`, between which it was bisected: a window below \
+             it that is narrower can be missed; empty where the first step does it, or none",
+            |found: &Found| found.step,
+        ),
+        column(
+            "resolution",
+            "that of the bisection, by default a thousandth of the (first) step; empty where nothing was \
+             bisected",
+            |found: &Found| found.resolution,
+        ),
+    ]
+}
+
+pub(crate) fn from_rest(scene: &Scene) -> Scene {
     Scene { start: Start::Rest, ..scene.clone() }
 }
 
 /// The faults at the first of these values of a field, if none gives a model in which `fault` finds none.
-pub(super) fn faults(
+pub(crate) fn faults(
     scene: &Scene,
     mechanism: &Arc<Mechanism>,
     files: &Files,
@@ -231,7 +274,7 @@ type Answer = (f64, Option<Verdict>);
 
 /// The answers of a scan and of the bisection at its first change.
 #[derive(Default)]
-pub(super) struct Answers {
+pub(crate) struct Answers {
     /// The values of the scan, ascending.
     pub scan: Vec<Answer>,
     /// The values of the bisection, in the order in which they were begun.
@@ -324,7 +367,7 @@ const GAP_STEP: f64 = 0.01;
 
 /// Whether the range above a threshold is searched for windows, gaps and values known to have the motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Above {
+pub(crate) enum Above {
     Searched,
     Skipped,
 }
@@ -337,7 +380,7 @@ const SHARING: usize = 5;
 /// Number of values of a bisection that are then run at a time.
 const SHARED_AHEAD: usize = 3;
 
-pub(super) struct Search<'a> {
+pub(crate) struct Search<'a> {
     pub family: Family<'a>,
     pub onset: Onset,
     /// As in [`Scan`].
@@ -449,7 +492,7 @@ impl Search<'_> {
     }
 }
 
-words! {
+crate::study::words! {
     /// What begins at a threshold.
     Onset {
         /// The mass leaves the stop on which it rests.
@@ -473,7 +516,7 @@ pub struct Verdict {
 }
 
 impl Verdict {
-    pub(super) const NO_MODEL: Self = Self { does: false, known: false };
+    pub(crate) const NO_MODEL: Self = Self { does: false, known: false };
 }
 
 impl Onset {

@@ -1,19 +1,15 @@
 //! Picture of a section: points of the phase plane, and over a field the bifurcation diagram.
 
-use super::axis::{PlotAxis, Ranges};
-use super::chart::{Chart, Marks, Panel};
-use super::drawn::Drawn;
-use super::names::{DISPLACEMENT, VELOCITY, axis_name};
-use super::quantity::suited_unit;
-use super::role::Role;
-use super::swept::label;
 use crate::numeric::short;
+use crate::output::{
+    Chart, DISPLACEMENT, Drawn, Marks, Panel, PlotAxis, Ranges, Role, VELOCITY, axis_name, label, suited_unit,
+};
 use crate::study::{DIRECTION, Direction, Grid, IMPACTS, Table, Values};
 
-/// The picture of the answer of a [`Section`](crate::questions::Section), a single one or that `over` the
-/// field of a grid. The states are at the phase `phase_deg` of the drive in degrees; without it the rows are
-/// impacts. `stops` are positions in m, where they are the same for all rows.
-pub fn section_chart(
+/// A single section, or those `over` the field of a grid. The states are at the phase `phase_deg` of the
+/// drive in degrees; without it the rows are impacts. `stops` are positions in m, where they are the same for
+/// all rows.
+pub(super) fn chart(
     rows: &Table,
     over: Option<&Grid>,
     phase_deg: Option<f64>,

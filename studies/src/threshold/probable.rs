@@ -4,18 +4,17 @@
 //! own threshold. The threshold in probability is a quantile of those of all runs, and two of them bound it,
 //! whatever their distribution ([`QuantileRanks`]).
 
-use super::{Until, escape_fault, prepared, waited};
+use super::{NoThresholds, Onset, Scan, faults, from_rest};
+use crate::escape::{Until, escape_fault, prepared, waited};
 use crate::numeric::QuantileRanks;
 use crate::scene::Scene;
 use crate::study::bisection::between;
-use crate::study::grid_study::{Built, Cells};
-use crate::study::thresholds::{faults, from_rest};
-use crate::study::{Cancelled, Family, NoThresholds, Onset, Scan, Table, Task};
+use crate::study::{Built, Cancelled, Cells, ColumnOf, Family, Heading, Table, Task, column};
 use crate::system::threads::Pool;
 
 /// The share of runs that are to cross, their number and their time.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Chance {
+pub(super) struct Chance {
     /// Share of the runs that are to cross, above 0 and below 1.
     pub probability: f64,
     /// Number of runs, each with another seed, at least 1.
@@ -28,10 +27,9 @@ pub struct Chance {
 /// end of the range, and `None` if the mechanism was not solved.
 type Firsts = Option<Vec<f64>>;
 
-/// The thresholds in probability of every cell, with the columns of
-/// [`ProbableThreshold`](crate::questions::ProbableThreshold). Those of the runs are multiples of the
-/// resolution of `scan`, of whose values only the first and the last are used. Ticks for each run.
-pub fn probable_threshold_table(
+/// The thresholds in probability of every cell. Those of the runs are multiples of the resolution of `scan`,
+/// of whose values only the first and the last are used. Ticks for each run.
+pub(super) fn table(
     cells: &Cells,
     scan: &Scan,
     chance: &Chance,
@@ -63,6 +61,16 @@ pub fn probable_threshold_table(
         Some(ascending)
     };
     let found: Vec<Firsts> = found.chunks(runs).map(of_cell).collect();
+    Ok(cells.table().with_columns(&columns(chance), &found))
+}
+
+/// The columns and what they mean.
+pub(super) fn headings() -> Vec<Heading> {
+    let chance = Chance { probability: 0.5, runs: 1, within: 1.0 };
+    columns(&chance).into_iter().map(|column| column.heading).collect()
+}
+
+fn columns(chance: &Chance) -> Vec<ColumnOf<'_, Firsts>> {
     let ranks = QuantileRanks::of(chance.runs, chance.probability);
     let at = |rank: Option<u64>| {
         move |cell: &Firsts| {
@@ -70,17 +78,28 @@ pub fn probable_threshold_table(
             Some(value).filter(|value| value.is_finite())
         }
     };
-    Ok(cells
-        .table()
-        .each("of", &found, |_| Onset::Crossing.name())
-        .each("probability", &found, |_| chance.probability)
-        .each("value", &found, at(Some(ranks.value)))
-        .each("low", &found, at(ranks.low))
-        .each("high", &found, at(ranks.high))
-        .each("runs", &found, |cell| cell.as_ref().map(|_| chance.runs))
-        .each("crossed", &found, |cell| {
+    vec![
+        column("of", "", |_: &Firsts| Onset::Crossing.name()),
+        column("probability", "`crossing`, and P", |_: &Firsts| chance.probability),
+        column(
+            "value",
+            "the least value at which at least a share P of the runs crosses: a quantile of the thresholds \
+             of the single runs; empty where fewer cross at the end of the range",
+            at(Some(ranks.value)),
+        ),
+        column("low", "", at(ranks.low)),
+        column(
+            "high",
+            "its 95 % interval, two of these thresholds whose ranks follow from the binomial distribution, \
+             whatever that of the thresholds (David and Nagaraja 2003, section 7.1); an end is empty where \
+             there are too few runs to have one, or where it lies beyond the range",
+            at(ranks.high),
+        ),
+        column("runs", "", |cell: &Firsts| cell.as_ref().map(|_| chance.runs)),
+        column("crossed", "runs, and how many of them cross at the end of the range", |cell: &Firsts| {
             Some(cell.as_ref()?.iter().filter(|value| value.is_finite()).count() as u64)
-        }))
+        }),
+    ]
 }
 
 /// The least value at which the run crosses in time; infinite if it does not at the last value.

@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 use std::sync::atomic::{self, AtomicBool};
 
 use super::tangent::Tangent;
-use super::{Estimate, Exponents, NoExponents};
+use super::{Estimate, Lyapunov, NoExponents};
 use crate::dynamics::{Jacobian, MapState, Model};
 use crate::numeric::{CompensatedSum, elementary};
 
@@ -23,7 +23,7 @@ pub fn average_exponents(
     phase: f64,
     periods: u32,
     cancel: &AtomicBool,
-) -> Result<Exponents, NoExponents> {
+) -> Result<Lyapunov, NoExponents> {
     average(&Tangent::of(model, phase)?, state.into(), periods, cancel)
 }
 
@@ -32,7 +32,7 @@ pub(super) fn average(
     mut state: MapState,
     periods: u32,
     cancel: &AtomicBool,
-) -> Result<Exponents, NoExponents> {
+) -> Result<Lyapunov, NoExponents> {
     let periods = periods.max(1);
     let time = tangent.map.period() * f64::from(periods);
     let has_circuit = tangent.map.model().has_electrical_state();
@@ -48,7 +48,7 @@ pub(super) fn average(
         let passed = tangent.pass(state)?;
         let growth = stretched(&passed.jacobian, &mut changes[0], None);
         if growth == 0.0 {
-            return Ok(Exponents::of_rest(None, (periods, time), tangent));
+            return Ok(Lyapunov::of_rest(None, (periods, time), tangent));
         }
         let mut growths = vec![elementary::ln(growth)];
         if has_circuit {
@@ -82,7 +82,7 @@ pub(super) fn average(
     }
     // those that differ by less than their scatter may be in another order
     estimates.sort_by(|a, b| b.per_s.partial_cmp(&a.per_s).unwrap_or(Ordering::Equal));
-    Ok(Exponents {
+    Ok(Lyapunov {
         first: estimates[0],
         second: estimates[1],
         third: estimates.get(2).copied(),

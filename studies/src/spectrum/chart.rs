@@ -1,14 +1,11 @@
 //! Picture of a spectrum: amplitude or power spectral density, logarithmic, over frequency.
 
-use super::axis::{PlotAxis, Ranges};
-use super::chart::{Chart, Marks, Panel};
-use super::drawn::Drawn;
-use super::figure::Point;
-use super::names::{BASE_ACCELERATION, FREQUENCY, VELOCITY};
-use super::quantity::suited_unit;
-use super::role::Role;
+use super::{Signal, SpectrumAnswer};
 use crate::numeric::{Taper, elementary, extent, short};
-use crate::study::{Signal, Spectrum, words};
+use crate::output::{
+    BASE_ACCELERATION, Chart, Drawn, FREQUENCY, Marks, Panel, PlotAxis, Point, Ranges, Role, VELOCITY,
+    suited_unit,
+};
 
 words! {
     /// The column that is shown.
@@ -32,7 +29,7 @@ const MAX_MARKED: usize = 4;
 /// The picture of the answer of a [`Spectrum`](crate::questions::Spectrum). `ranges` are those of the
 /// frequency in Hz and of the quantity, in the unit of its axis: an amplitude below 2 m or 2 m/s is shown
 /// in mm or mm/s.
-pub fn spectrum_chart(spectrum: &Spectrum, quantity: SpectrumQuantity, ranges: Ranges) -> Chart {
+pub fn spectrum_chart(spectrum: &SpectrumAnswer, quantity: SpectrumQuantity, ranges: Ranges) -> Chart {
     let column = |name: &str| spectrum.table.numbers(name).unwrap_or_default();
     let (frequencies, values) = (column("frequency_hz"), column(quantity.name()));
     let (scale, label) = scale_and_label(spectrum.signal, quantity, values);
@@ -87,7 +84,7 @@ fn scale_and_label(signal: Signal, quantity: SpectrumQuantity, values: &[f64]) -
 }
 
 /// The frequency in Hz up to which nearly all of the power lies, and some forcing frequencies at least.
-fn shown_to(spectrum: &Spectrum, frequencies: &[f64], density: &[f64]) -> f64 {
+fn shown_to(spectrum: &SpectrumAnswer, frequencies: &[f64], density: &[f64]) -> f64 {
     let last = frequencies.last().copied().unwrap_or(1.0);
     let total: f64 = density.iter().skip(1).sum();
     let mut below = 0.0;

@@ -1,0 +1,53 @@
+//! Studies that declare their arguments, table, remarks and picture.
+
+use interwell_studies::questions::{Error, Escape, Exponents, Section, Spectrum, Threshold};
+use interwell_studies::study::{Framing, Spelling, Study, answer};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use pythonize::depythonize;
+
+use crate::answer::{Answer, no_picture};
+use crate::errors::{raised, renamed};
+use crate::scene::Simulation;
+use crate::work::{Way, work};
+
+/// Asks the study of this name about a scene; `arguments` are its fields.
+#[pyfunction]
+#[pyo3(signature = (study, scene, arguments, threads=None, progress=None))]
+pub fn ask(
+    py: Python<'_>,
+    study: &str,
+    scene: &Simulation,
+    arguments: &Bound<'_, PyDict>,
+    threads: Option<usize>,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<Answer> {
+    let way = Way { threads, progress };
+    match study {
+        Escape::NAME => asked::<Escape>(py, scene, arguments, &way),
+        Exponents::NAME => asked::<Exponents>(py, scene, arguments, &way),
+        Section::NAME => asked::<Section>(py, scene, arguments, &way),
+        Spectrum::NAME => asked::<Spectrum>(py, scene, arguments, &way),
+        Threshold::NAME => asked::<Threshold>(py, scene, arguments, &way),
+        other => Err(raised(py, &Error::argument("study", other, "there is no such study"))),
+    }
+}
+
+fn asked<S: Study>(
+    py: Python<'_>,
+    scene: &Simulation,
+    arguments: &Bound<'_, PyDict>,
+    way: &Way,
+) -> PyResult<Answer> {
+    let study: S = depythonize(arguments)?;
+    let (grid, found) = work(py, way, |progress| answer(&study, &scene.inner, progress))?;
+    let remarks = found.remarks.iter().map(|remark| remark.text(Spelling::Program)).collect();
+    let answered = Answer::new(py, found.table, scene.caption()).told(remarks);
+    let Some(chart) = found.chart else { return Ok(answered) };
+    Ok(answered.drawn(move |rows, asked| {
+        let (quantity, ranges, cancel) = (asked.quantity.as_deref(), asked.ranges, asked.cancel);
+        study.can_draw(&grid).map_err(no_picture)?;
+        let drawn = chart(rows, &Framing { quantity, ranges, cancel });
+        drawn.map_err(|error| renamed(error, [["plot_y", "y"]]))
+    }))
+}
