@@ -8,7 +8,7 @@ use interwell::app::session::map::Map;
 use interwell::app::window::{Command, Window};
 use interwell::app::words::columns::{COLUMNS, title};
 use interwell::output::{
-    Area, Cell as DrawnCell, Cut, Marks, Panel, PlotAxis, Role as Drawn, SurfaceFrame, View, words_of,
+    Area, Cut, Marks, Panel, PlotAxis, Role as Drawn, Shade, SurfaceFrame, View, words_of,
 };
 use interwell::scene::{Layout, Stops, SweepAxis};
 use interwell_studies::study::{Cell, RMS_VELOCITY, STANDARD_COLUMNS, SummaryField};
@@ -176,7 +176,7 @@ fn a_cut_through_a_coarse_map_has_its_own_cells() {
             _ => None,
         });
         assert!(known.len() < rows && shown.as_ref() == Some(&known), "{column}: {shown:?}");
-        let is_blank = |cell: &DrawnCell| *cell == DrawnCell::Blank;
+        let is_blank = |cell: &Shade| *cell == Shade::Blank;
         assert!(!panels[0].cells().unwrap().cells.iter().any(is_blank));
     }
 }

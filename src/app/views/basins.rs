@@ -6,7 +6,7 @@ use crate::app::session::explore::Level;
 use crate::app::session::measured::sentence;
 use crate::app::ui::widgets::tell;
 use crate::app::words::numbers::three;
-use crate::output::{Cell, Cells, Layer, Marks, Panel, PlotAxis, Role};
+use crate::output::{Layer, Marks, Panel, PlotAxis, Role, Shade, Shades};
 use interwell_studies::study::Edges;
 
 use super::labels::pointer_rests;
@@ -77,7 +77,7 @@ fn shown(level: Option<&Level>) -> Panel {
         match &layer.marks {
             Marks::Cells(cells) => {
                 let up: Vec<f64> = cells.up.values.iter().map(|v| v * per_unit).collect();
-                let cells = Cells { up: Edges::new(&up), ..cells.clone() };
+                let cells = Shades { up: Edges::new(&up), ..cells.clone() };
                 panel.layers.extend(by_kind(Layer { marks: Marks::Cells(cells), ..layer.clone() }));
             }
             Marks::Points(states) => {
@@ -104,7 +104,7 @@ fn pointer_ui(ui: &Ui, context: &mut ViewContext<'_>, plotted: &Plotted, level: 
     let words = || {
         let cells = level.chart.panels().next()?.cells()?;
         let cell = cells.at(cells.across.cell(x_mm)?, cells.up.cell(v / 1e3 * level.per_speed)?);
-        let Cell::Value(place) = cell else { return None };
+        let Shade::Value(place) = cell else { return None };
         // after the attractors come those of starts that are not sure
         let (place, count) = (place as usize, level.answer.attractors.len());
         let words = level.answer.words().into_iter().nth(place % count.max(1))?;

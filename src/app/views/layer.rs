@@ -7,7 +7,7 @@ use eframe::egui::{Color32, Id, Rect, Shape, Ui};
 use egui_plot::{PlotBounds, PlotGeometry, PlotItem, PlotItemBase, PlotPoint, PlotTransform};
 
 use crate::app::ui::style::{Style, colour};
-use crate::output::{Area, Cell, Cells, Colours, Frame, Layer, Marks, Panel, PlotAxis, Role, csv};
+use crate::output::{Area, Colours, Frame, Layer, Marks, Panel, PlotAxis, Role, Shade, Shades, csv};
 use interwell_studies::study::{Table, Values};
 
 use super::pane::{UNIT, on_canvas};
@@ -19,19 +19,19 @@ const FAINT: f32 = 0.2;
 pub fn by_kind(layer: Layer) -> Vec<Layer> {
     let Marks::Cells(cells) = &layer.marks else { return vec![layer] };
     let is_kind = matches!(cells.colours, Colours::Categories(_));
-    let part = |role: Role, name: String, has: &dyn Fn(&Cell) -> bool| {
-        let own = cells.cells.iter().map(|cell| if has(cell) { *cell } else { Cell::Blank });
-        Layer { marks: Marks::Cells(Cells { cells: own.collect(), ..cells.clone() }), role, name }
+    let part = |role: Role, name: String, has: &dyn Fn(&Shade) -> bool| {
+        let own = cells.cells.iter().map(|cell| if has(cell) { *cell } else { Shade::Blank });
+        Layer { marks: Marks::Cells(Shades { cells: own.collect(), ..cells.clone() }), role, name }
     };
     let valued = (!is_kind).then(|| part(layer.role, String::new(), &|cell| cell.value().is_some()));
     let named = cells.entries().into_iter().map(|(role, name)| {
         let kind = match (&cells.colours, role) {
-            (_, Role::Missing) => Cell::Missing,
+            (_, Role::Missing) => Shade::Missing,
             (Colours::Categories(kinds), _) => match kinds.iter().position(|kind| kind.1 == name) {
-                Some(kind) => Cell::Value(kind as f64),
-                None => Cell::Rest,
+                Some(kind) => Shade::Value(kind as f64),
+                None => Shade::Rest,
             },
-            _ => Cell::Rest,
+            _ => Shade::Rest,
         };
         part(role, name, &|cell| *cell == kind)
     });
@@ -54,7 +54,7 @@ pub fn values_as_csv(panel: &Panel) -> String {
             | Marks::Sticks(points) => points.iter().for_each(|at| add(*at, f64::NAN)),
             Marks::Regimes(points, _) => points.iter().for_each(|point| add(point.0, f64::NAN)),
             Marks::Cells(cells) => {
-                for (i, cell) in cells.cells.iter().enumerate().filter(|(_, cell)| **cell != Cell::Blank) {
+                for (i, cell) in cells.cells.iter().enumerate().filter(|(_, cell)| **cell != Shade::Blank) {
                     let (column, row) = (i / cells.up.values.len(), i % cells.up.values.len());
                     let at = (cells.across.values[column], cells.up.values[row]);
                     add(at, cell.value().unwrap_or(f64::NAN));

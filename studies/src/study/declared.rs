@@ -122,13 +122,11 @@ impl<'a> Scenes<'a> {
     }
 }
 
-/// An answer: its tables, what they do not say, and how they are drawn.
+/// An answer: its table, what that does not say, and how it is drawn.
 pub struct Answered {
     /// The table.
     pub table: Table,
-    /// Further tables by the argument that asks for them.
-    pub others: Vec<(&'static str, Table)>,
-    /// What the tables do not say.
+    /// What the table does not say.
     pub remarks: Vec<Remark>,
     /// Draws the table, where it can be drawn.
     pub chart: Option<Draw>,
@@ -140,7 +138,7 @@ pub type Draw = Box<dyn Fn(&Table, &Framing) -> Result<Chart, Error> + Send + Sy
 impl Answered {
     /// An answer of one table.
     pub fn new(table: Table) -> Self {
-        Self { table, others: Vec::new(), remarks: Vec::new(), chart: None }
+        Self { table, remarks: Vec::new(), chart: None }
     }
 
     /// The same with remarks.
@@ -327,10 +325,13 @@ pub struct Heading {
     pub words: &'static str,
 }
 
+/// The values of a column from what its rows are made of.
+type Collected<'a, R> = Box<dyn Fn(&[R]) -> Values + 'a>;
+
 /// A column of a table whose rows are made from `R`.
 pub(crate) struct ColumnOf<'a, R> {
     pub heading: Heading,
-    values: Box<dyn Fn(&[R]) -> Values + 'a>,
+    values: Collected<'a, R>,
 }
 
 /// A column with the value of `of` in each row.

@@ -1,7 +1,7 @@
 //! Neighbouring areas of a picture leave no seam between them, and the text of a surface has its size.
 
 use interwell::output::{
-    Caption, Cell, Cells, Chart, Colours, Figure, Format, Ink, Marks, Panel, PlotAxis, Role, Shape, Sheet,
+    Caption, Chart, Colours, Figure, Format, Ink, Marks, Panel, PlotAxis, Role, Shade, Shades, Shape, Sheet,
     SweepPicture, TICK, Theme, View, sweep_chart,
 };
 use interwell_studies::study::{Edges, Grid, Table};
@@ -21,15 +21,15 @@ fn maps() -> impl Strategy<Value = Drawn> {
 }
 
 /// Cells of which some are at rest, some missing, some not drawn, and the others have values.
-fn cells(((columns, rows), kinds, ..): &Drawn) -> Cells {
+fn cells(((columns, rows), kinds, ..): &Drawn) -> Shades {
     let cell = |kind: &u8| match kind {
-        0 => Cell::Blank,
-        1 => Cell::Missing,
-        2 => Cell::Rest,
-        kind => Cell::Value(f64::from(*kind)),
+        0 => Shade::Blank,
+        1 => Shade::Missing,
+        2 => Shade::Rest,
+        kind => Shade::Value(f64::from(*kind)),
     };
     let values = |count: usize| Edges::new(&(0..count).map(|i| (i * i) as f64 + 1.0).collect::<Vec<_>>());
-    Cells {
+    Shades {
         across: values(*columns),
         up: values(*rows),
         cells: kinds.iter().map(cell).collect(),
@@ -38,7 +38,7 @@ fn cells(((columns, rows), kinds, ..): &Drawn) -> Cells {
     }
 }
 
-fn chart(cells: Cells, [from, to]: [f64; 2]) -> Chart {
+fn chart(cells: Shades, [from, to]: [f64; 2]) -> Chart {
     let part = |ends: (f64, f64)| {
         PlotAxis::between(ends.0 + from * (ends.1 - ends.0), ends.0 + to * (ends.1 - ends.0), "")
     };
@@ -83,7 +83,7 @@ fn the_background_shows_between_no_two_cells_and_at_no_step_of_a_colour_bar() {
         let figure = chart(cells.clone(), drawn.2).figure(&Caption::default(), &theme);
         let (frame, side) = (&figure.frames[0], drawn.3);
         let is_filled =
-            |column: usize, row: usize| !matches!(cells.at(column, row), Cell::Blank | Cell::Missing);
+            |column: usize, row: usize| !matches!(cells.at(column, row), Shade::Blank | Shade::Missing);
         let inside = |at: &(f64, f64)| {
             let area = frame.area;
             at.0 > area.left + side
@@ -107,9 +107,9 @@ fn the_background_shows_between_no_two_cells_and_at_no_step_of_a_colour_bar() {
                 let at = frame.place((x, y));
                 if inside(&at) {
                     let expected = match cells.at(column, row) {
-                        Cell::Blank | Cell::Missing => theme.paper,
-                        Cell::Rest => theme.rest,
-                        Cell::Value(value) => cells.colours.ink(value, &theme),
+                        Shade::Blank | Shade::Missing => theme.paper,
+                        Shade::Rest => theme.rest,
+                        Shade::Value(value) => cells.colours.ink(value, &theme),
                     };
                     prop_assert_eq!(ink_at(&figure, at), Some(expected), "{} {}", column, row);
                 }

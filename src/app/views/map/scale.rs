@@ -6,7 +6,7 @@ use eframe::egui::{Rect, Sense, TextStyle, Ui, UiBuilder, vec2};
 use egui_plot::{AxisHints, GridInput, GridMark, HPlacement, Plot, PlotBounds};
 
 use crate::app::ui::style::Style;
-use crate::output::{Cell, Cells, Colours, Marks, Panel, PlotAxis, Role};
+use crate::output::{Colours, Marks, Panel, PlotAxis, Role, Shade, Shades};
 use interwell_studies::study::Edges;
 
 use super::super::layer::LayerItem;
@@ -25,10 +25,10 @@ pub fn scale_of(axis: &PlotAxis, colours: &Colours) -> Panel {
         Panel::new(PlotAxis::given(0.0, 1.0, Vec::new(), ""), PlotAxis::given(0.0, 1.0, ticks, &axis.label));
     panel.draw(
         Role::Motion,
-        Marks::Cells(Cells {
+        Marks::Cells(Shades {
             across: Edges { values: vec![0.5], edges: vec![0.0, 1.0] },
             up: Edges::new(&shares),
-            cells: shares.iter().map(|share| Cell::Value(value(share))).collect(),
+            cells: shares.iter().map(|share| Shade::Value(value(share))).collect(),
             colours: if is_signed {
                 colours.clone()
             } else {

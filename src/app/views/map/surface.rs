@@ -4,7 +4,7 @@ use eframe::egui::{self, Color32, Painter, Pos2, Rect, Sense, Shape, Stroke, Ui}
 
 use crate::app::ui::style::Style;
 use crate::app::ui::widgets::tell;
-use crate::output::{Cell as DrawnCell, View as MapShape};
+use crate::output::{Shade, View as MapShape};
 
 use super::super::ViewContext;
 use super::super::pane::{Pane, kept_pane_ui};
@@ -54,9 +54,9 @@ pub fn surface_ui(ui: &mut Ui, context: &mut ViewContext<'_>, area: Rect) {
 fn height(pane: &Pane, (column, row): (usize, usize)) -> Option<f64> {
     let (cells, _) = pane.chart.panels().next()?.surface()?;
     match cells.at(column, row) {
-        DrawnCell::Value(value) => Some(value),
-        DrawnCell::Rest => Some(0.0),
-        DrawnCell::Missing | DrawnCell::Blank => None,
+        Shade::Value(value) => Some(value),
+        Shade::Rest => Some(0.0),
+        Shade::Missing | Shade::Blank => None,
     }
 }
 

@@ -4,7 +4,7 @@
 use serde_json::json;
 
 use super::axis::PlotAxis;
-use super::chart::{Chart, Column, Marks, Panel};
+use super::chart::{Chart, Marks, Panel, PanelColumn};
 use super::drawn::Drawn;
 use super::figure::Point;
 use super::mark::Caption;
@@ -51,7 +51,7 @@ pub fn accuracy_chart(table: &Table, version: &str) -> (Chart, Caption) {
             panel.draw(role, Marks::Path(points.clone()));
             panel.layer(role, *method, Marks::Points(points));
         }
-        Column { width: 1.0, panels: vec![panel] }
+        PanelColumn { width: 1.0, panels: vec![panel] }
     };
     let columns = shown.iter().map(panel_of).collect();
     let mut drawn = Drawn::new(["cpu_s", "error"], &["problem", "method"]);
@@ -88,10 +88,10 @@ pub fn scene_accuracy_chart(
     stepped: &[StepSize],
     stops: (f64, f64),
 ) -> Chart {
-    let mut columns = vec![Column { width: 1.0, panels: vec![cost_panel(known, tolerance, stepped)] }];
+    let mut columns = vec![PanelColumn { width: 1.0, panels: vec![cost_panel(known, tolerance, stepped)] }];
     let panels: Vec<Panel> = stepped.iter().map(|run| steps_panel(run, stepped.len(), stops)).collect();
     if !panels.is_empty() {
-        columns.push(Column { width: 1.3, panels });
+        columns.push(PanelColumn { width: 1.3, panels });
     }
     let mut drawn = Drawn::new(["t_s", "x_m", "cpu_s", "error_m", "tolerance", "step_s"], &["method"]);
     for run in &known.runs {

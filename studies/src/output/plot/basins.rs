@@ -2,7 +2,7 @@
 //! the states of the attractors.
 
 use super::axis::PlotAxis;
-use super::cells::{Cell, Cells, Colours};
+use super::cells::{Colours, Shade, Shades};
 use super::chart::{Chart, Marks, Panel};
 use super::drawn::Drawn;
 use super::quantity::suited_unit;
@@ -57,11 +57,11 @@ pub fn basins_chart(basins: &Basins, answer: &Answer) -> Chart {
         Some((x_mm, v)) => {
             let kinds = roles.iter().copied().zip(names.iter().cloned());
             let cell = |row: usize| match found(row) {
-                Some(place) => Cell::Value(place as f64),
-                None if is_outside(x_mm[row / v.len()]) => Cell::Blank,
-                None => Cell::Missing,
+                Some(place) => Shade::Value(place as f64),
+                None if is_outside(x_mm[row / v.len()]) => Shade::Blank,
+                None => Shade::Missing,
             };
-            let cells = Cells {
+            let cells = Shades {
                 across: Edges::new(x_mm),
                 up: Edges::new(&v.iter().map(|v| v * scale).collect::<Vec<f64>>()),
                 cells: (0..starts.count()).map(cell).collect(),

@@ -1,7 +1,7 @@
 //! Picture of the search for a best design: the designs that were tried, and the one that was found.
 
 use super::axis::{PlotAxis, Ranges};
-use super::cells::{Cell, Cells, Colours};
+use super::cells::{Colours, Shade, Shades};
 use super::chart::{Chart, Marks, Panel, Side};
 use super::drawn::Drawn;
 use super::figure::Point;
@@ -97,18 +97,18 @@ impl<'a> Shown<'a> {
         let (scan, nearer) = self.tried.split_at(scan);
         let values = |field: usize| scan.iter().map(|tried| tried.at[field]).collect::<Vec<f64>>();
         let (across, up) = (Edges::new(&values(0)), Edges::new(&values(1)));
-        let mut cells = vec![Cell::Blank; across.values.len() * up.values.len()];
+        let mut cells = vec![Shade::Blank; across.values.len() * up.values.len()];
         for tried in scan {
             if let (Some(column), Some(row)) = (across.place(tried.at[0]), up.place(tried.at[1])) {
-                let value = tried.value.map(|value| Cell::Value(value * self.scale));
-                cells[column * up.values.len() + row] = value.unwrap_or(Cell::Missing);
+                let value = tried.value.map(|value| Shade::Value(value * self.scale));
+                cells[column * up.values.len() + row] = value.unwrap_or(Shade::Missing);
             }
         }
         let bar = self.value_axis(0.0);
         let colours = Colours::Scale(bar.clone());
         let mut panel = Panel::new(self.field_axis(0, x), self.field_axis(1, y));
         panel.bar = Some(bar);
-        let cells = Cells { across, up, cells, colours: colours.clone(), missing: NO_VALUE.to_owned() };
+        let cells = Shades { across, up, cells, colours: colours.clone(), missing: NO_VALUE.to_owned() };
         panel.draw(Role::Motion, Marks::Cells(cells));
         let place = |tried: &Tried| (tried.at[0], tried.at[1]);
         let valued = nearer.iter().filter(|tried| tried.keeps && tried.value.is_some());

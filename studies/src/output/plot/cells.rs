@@ -11,7 +11,7 @@ use crate::study::Edges;
 
 /// A cell of a map.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub enum Cell {
+pub enum Shade {
     /// Nothing is drawn.
     Blank,
     /// No value.
@@ -22,7 +22,7 @@ pub enum Cell {
     Value(f64),
 }
 
-impl Cell {
+impl Shade {
     /// Its value, where it has one.
     pub fn value(self) -> Option<f64> {
         if let Self::Value(value) = self { Some(value) } else { None }
@@ -94,37 +94,37 @@ impl Colours {
 
 /// A grid of cells.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Cells {
+pub struct Shades {
     /// The values to the right.
     pub across: Edges,
     /// The values upward.
     pub up: Edges,
     /// The cells, column by column.
-    pub cells: Vec<Cell>,
+    pub cells: Vec<Shade>,
     /// Colours of their values.
     pub colours: Colours,
     /// Why a cell is missing, in the legend.
     pub missing: String,
 }
 
-impl Cells {
+impl Shades {
     /// The cell of a column and a row.
-    pub fn at(&self, column: usize, row: usize) -> Cell {
+    pub fn at(&self, column: usize, row: usize) -> Shade {
         self.cells[column * self.up.values.len() + row]
     }
 
     /// The roles and words of the legend: existing categories, cells at rest and missing cells.
     pub fn entries(&self) -> Vec<(Role, String)> {
-        let has = |cell: Cell| self.cells.contains(&cell);
+        let has = |cell: Shade| self.cells.contains(&cell);
         let mut entries = Vec::new();
         if let Colours::Categories(kinds) = &self.colours {
-            let there = kinds.iter().enumerate().filter(|kind| has(Cell::Value(kind.0 as f64)));
+            let there = kinds.iter().enumerate().filter(|kind| has(Shade::Value(kind.0 as f64)));
             entries.extend(there.map(|(_, kind)| kind.clone()));
         }
-        if has(Cell::Rest) {
+        if has(Shade::Rest) {
             entries.push((Role::Rest, "at rest".to_owned()));
         }
-        if has(Cell::Missing) {
+        if has(Shade::Missing) {
             entries.push((Role::Missing, self.missing.clone()));
         }
         entries

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::assembly::Assembly;
 use super::axis::PlotAxis;
-use super::cells::{Cells, Colours};
+use super::cells::{Colours, Shades};
 use super::figure::Point;
 use super::role::Role;
 use crate::mechanics::{Equilibrium, Landscape};
@@ -19,7 +19,7 @@ use crate::study::Table;
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Chart {
     /// The columns of panels, side by side; on a narrow canvas they are stacked.
-    pub columns: Vec<Column>,
+    pub columns: Vec<PanelColumn>,
     /// A caption in one sentence.
     pub subtitle: String,
     /// The drawn data, one row per point, cell or mark, with its kind in the column `series`.
@@ -28,7 +28,7 @@ pub struct Chart {
 
 /// Panels one above the other. Neighbours with the same horizontal axis share its numbers.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Column {
+pub struct PanelColumn {
     /// Its width relative to the other columns.
     pub width: f64,
     /// From top to bottom.
@@ -121,9 +121,9 @@ pub enum Marks {
     /// Texts beside their places: to the right, or where a line or a marker lies there on another side.
     Words(Vec<(Point, String)>),
     /// A colour for each cell of a grid.
-    Cells(Cells),
+    Cells(Shades),
     /// The cells as a surface in projection, over a third axis.
-    Surface(Cells, PlotAxis),
+    Surface(Shades, PlotAxis),
     /// Only an entry of the legend.
     Patch,
     /// Markers of regimes by their words; close markers on a line are left out. No picture with them is ever
@@ -138,7 +138,7 @@ pub enum Marks {
 impl Chart {
     /// A chart of panels one above the other.
     pub fn stack(panels: Vec<Panel>, subtitle: impl Into<String>, data: Table) -> Self {
-        Self { columns: vec![Column { width: 1.0, panels }], subtitle: subtitle.into(), data }
+        Self { columns: vec![PanelColumn { width: 1.0, panels }], subtitle: subtitle.into(), data }
     }
 
     /// The first panel.

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::axis::PlotAxis;
-use super::chart::{Chart, Column, Marks, Panel};
+use super::chart::{Chart, Marks, Panel, PanelColumn};
 use super::mark::REGIMES;
 use super::quantity::suited_unit;
 use super::role::Role;
@@ -110,7 +110,10 @@ pub fn comparison_chart(rated: &[Rated], frequency_hz: f64) -> Chart {
     let up = PlotAxis::given(0.0, rated.len() as f64, ticks, "");
     let columns = (0..count).map(|column| {
         let of_column = shown.iter().skip(column).step_by(count);
-        Column { width: 1.0, panels: of_column.map(|shown| panel(rated, frequency_hz, shown, &up)).collect() }
+        PanelColumn {
+            width: 1.0,
+            panels: of_column.map(|shown| panel(rated, frequency_hz, shown, &up)).collect(),
+        }
     });
     let about = "from rest; speeds, reach and impacts over the settled window, numbers to three digits";
     Chart { columns: columns.collect(), subtitle: about.to_owned(), data: drawn(rated) }

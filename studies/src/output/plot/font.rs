@@ -19,7 +19,7 @@ pub const UNITS: f64 = 2048.0;
 pub const CAPITAL: f64 = 1490.0 / UNITS;
 
 /// One weight of the font.
-pub struct Face {
+pub struct FontFace {
     /// Its file.
     pub bytes: &'static [u8],
     /// The name that a PDF gives it.
@@ -51,11 +51,12 @@ pub static INTER: [&[u8]; 2] = [
 #[doc(hidden)]
 pub static HACK: &[u8] = include_bytes!("../../../assets/fonts/Hack-Regular.ttf");
 
-impl Face {
+impl FontFace {
     /// The regular or the heavier weight.
     pub fn of(bold: bool) -> &'static Self {
-        static FACES: LazyLock<[Face; 2]> =
-            LazyLock::new(|| [Face::new("Inter-Regular", INTER[0]), Face::new("Inter-SemiBold", INTER[1])]);
+        static FACES: LazyLock<[FontFace; 2]> = LazyLock::new(|| {
+            [FontFace::new("Inter-Regular", INTER[0]), FontFace::new("Inter-SemiBold", INTER[1])]
+        });
         &FACES[usize::from(bold)]
     }
 
@@ -97,5 +98,5 @@ impl Face {
 
 /// Width of `words` where an em is `size` high.
 pub fn width(words: &str, size: f64, bold: bool) -> f64 {
-    size * Face::of(bold).letters(words).last().map_or(0.0, |letter| letter.begin + letter.width)
+    size * FontFace::of(bold).letters(words).last().map_or(0.0, |letter| letter.begin + letter.width)
 }

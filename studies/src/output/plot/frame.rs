@@ -1,7 +1,7 @@
 //! Frame with two axes, and the layers that it shows.
 
 use super::axis::PlotAxis;
-use super::cells::{Cell, Cells, Colours};
+use super::cells::{Colours, Shade, Shades};
 use super::chart::{Layer, Marks, Side};
 use super::figure::{Align, Area, Figure, Point, Shape, Text, distance};
 use super::mark::{REGIMES, dot, mark, marker};
@@ -425,13 +425,14 @@ impl Frame {
 
     /// A cell reaches under its neighbours to the right and above, which are painted over it, so that the
     /// background does not show between two of them, whatever paints their edges.
-    fn cells(&self, figure: &mut Figure, grid: &Cells, theme: &Theme) {
+    fn cells(&self, figure: &mut Figure, grid: &Shades, theme: &Theme) {
         let (columns, rows) = (grid.across.values.len(), grid.up.values.len());
-        let is_painted =
-            |column: usize, row: usize| column < columns && row < rows && grid.at(column, row) != Cell::Blank;
+        let is_painted = |column: usize, row: usize| {
+            column < columns && row < rows && grid.at(column, row) != Shade::Blank
+        };
         for column in 0..columns {
             let with_right = |row: usize| (grid.at(column, row), is_painted(column + 1, row));
-            let all: Vec<(Cell, bool)> = (0..rows).map(with_right).collect();
+            let all: Vec<(Shade, bool)> = (0..rows).map(with_right).collect();
             let mut row = 0;
             for run in all.chunk_by(|a, b| a == b) {
                 let (first, above) = (row, row + run.len());
@@ -454,12 +455,12 @@ impl Frame {
                     figure.hatched(area, hatch);
                 };
                 match cell {
-                    Cell::Value(value) => {
+                    Shade::Value(value) => {
                         fill(grid.colours.ink(value, theme), grid.colours.hatch(value, theme));
                     }
-                    Cell::Rest => fill(theme.rest, Some(theme.rest_hatch)),
-                    Cell::Missing => figure.missing(area, theme),
-                    Cell::Blank => {}
+                    Shade::Rest => fill(theme.rest, Some(theme.rest_hatch)),
+                    Shade::Missing => figure.missing(area, theme),
+                    Shade::Blank => {}
                 }
             }
         }
@@ -467,7 +468,7 @@ impl Frame {
     }
 
     /// Markers of the regimes at intervals, so that colour is not the only sign of them.
-    fn symbols(&self, figure: &mut Figure, grid: &Cells, theme: &Theme) {
+    fn symbols(&self, figure: &mut Figure, grid: &Shades, theme: &Theme) {
         let Colours::Categories(kinds) = &grid.colours else { return };
         let Area { left, top, right, bottom } = self.area;
         let role = |(x, y): Point| {

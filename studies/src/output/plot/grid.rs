@@ -2,8 +2,8 @@
 //! below the frames.
 
 use super::axis::PlotAxis;
-use super::cells::{Cells, Colours};
-use super::chart::{Chart, Column, Layer, Marks, Panel};
+use super::cells::{Colours, Shades};
+use super::chart::{Chart, Layer, Marks, Panel, PanelColumn};
 use super::figure::{Align, Area, Figure, Text};
 use super::font;
 use super::frame::Frame;
@@ -87,7 +87,7 @@ struct Row {
 }
 
 /// The layout of the panels of a chart.
-pub struct Grid<'a> {
+pub struct PanelGrid<'a> {
     stacks: Vec<Stack<'a>>,
     /// Whether the panels of a row are aligned vertically.
     aligned: bool,
@@ -95,10 +95,10 @@ pub struct Grid<'a> {
     begin: f64,
 }
 
-impl<'a> Grid<'a> {
+impl<'a> PanelGrid<'a> {
     /// The panels of a chart; on a narrow canvas all in one column.
     pub fn new(chart: &'a Chart, narrow: bool) -> Self {
-        let of_column = |column: &'a Column| (column.width, column.panels.iter().collect());
+        let of_column = |column: &'a PanelColumn| (column.width, column.panels.iter().collect());
         let columns: Vec<(f64, Vec<&Panel>)> = match narrow {
             true => vec![(1.0, chart.panels().collect())],
             false => chart.columns.iter().map(of_column).collect(),
@@ -307,7 +307,7 @@ impl Stack<'_> {
 
 impl Panel {
     /// The cells of its surface and the axis of their heights.
-    pub fn surface(&self) -> Option<(&Cells, &PlotAxis)> {
+    pub fn surface(&self) -> Option<(&Shades, &PlotAxis)> {
         self.layers.iter().find_map(|layer| match &layer.marks {
             Marks::Surface(cells, axis) => Some((cells, axis)),
             _ => None,
@@ -315,7 +315,7 @@ impl Panel {
     }
 
     /// The cells of its map.
-    pub fn cells(&self) -> Option<&Cells> {
+    pub fn cells(&self) -> Option<&Shades> {
         self.layers.iter().find_map(|layer| match &layer.marks {
             Marks::Cells(cells) => Some(cells),
             _ => None,

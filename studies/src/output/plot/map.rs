@@ -1,8 +1,8 @@
 //! Maps of a sweep over two fields: cells with lines over them, cuts through them, surfaces.
 
 use super::axis::PlotAxis;
-use super::cells::{Cells, Colours};
-use super::chart::{Chart, Column, Marks, Panel};
+use super::cells::{Colours, Shades};
+use super::chart::{Chart, Marks, Panel, PanelColumn};
 use super::drawn::Drawn;
 use super::figure::Point;
 use super::quantity::Quantity;
@@ -45,7 +45,7 @@ struct Lines {
 }
 
 impl Lines {
-    fn new(picture: &SweepPicture, (x, y): (&str, &str), cells: &Cells) -> Self {
+    fn new(picture: &SweepPicture, (x, y): (&str, &str), cells: &Shades) -> Self {
         let pairs = |table: &Table| -> Option<Vec<Point>> {
             Some(table.numbers(x)?.iter().copied().zip(table.numbers(y)?.iter().copied()).collect())
         };
@@ -76,7 +76,7 @@ impl Lines {
 pub(super) fn cells_panel(
     picture: &SweepPicture,
     (x, y): (&str, &str),
-    cells: Cells,
+    cells: Shades,
     bar: PlotAxis,
 ) -> Panel {
     let SweepPicture { rows, ranges, .. } = *picture;
@@ -91,7 +91,7 @@ pub(super) fn cells_panel(
 
 /// The cells whose motion may be a transient, from the columns `settled` and `steady`; empty if the rows lack
 /// these columns, or if there are too many cells for dots.
-fn transients(rows: &Table, (x, y): (&str, &str), cells: &Cells) -> Vec<Point> {
+fn transients(rows: &Table, (x, y): (&str, &str), cells: &Shades) -> Vec<Point> {
     let names = [x, y].map(|name| rows.numbers(name).unwrap_or_default());
     let lengths = [cells.across.values.len(), cells.up.values.len()];
     let shown = 0..if lengths.iter().any(|length| *length > MAX_DOTS) { 0 } else { rows.rows() };
@@ -179,6 +179,6 @@ pub(crate) fn map(picture: &SweepPicture, (x, y): (&str, &str), cuts: &[Cut]) ->
         if is_upright { beside.push(cut) } else { below.push(cut) }
     }
     let mut chart = Chart::stack([vec![panel], below].concat(), "", drawn.table());
-    chart.columns.extend(beside.into_iter().map(|cut| Column { width: CUT, panels: vec![cut] }));
+    chart.columns.extend(beside.into_iter().map(|cut| PanelColumn { width: CUT, panels: vec![cut] }));
     chart
 }

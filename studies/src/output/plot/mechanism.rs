@@ -4,7 +4,7 @@ use std::sync::atomic::AtomicBool;
 
 use super::assembly::Assembly;
 use super::axis::PlotAxis;
-use super::chart::{Chart, Column, Marks, Panel, Side};
+use super::chart::{Chart, Marks, Panel, PanelColumn, Side};
 use super::names::DISPLACEMENT;
 use super::role::Role;
 use super::shapes::drawn;
@@ -39,7 +39,7 @@ pub fn mechanism_chart(of: &[(&Model, f64)]) -> Result<Chart, StatesError> {
         if of.len() > 1 {
             panel.heading = ["this scene", "A"][place.min(1)].to_owned();
         }
-        columns.push(Column { width: 1.0, panels: vec![panel] });
+        columns.push(PanelColumn { width: 1.0, panels: vec![panel] });
         let [left, right] = <[_; 2]>::from(model.stop_positions()).map(|stop| stop.unwrap_or(f64::NAN));
         data.append(&drawn(bent, (left, right), &[*x]));
     }

@@ -3,7 +3,7 @@
 use super::chart::{Chart, Layer, Marks};
 use super::figure::{Area, Figure, Text};
 use super::font;
-use super::grid::Grid;
+use super::grid::PanelGrid;
 use super::mark::{Caption, REGIMES, Sample, entry, regime_words};
 use super::role::{Look, Role};
 use super::sheet::canvas_width;
@@ -133,7 +133,7 @@ impl Chart {
         let below = 24.0 + style::FOOTER_LINE * footer.len() as f64;
         let named = self.entries(theme);
         let legend = Legend::new(&named, room);
-        let mut grid = Grid::new(self, theme.is_narrow());
+        let mut grid = PanelGrid::new(self, theme.is_narrow());
         let around = if sheet.is_some_and(|sheet| !sheet.titled) { 0.0 } else { above + below };
         let asked = match sheet {
             None => style::SIZE.1.into(),
@@ -173,7 +173,7 @@ impl Chart {
         let edge = if is_low { 0.0 } else { 0.5 * PANE };
         let above = edge + if has_subtitle { SUBTITLE_LINE * subtitle.len() as f64 } else { 0.0 };
         let below = above + legend.height;
-        let mut grid = Grid::new(self, width < style::NARROW);
+        let mut grid = PanelGrid::new(self, width < style::NARROW);
         grid.fit((PANE, width - PANE), height - below - edge, MIN_PANE_HEIGHT);
         let mut figure = Figure::new(theme, (width, height), (0.0, height));
         for (i, line) in subtitle.iter().enumerate() {

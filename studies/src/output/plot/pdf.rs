@@ -13,7 +13,7 @@ use skrifa::GlyphId;
 use xmp_writer::XmpWriter;
 
 use super::figure::{Area, Figure, Point, Shape, Text, oriented};
-use super::font::{Face, UNITS};
+use super::font::{FontFace, UNITS};
 use super::style::Ink;
 use super::subset::subset;
 
@@ -99,7 +99,7 @@ fn packed(bytes: &[u8]) -> Vec<u8> {
 
 /// Writes a font with the glyphs that are used, each with its letter.
 fn embed(pdf: &mut Pdf, place: usize, used: &BTreeMap<GlyphId, char>) {
-    let face = Face::of(place == 1);
+    let face = FontFace::of(place == 1);
     // six letters before the name mark a subset of a font
     let name = format!("INTERW+{}", face.name);
     let name = Name(name.as_bytes());
@@ -228,7 +228,7 @@ impl Sheet {
     fn write(&mut self, text: &Text) {
         self.fill(text.ink);
         let mut glyphs = Vec::new();
-        for letter in Face::of(text.bold).letters(&text.words) {
+        for letter in FontFace::of(text.bold).letters(&text.words) {
             glyphs.extend((letter.glyph.to_u32() as u16).to_be_bytes());
             self.used[usize::from(text.bold)].entry(letter.glyph).or_insert(letter.character);
         }

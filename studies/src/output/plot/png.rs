@@ -5,7 +5,7 @@ use skrifa::outline::OutlinePen;
 use tiny_skia::{FillRule, LineCap, LineJoin, Paint, Path, PathBuilder, Pixmap, Rect, Stroke, Transform};
 
 use super::figure::{Area, Figure, Point, Shape, Text};
-use super::font::{Face, UNITS};
+use super::font::{FontFace, UNITS};
 use super::style::Ink;
 
 /// Why a picture could not be made.
@@ -140,7 +140,7 @@ fn path(points: &[Point], closed: bool) -> Option<Path> {
 
 /// The outline of a text on the canvas.
 fn letters(text: &Text) -> Option<Path> {
-    let face = Face::of(text.bold);
+    let face = FontFace::of(text.bold);
     let mut pen = Pen { path: PathBuilder::new(), text, from: -text.before() };
     let begin = pen.from;
     for letter in face.letters(&text.words) {

@@ -1,7 +1,7 @@
 //! Column of a sweep that a picture shows, in suitable units.
 
 use super::axis::PlotAxis;
-use super::cells::Cell;
+use super::cells::Shade;
 use super::drawn::as_numbers;
 use super::mark::{REGIMES, regime_words};
 use super::role::Role;
@@ -45,7 +45,7 @@ pub(super) struct Quantity {
     /// The kinds of which the values are indices, with their words, if it has kinds.
     pub kinds: Option<Vec<(Role, String)>>,
     /// The cell of each row: a value, none, or rest.
-    pub cells: Vec<Cell>,
+    pub cells: Vec<Shade>,
     /// The band about its values, if it has one: least and largest values.
     pub band: Option<[Vec<f64>; 2]>,
     name: String,
@@ -109,10 +109,10 @@ impl Quantity {
         };
         let (regimes, outcomes) = (rows.words("regime"), rows.words("outcome"));
         let cell = |(row, value): (usize, &f64)| match (regimes.get(row), outcomes.get(row)) {
-            (_, Some(&"")) => Cell::Blank,
-            (Some(&"rest"), _) if rests(*value) => Cell::Rest,
-            _ if !value.is_finite() => Cell::Missing,
-            _ => Cell::Value(*value),
+            (_, Some(&"")) => Shade::Blank,
+            (Some(&"rest"), _) if rests(*value) => Shade::Rest,
+            _ if !value.is_finite() => Shade::Missing,
+            _ => Shade::Value(*value),
         };
         let cells = values.iter().enumerate().map(cell).collect();
         Self { values, label, unit: unit.to_owned(), kinds, cells, band, name: name.to_owned() }
@@ -122,7 +122,7 @@ impl Quantity {
     pub fn missing(&self, rows: &Table) -> String {
         let mut reasons: Vec<&str> = Vec::new();
         let outcomes = rows.words("outcome").iter().zip(&self.cells);
-        for (outcome, _) in outcomes.filter(|row| *row.1 == Cell::Missing) {
+        for (outcome, _) in outcomes.filter(|row| *row.1 == Shade::Missing) {
             let reason = match *outcome {
                 "done" => without_value(&self.name),
                 "not_converged" => "flexures not solved",
@@ -249,10 +249,10 @@ mod tests {
         let table = table.each("impacts", &rows, |row| if row.1 == "right" { 1.0 } else { 0.0 });
         let cells = |name: &str| Quantity::of(&table, name).cells;
         for name in ["regime", "side", "settled", "period"] {
-            assert!(matches!(cells(name)[..], [Cell::Rest, Cell::Rest, Cell::Value(_)]), "{name}");
+            assert!(matches!(cells(name)[..], [Shade::Rest, Shade::Rest, Shade::Value(_)]), "{name}");
         }
-        assert_eq!(cells("outcome"), [Cell::Value(0.0); 3]);
-        assert_eq!(cells("impacts"), [Cell::Rest, Cell::Value(1.0), Cell::Value(0.0)]);
+        assert_eq!(cells("outcome"), [Shade::Value(0.0); 3]);
+        assert_eq!(cells("impacts"), [Shade::Rest, Shade::Value(1.0), Shade::Value(0.0)]);
         let words: Vec<String> =
             Quantity::of(&table, "settled").kinds.unwrap().into_iter().map(|kind| kind.1).collect();
         assert_eq!(words, ["settled", "not settled"]);

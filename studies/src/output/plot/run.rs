@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::sync::atomic::AtomicBool;
 
 use super::axis::{PlotAxis, Ranges};
-use super::chart::{Chart, Column, Layer, Marks, Note, Panel};
+use super::chart::{Chart, Layer, Marks, Note, Panel, PanelColumn};
 use super::drawn::Drawn;
 use super::figure::Point;
 use super::ledger::{LedgerTerm, ledger_panel};
@@ -94,7 +94,7 @@ pub fn run_chart(
     let data = seen.drawn(place.map(|place| &built[place]));
     let beside = place.filter(|_| whole).map(|place| built.remove(place));
     let mut chart = Chart::stack(built, about, data);
-    chart.columns.extend(beside.map(|portrait| Column { width: 0.44, panels: vec![portrait] }));
+    chart.columns.extend(beside.map(|portrait| PanelColumn { width: 0.44, panels: vec![portrait] }));
     chart
 }
 

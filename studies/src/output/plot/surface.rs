@@ -1,7 +1,7 @@
 //! Cells as a surface in projection: their height and their colour are the value.
 
 use super::axis::PlotAxis;
-use super::cells::{Cell, Cells};
+use super::cells::{Shade, Shades};
 use super::figure::{Align, Area, Figure, Point, Text, distance};
 use super::font;
 use super::page::{Lines, wrapped};
@@ -94,7 +94,7 @@ impl SurfaceFrame {
 
     /// The column and row of the cell of the frontmost face at a point of the canvas whose value is nearest
     /// to that point.
-    pub fn cell_at(&self, cells: &Cells, at: Point) -> Option<(usize, usize)> {
+    pub fn cell_at(&self, cells: &Shades, at: Point) -> Option<(usize, usize)> {
         let is_inside = |corners: [Point; 3]| {
             let side = |i: usize| {
                 let (from, to) = (corners[i], corners[(i + 1) % 3]);
@@ -115,7 +115,7 @@ impl SurfaceFrame {
 
     /// The faces over the cells that lie within the axes, the farthest first; none where one of the four
     /// values is missing.
-    fn faces(&self, cells: &Cells) -> Vec<Face> {
+    fn faces(&self, cells: &Shades) -> Vec<Face> {
         let shares = |values: &[f64], axis: &PlotAxis| {
             values.iter().map(|value| axis.share(*value)).collect::<Vec<_>>()
         };
@@ -123,9 +123,9 @@ impl SurfaceFrame {
         let inside = |shares: &[f64], i: usize| (-1e-9..=1.0 + 1e-9).contains(&shares[i]);
         let height = |column: usize, row: usize| {
             let height = match cells.at(column, row) {
-                Cell::Missing | Cell::Blank => None,
-                Cell::Rest => Some((0.0, true)),
-                Cell::Value(value) => Some((value, false)),
+                Shade::Missing | Shade::Blank => None,
+                Shade::Rest => Some((0.0, true)),
+                Shade::Value(value) => Some((value, false)),
             };
             height.filter(|_| inside(&across, column) && inside(&up, row))
         };
@@ -149,11 +149,11 @@ impl SurfaceFrame {
     }
 
     /// Hatching on the floor under cells without a value.
-    fn holes(&self, figure: &mut Figure, cells: &Cells, theme: &Theme) {
+    fn holes(&self, figure: &mut Figure, cells: &Shades, theme: &Theme) {
         let share = |axis: &PlotAxis, edge: f64| axis.share(edge).clamp(0.0, 1.0);
         for (i, x) in cells.across.edges.windows(2).enumerate() {
             for (j, y) in cells.up.edges.windows(2).enumerate() {
-                if cells.at(i, j) != Cell::Missing {
+                if cells.at(i, j) != Shade::Missing {
                     continue;
                 }
                 let [left, right] = [x[0], x[1]].map(|x| share(&self.x, x));
@@ -233,7 +233,7 @@ pub fn draw(
     area: Area,
     axes: [&PlotAxis; 3],
     labels: &Labels,
-    cells: &Cells,
+    cells: &Shades,
     theme: &Theme,
 ) {
     let view = SurfaceFrame::within(area, axes);
@@ -245,7 +245,7 @@ pub fn draw(
 }
 
 /// The faces of the surface with the lines over them.
-fn skin(figure: &mut Figure, view: &SurfaceFrame, cells: &Cells, theme: &Theme) {
+fn skin(figure: &mut Figure, view: &SurfaceFrame, cells: &Shades, theme: &Theme) {
     let canvas = figure.canvas;
     for face in view.faces(cells) {
         let ink = if face.resting { theme.rest } else { viridis(face.share) };

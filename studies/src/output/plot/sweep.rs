@@ -1,8 +1,8 @@
 //! Picture of a sweep: lines over one field, maps over two, both directions of a walk, surfaces and cuts.
 
 use super::axis::PlotAxis;
-use super::cells::{Cell, Cells, Colours};
-use super::chart::{Chart, Column, Layer, Marks, Panel};
+use super::cells::{Colours, Shade, Shades};
+use super::chart::{Chart, Layer, Marks, Panel, PanelColumn};
 use super::drawn::as_numbers;
 use super::map::{cells_panel, map, surface};
 use super::quantity::{Quantity, quantities, words_of};
@@ -255,7 +255,7 @@ fn lines(picture: &SweepPicture, x: &str, each: &[SeriesLine]) -> Chart {
     let panel_of = |lines: &[SeriesLine]| {
         let mut panel = empty.clone();
         let all: Vec<usize> = lines.iter().flat_map(|line| line.order.iter().copied()).collect();
-        let missing = all.iter().copied().filter(|row| quantity.cells[*row] == Cell::Missing);
+        let missing = all.iter().copied().filter(|row| quantity.cells[*row] == Shade::Missing);
         panel.layer_if_any(Role::Missing, quantity.missing(rows), spans(places, missing));
         let way = |place: usize| {
             let order = lines.get(place).map_or(&[][..], |line| line.order.as_slice());
@@ -341,7 +341,7 @@ fn walked_maps(picture: &SweepPicture, (x, y): (&str, &str)) -> Chart {
     let ways = rows.words(DIRECTION);
     let [up, down] = Direction::ALL.map(|way| cells(rows, (x, y), &quantity, |row| ways[row] == way.name()));
     let has_kinds = quantity.kinds.is_some();
-    let more: Vec<Cell> =
+    let more: Vec<Shade> =
         up.cells.iter().zip(&down.cells).map(|(up, down)| difference(*down, *up, has_kinds)).collect();
     let largest = more.iter().filter_map(|cell| cell.value()).map(f64::abs).fold(0.0, f64::max);
     let reach = if largest > 0.0 { largest } else { 1.0 };
@@ -355,7 +355,7 @@ fn walked_maps(picture: &SweepPicture, (x, y): (&str, &str)) -> Chart {
         ),
         false => Colours::Signed(reach),
     };
-    let difference = Cells { cells: more, colours, ..up.clone() };
+    let difference = Shades { cells: more, colours, ..up.clone() };
     let last = if has_kinds { "where they differ" } else { "down \u{2212} up" };
     let bar = quantity.bar();
     let columns = [(up, "up", &bar), (down, "down", &bar), (difference, last, &signed)];
@@ -364,18 +364,18 @@ fn walked_maps(picture: &SweepPicture, (x, y): (&str, &str)) -> Chart {
         heading.clone_into(&mut panel.heading);
         // the first two share a scale
         panel.bar = panel.bar.filter(|_| i > 0);
-        Column { width: 1.0, panels: vec![panel] }
+        PanelColumn { width: 1.0, panels: vec![panel] }
     });
     let data = drawn(picture, &[(x, ranges.x), (y, ranges.y)]).table();
     Chart { columns: columns.collect(), subtitle: String::new(), data }
 }
 
 /// The difference of two cells; for kinds, whether they differ.
-fn difference(down: Cell, up: Cell, has_kinds: bool) -> Cell {
+fn difference(down: Shade, up: Shade, has_kinds: bool) -> Shade {
     match (down, up) {
-        (Cell::Missing | Cell::Blank, _) | (_, Cell::Missing | Cell::Blank) => Cell::Missing,
-        (down, up) if has_kinds => Cell::Value(f64::from(u8::from(down != up))),
-        (down, up) => Cell::Value(down.value().unwrap_or(0.0) - up.value().unwrap_or(0.0)),
+        (Shade::Missing | Shade::Blank, _) | (_, Shade::Missing | Shade::Blank) => Shade::Missing,
+        (down, up) if has_kinds => Shade::Value(f64::from(u8::from(down != up))),
+        (down, up) => Shade::Value(down.value().unwrap_or(0.0) - up.value().unwrap_or(0.0)),
     }
 }
 

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::axis::{PlotAxis, Ranges};
-use super::cells::{Cell, Cells, Colours};
+use super::cells::{Colours, Shade, Shades};
 use super::chart::Marks;
 use super::drawn::{Drawn, as_numbers};
 use super::figure::Point;
@@ -171,7 +171,7 @@ pub(super) fn marks(
 ) -> Vec<(Point, &'static str)> {
     let regimes = rows.words("regime");
     let height = |row: usize| match (quantity.values[row], quantity.cells[row]) {
-        (value, Cell::Rest) if !value.is_finite() => low,
+        (value, Shade::Rest) if !value.is_finite() => low,
         (value, _) => value,
     };
     let marks =
@@ -197,14 +197,14 @@ pub(super) fn cells(
     (x, y): (&str, &str),
     quantity: &Quantity,
     shown: impl Fn(usize) -> bool,
-) -> Cells {
+) -> Shades {
     let (xs, ys) = (rows.numbers(x).unwrap_or_default(), rows.numbers(y).unwrap_or_default());
     let of = |all: &[f64]| {
         let values: Vec<f64> = (0..all.len()).filter(|row| shown(*row)).map(|row| all[row]).collect();
         Edges::new(&values)
     };
     let (across, up) = (of(xs), of(ys));
-    let mut cells = vec![Cell::Missing; across.values.len() * up.values.len()];
+    let mut cells = vec![Shade::Missing; across.values.len() * up.values.len()];
     for row in (0..rows.rows()).filter(|row| shown(*row)) {
         if let (Some(column), Some(level)) = (across.place(xs[row]), up.place(ys[row])) {
             cells[column * up.values.len() + level] = quantity.cells[row];
@@ -215,7 +215,7 @@ pub(super) fn cells(
         Some(kinds) => Colours::Categories(kinds.clone()),
         None => Colours::Scale(bar),
     };
-    Cells { across, up, cells, colours, missing: quantity.missing(rows) }
+    Shades { across, up, cells, colours, missing: quantity.missing(rows) }
 }
 
 /// The names in the legend of the lines for the values of the field `name`.
