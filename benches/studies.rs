@@ -12,9 +12,9 @@ use interwell::dynamics::STANDARD_GRAVITY;
 use interwell::questions::{Progress, Simulation, Threshold};
 use interwell::system::threads::Pool;
 use interwell_studies::study::{
-    Answer, Basins, Branch, BranchEvent, BranchOptions, Carry, EvenRange, ExponentOptions, Family, Grid,
-    Onset, Orbit, Scan, SectionAt, SectionOptions, Sections, Signal, SpectrumOptions, Starts, Sweep,
-    SweepOptions, Table, Task, branch, check_lesson, exponents, result_fields, spectrum, threshold,
+    Answer, BasinMap, BranchAnswer, BranchEvent, BranchOptions, Carry, EvenRange, ExponentOptions, Family,
+    Grid, Onset, OrbitAnswer, Scan, SectionAt, SectionOptions, Sections, Signal, SpectrumOptions, Starts,
+    Sweep, SweepOptions, Table, Task, branch, check_lesson, exponents, result_fields, spectrum, threshold,
 };
 
 /// Times that each study is done.
@@ -114,7 +114,7 @@ fn thresholds() {
 fn branches() {
     let never = AtomicBool::new(false);
     let task = Task { tick: &|| (), cancel: &never };
-    let over = |name: &str, (from, to): (f64, f64), of: &dyn Fn(&Branch) -> f64| {
+    let over = |name: &str, (from, to): (f64, f64), of: &dyn Fn(&BranchAnswer) -> f64| {
         let document = shared::changed(name, &[]);
         let mechanism =
             interwell::mechanics::Mechanism::build(&document.scene.mechanism, &document.files).unwrap();
@@ -134,7 +134,7 @@ fn branches() {
     });
     row("orbit --branch", "`duffing`, 0.1 to 1 g, 195 motions", "the product of the multipliers", || {
         over("duffing", (0.1, 1.0), &|found| {
-            let of = |orbit: &Orbit| (orbit.jacobian.determinant() / orbit.determinant() - 1.0).abs();
+            let of = |orbit: &OrbitAnswer| (orbit.jacobian.determinant() / orbit.determinant() - 1.0).abs();
             found.orbits.iter().map(of).fold(0.0, f64::max)
         })
     });
@@ -207,7 +207,7 @@ fn basins(tolerance: &str, count: u64, pool: &Pool) -> Answer {
     let mechanism = shared::mechanism(&document);
     let range = |end: f64| EvenRange { from: -end, to: end, count };
     let starts = Starts::grid(&range(1.5), &range(0.5)).unwrap();
-    let mut basins = Basins::new(&document.scene, mechanism, starts).unwrap();
+    let mut basins = BasinMap::new(&document.scene, mechanism, starts).unwrap();
     let never = AtomicBool::new(false);
     let task = Task { tick: &|| (), cancel: &never };
     while !basins.is_whole() {

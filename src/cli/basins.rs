@@ -85,9 +85,9 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
 const MANY_STEPS: f64 = 1e6;
 
 /// The possible cost of a start in words, or `None` if it is small.
-fn forecast(basins: &study::Basins) -> Option<String> {
+fn forecast(basins: &study::BasinMap) -> Option<String> {
     let (steps, seconds) = basins.cost_of_a_period();
-    let periods = study::Basins::PATIENCE as f64;
+    let periods = study::BasinMap::PATIENCE as f64;
     (steps * periods > MANY_STEPS).then(|| {
         format!(
             "a forcing period takes some {} steps: a start is followed for at most {periods} of them, \
@@ -114,7 +114,7 @@ fn write_rows(outputs: &mut Outputs, found: &BasinsAnswer) -> Result<(), Failure
 fn outcome(answer: &study::Answer, seconds: f64) -> String {
     let attractors = counted(answer.attractors.len() as u64, "attractor");
     let mut text = format!("{} in {seconds:.2} s, {attractors}", counted(answer.rows.len() as u64, "start"));
-    let undecided = format!("not settled after {} periods", study::Basins::PATIENCE);
+    let undecided = format!("not settled after {} periods", study::BasinMap::PATIENCE);
     for (count, what) in [
         (answer.unsure(), "not sure"),
         (answer.outside, "outside the room of the mass"),

@@ -17,24 +17,24 @@ fn range((from, to, count): (f64, f64, u64)) -> EvenRange {
     EvenRange { from, to, count }
 }
 
-fn refused(document: &Document, x_mm: (f64, f64, u64), v: (f64, f64, u64)) -> Result<Basins, NoBasins> {
+fn refused(document: &Document, x_mm: (f64, f64, u64), v: (f64, f64, u64)) -> Result<BasinMap, NoBasins> {
     let starts = Starts::grid(&range(x_mm), &range(v)).unwrap();
-    Basins::new(&document.scene, mechanism(document), starts)
+    BasinMap::new(&document.scene, mechanism(document), starts)
 }
 
 /// The whole map of a document, checked.
-fn map(document: &Document, x_mm: (f64, f64, u64), v: (f64, f64, u64)) -> (Basins, Answer) {
+fn map(document: &Document, x_mm: (f64, f64, u64), v: (f64, f64, u64)) -> (BasinMap, Answer) {
     let mut basins = refused(document, x_mm, v).unwrap().checked();
     let answer = whole(&mut basins);
     (basins, answer)
 }
 
-fn whole(basins: &mut Basins) -> Answer {
+fn whole(basins: &mut BasinMap) -> Answer {
     whole_on(basins, 2)
 }
 
 /// The whole map by so many threads.
-fn whole_on(basins: &mut Basins, threads: usize) -> Answer {
+fn whole_on(basins: &mut BasinMap, threads: usize) -> Answer {
     let cancel = AtomicBool::new(false);
     let task = Task { tick: &|| (), cancel: &cancel };
     let pool = Pool::new(threads).unwrap();
@@ -388,7 +388,7 @@ fn basins_beside_a_circuit_are_those_of_single_runs() {
     for electrical in [0.0, 3.0] {
         let document = scene(electrical);
         let starts = Starts::random((-1500.0, 1500.0), (-1.0, 1.0), 30, 5).unwrap();
-        let mut basins = Basins::new(&document.scene, mechanism(&document), starts).unwrap();
+        let mut basins = BasinMap::new(&document.scene, mechanism(&document), starts).unwrap();
         let answer = whole(&mut basins);
         assert!(answer.attractors.len() >= 2, "{:?}", answer.words());
         for (row, found) in answer.rows.iter().enumerate() {

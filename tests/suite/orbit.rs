@@ -17,19 +17,26 @@ use interwell::dynamics::{Model, Multiplier, Outcome, STANDARD_GRAVITY};
 use interwell::mechanics::Mechanism;
 use interwell::scene::{Document, Files};
 use interwell_studies::study::{
-    Branch, BranchEnd, BranchEvent, BranchOptions, Family, NoOrbit, Orbit, Task, branch, orbit, orbit_near,
+    BranchAnswer, BranchEnd, BranchEvent, BranchOptions, Family, NoOrbit, OrbitAnswer, Task, branch, orbit,
+    orbit_near,
 };
 
 use crate::support::{changed, model, near, near_relative, preset};
 
 const AMPLITUDE: &str = "excitation.amplitude_g";
 
-fn find(model: &Model, phase: f64, period: Option<u32>) -> Result<Orbit, NoOrbit> {
+fn find(model: &Model, phase: f64, period: Option<u32>) -> Result<OrbitAnswer, NoOrbit> {
     orbit(model, phase, period, &AtomicBool::new(false))
 }
 
 /// The branch over a field of a scene, of motions with their states at this phase in turns.
-fn over(field: &str, document: &Document, range: (f64, f64), phase: f64, period: Option<u32>) -> Branch {
+fn over(
+    field: &str,
+    document: &Document,
+    range: (f64, f64),
+    phase: f64,
+    period: Option<u32>,
+) -> BranchAnswer {
     let mechanism = Arc::new(Mechanism::build(&document.scene.mechanism, &document.files).unwrap());
     let family = Family::new(&document.scene, &document.files, &mechanism, field);
     let task = Task { tick: &|| (), cancel: &AtomicBool::new(false) };
@@ -38,16 +45,16 @@ fn over(field: &str, document: &Document, range: (f64, f64), phase: f64, period:
 }
 
 /// The branch over the amplitude of a scene.
-fn over_amplitude(document: &Document, range: (f64, f64), period: Option<u32>) -> Branch {
+fn over_amplitude(document: &Document, range: (f64, f64), period: Option<u32>) -> BranchAnswer {
     over(AMPLITUDE, document, range, 0.0, period)
 }
 
 /// The multipliers of an orbit without a circuit.
-fn two(orbit: &Orbit) -> [Multiplier; 2] {
+fn two(orbit: &OrbitAnswer) -> [Multiplier; 2] {
     orbit.multipliers().try_into().unwrap()
 }
 
-fn at(branch: &Branch, event: BranchEvent) -> Vec<f64> {
+fn at(branch: &BranchAnswer, event: BranchEvent) -> Vec<f64> {
     let all = branch.events.iter().zip(&branch.values);
     all.filter(|(seen, _)| **seen == Some(event)).map(|(_, value)| *value).collect()
 }

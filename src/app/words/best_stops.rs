@@ -5,7 +5,7 @@ use crate::app::words::numbers::{power, three};
 use crate::app::words::status::speed;
 use crate::numeric::{decimals, short};
 use crate::questions::{BestDesign, Optimum};
-use interwell_studies::study::{Basins, Seeds, SummaryField};
+use interwell_studies::study::{BasinMap, Seeds, SummaryField};
 
 /// A value of the maximised column, with its unit.
 fn value_of(column: &str, value: f64) -> String {
@@ -36,7 +36,7 @@ pub fn answer_guide(
         None => format!(
             "Searched {between}, from rest, each run followed until its motion repeats, for at most {} \
              forcing periods more.",
-            Basins::PATIENCE
+            BasinMap::PATIENCE
         ),
     };
     let guide = |heading: &str, text: String| Guide { more: runs, ..Guide::new(heading, text) };

@@ -7,7 +7,7 @@ use serde_json::{Map, Value, json};
 use super::arguments::REPEATED_SCENE;
 use super::json::{extend, pretty};
 use crate::scene::{Document, Excitation, PROGRAM, Scene, numeric_fields};
-use crate::study::{Answer, Basins, Grid, Shard, Tally};
+use crate::study::{Answer, BasinMap, Grid, Shard, Tally};
 use crate::system::checksum::checksum;
 
 /// Provenance of a result, apart from its scene.
@@ -128,7 +128,7 @@ impl Manifest<'_> {
     }
 
     /// The manifest of a map of basins as text. It is that of a sweep with the starts in place of the grid.
-    pub fn of_basins(&self, basins: &Basins, answer: &Answer) -> String {
+    pub fn of_basins(&self, basins: &BasinMap, answer: &Answer) -> String {
         let scales = basins.model().scales();
         let more = json!({
             "starts": answer.rows.len(),

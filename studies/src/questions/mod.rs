@@ -135,9 +135,8 @@ pub use crate::scene::Uncertain;
 pub use crate::study::accuracy::methods::{Scheme, Statistics};
 pub use crate::study::accuracy::scene::{AtTolerance, Course, Lateness, StepSize, Tolerances, Trust};
 pub use crate::study::{
-    Answer, Attractor, Begin, BestDesign, BestQuestion, Branch as BranchAnswer, BranchEnd, BranchEvent,
-    Carry, Column, Comparison, Estimate, EvenRange, ExponentOptions, FieldRange, ForceComparison, Grid,
-    Identified, Identity, Locus as OneLocus, LocusEnd, LocusEvent, MeasuredMotion, Optimum,
-    Orbit as OrbitAnswer, Rated, Recorded, Sampling, SectionAt, SectionOptions, Shares, Spread, Table,
-    Thresholds, Tried, Values,
+    Answer, Attractor, Begin, BestDesign, BestQuestion, BranchAnswer, BranchEnd, BranchEvent, Carry, Column,
+    Comparison, Estimate, EvenRange, ExponentOptions, FieldRange, ForceComparison, Grid, Identified,
+    Identity, LocusEnd, LocusEvent, MeasuredMotion, OneLocus, Optimum, OrbitAnswer, Rated, Recorded,
+    Sampling, SectionAt, SectionOptions, Shares, Spread, Table, Thresholds, Tried, Values,
 };

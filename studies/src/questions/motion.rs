@@ -220,7 +220,7 @@ pub struct Basins {
 #[derive(Debug)]
 pub struct BasinsAnswer {
     /// The starts, as [`basins_chart`](crate::output::basins_chart) takes them.
-    pub basins: study::Basins,
+    pub basins: study::BasinMap,
     /// The attractors, and the attractor of each start.
     pub answer: Answer,
 }
@@ -268,8 +268,8 @@ impl Basins {
         starts: Starts,
         document: &Document,
         mechanism: &Arc<Mechanism>,
-    ) -> Result<study::Basins, Error> {
-        let begun = study::Basins::new(&document.scene, Arc::clone(mechanism), starts);
+    ) -> Result<study::BasinMap, Error> {
+        let begun = study::BasinMap::new(&document.scene, Arc::clone(mechanism), starts);
         begun.map_err(|problem| no_basins(document, problem, self.x_mm))
     }
 
@@ -277,7 +277,7 @@ impl Basins {
     /// each level but the last.
     #[doc(hidden)]
     pub fn followed(
-        mut basins: study::Basins,
+        mut basins: study::BasinMap,
         progress: &Progress,
         coarse: Option<Coarse>,
     ) -> Result<BasinsAnswer, Error> {
@@ -295,7 +295,7 @@ impl Basins {
 }
 
 /// A callback for what is known of basins.
-type Coarse<'a> = &'a (dyn Fn(&study::Basins, Answer) + Sync);
+type Coarse<'a> = &'a (dyn Fn(&study::BasinMap, Answer) + Sync);
 
 /// A range as an argument of the command line.
 fn shown(EvenRange { from, to, count }: EvenRange) -> String {

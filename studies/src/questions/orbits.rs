@@ -5,9 +5,8 @@ use crate::dynamics::Model;
 use crate::numeric::number_text;
 use crate::scene::{Axis, Document, FieldPath, Scene, is_whole};
 use crate::study::{
-    Begin, Branch as BranchAnswer, BranchEnd, BranchEvent, BranchOptions, Family, FieldRange,
-    Locus as OneLocus, NoBasins, NoOrbit, Orbit as OrbitAnswer, Table, begun, branch, branches_table, loci,
-    loci_table, switched,
+    Begin, BranchAnswer, BranchEnd, BranchEvent, BranchOptions, Family, FieldRange, NoBasins, NoOrbit,
+    OneLocus, OrbitAnswer, Table, begun, branch, branches_table, loci, loci_table, switched,
 };
 
 /// The periodic orbit near the settled motion of a run, stable or not, with its Floquet multipliers.

@@ -91,7 +91,7 @@ pub(crate) use alternatives::{SEARCHED_SPAN, comparison_parts, comparison_table}
 pub(crate) use amplitudes::stops_that_cross;
 pub use amplitudes::{Thresholds, can_cross, thresholds};
 pub(crate) use basins::StartsError;
-pub use basins::{Answer, Attractor, Basins, EvenRange, NoBasins, Shares, Starts};
+pub use basins::{Answer, Attractor, BasinMap, EvenRange, NoBasins, Shares, Starts};
 pub use best::{
     BestDesign, BestQuestion, Constraint, DesignRange, DesignRun, Environment, Memory, NoBest, Optimum,
     Results, Seeds, Spread, Tolerance, Tried, best, names, place, quantity,
@@ -125,8 +125,8 @@ pub(crate) use map::{first_crossing_edge, line_meets};
 pub use measured::{Comparison, ForceComparison, MeasuredMotion, NoComparison, compare, compare_force};
 pub(crate) use models::ModelUse;
 pub use orbit::{
-    Begin, Branch, BranchEnd, BranchEvent, BranchOptions, FieldRange, Locus, LocusEnd, LocusEvent, NoOrbit,
-    Orbit, begun, branch, branches_table, loci, loci_table, orbit, orbit_near, switched,
+    Begin, BranchAnswer, BranchEnd, BranchEvent, BranchOptions, FieldRange, LocusEnd, LocusEvent, NoOrbit,
+    OneLocus, OrbitAnswer, begun, branch, branches_table, loci, loci_table, orbit, orbit_near, switched,
 };
 pub(crate) use settled::followed_until;
 pub use settled::{Standing, lasts, settled, standing};

@@ -27,7 +27,7 @@ fn ranges(document: &Document) -> ((f64, f64), (f64, f64)) {
 }
 
 /// The attractor to which a start really goes; `None` if it has not come near one.
-fn truth(basins: &Basins, answer: &Answer, row: usize) -> Option<usize> {
+fn truth(basins: &BasinMap, answer: &Answer, row: usize) -> Option<usize> {
     let period = basins.model().forcing_period().unwrap();
     let scales = basins.model().scales();
     let (x_mm, v) = basins.starts().at(row);
@@ -172,7 +172,7 @@ fn starts_that_another_tolerance_sends_elsewhere_are_not_sure_and_few_others() {
             document.scene.run.tolerance = tolerance;
             let (x_mm, v) = ranges(&document);
             let starts = Starts::random(x_mm, v, multiplied(500).into(), 3).unwrap();
-            let mut basins = Basins::new(&document.scene, mechanism(&document), starts).unwrap().checked();
+            let mut basins = BasinMap::new(&document.scene, mechanism(&document), starts).unwrap().checked();
             let answer = whole(&mut basins);
             assert_eq!((answer.undecided, answer.lost), (0, 0));
             let right = |row: usize| attractor(&answer, row).states[0].0 > 0.0;

@@ -7,7 +7,8 @@ use std::sync::atomic::AtomicBool;
 use interwell::dynamics::Outcome;
 use interwell::mechanics::Mechanism;
 use interwell_studies::study::{
-    BranchEnd, BranchEvent, BranchOptions, Family, FieldRange, LocusEvent, NoOrbit, Orbit, Task, branch, loci,
+    BranchEnd, BranchEvent, BranchOptions, Family, FieldRange, LocusEvent, NoOrbit, OrbitAnswer, Task,
+    branch, loci,
 };
 use proptest::prelude::*;
 
@@ -123,7 +124,7 @@ impl Case {
 
 /// Holds the motion from the state of an orbit over its whole period. One that grazes may strike or miss the
 /// stop by rounding, and is held where it comes back all the same.
-fn repeats(family: &Family, orbit: &Orbit, value: f64, grazes: bool) -> Verdict {
+fn repeats(family: &Family, orbit: &OrbitAnswer, value: f64, grazes: bool) -> Verdict {
     let map = family.model(value).unwrap().stroboscopic_map(0.0).unwrap();
     let (passage, slopes) = map.pass_with_jacobian(orbit.state, orbit.period);
     prop_assert_eq!(passage.outcome, Outcome::Done);

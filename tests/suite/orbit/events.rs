@@ -9,7 +9,7 @@ use interwell::dynamics::{MapState, Model, STANDARD_GRAVITY, Side};
 use interwell::mechanics::Mechanism;
 use interwell::scene::{Document, Excitation, Files, Scene, Stops};
 use interwell_studies::study::{
-    Branch, BranchEnd, BranchEvent, BranchOptions, Family, Orbit, Task, branch, orbit, settled,
+    BranchAnswer, BranchEnd, BranchEvent, BranchOptions, Family, OrbitAnswer, Task, branch, orbit, settled,
 };
 use proptest::prelude::*;
 
@@ -24,7 +24,7 @@ use crate::support::{changed, near};
 const LONGEST: f64 = 0.02;
 
 /// Every event holds its equation, lies between its neighbours, and is there once.
-fn holds(found: &Branch, model: &Model, range: (f64, f64)) -> Verdict {
+fn holds(found: &BranchAnswer, model: &Model, range: (f64, f64)) -> Verdict {
     let scales = model.scales();
     let unit = (range.1 - range.0).abs();
     let place = |i: usize| {
@@ -120,7 +120,7 @@ impl Drawn {
     }
 
     /// Speed of the impact of a motion of the closed form.
-    pub fn speed(&self, orbit: &Orbit) -> Option<f64> {
+    pub fn speed(&self, orbit: &OrbitAnswer) -> Option<f64> {
         let impacts: Vec<_> = orbit.contacts();
         match (&impacts[..], self.closed.mirrored) {
             ([one], false) => Some(one.v_in.abs()),
@@ -160,7 +160,7 @@ impl Drawn {
     }
 
     /// The events of motions of the closed form are where it has them, and none of them is left out.
-    fn critical_points(&self, found: &Branch, unit: f64) -> Verdict {
+    fn critical_points(&self, found: &BranchAnswer, unit: f64) -> Verdict {
         let at_minus_one = if self.closed.mirrored { BranchEvent::Symmetry } else { BranchEvent::Flip };
         for (multiplier, event) in [(1.0, BranchEvent::Fold), (-1.0, at_minus_one)] {
             let (speed, amplitude) = self.closed.critical(multiplier);
@@ -231,7 +231,7 @@ fn bouncing_balls_have_their_events_where_formulas_say() {
 
 /// With the stops farther away, a motion that grazes one and strikes none comes back after its period, having
 /// turned where the stop was.
-fn turns_at_the_stop(scene: &Scene, found: &Branch) -> Verdict {
+fn turns_at_the_stop(scene: &Scene, found: &BranchAnswer) -> Verdict {
     const FARTHER: f64 = 1e-3;
     let mut scene = scene.clone();
     let (Stops::Rigid { travel_limit_mm: limit, .. } | Stops::Uneven { right_mm: Some(limit), .. }) =

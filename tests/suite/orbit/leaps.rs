@@ -1,7 +1,7 @@
 //! Branches that end, turn or leap: none does unsaid.
 
 use interwell::dynamics::{EventKind, MapState, Side};
-use interwell_studies::study::{BranchEnd, BranchEvent, Orbit};
+use interwell_studies::study::{BranchEnd, BranchEvent, OrbitAnswer};
 
 use super::{at, over_amplitude};
 use crate::cli::{headless, refused, stdout};
@@ -12,7 +12,7 @@ use crate::support::{changed, near};
 /// else happens before.
 #[test]
 fn a_mass_that_rests_leaps_where_it_just_fails_to_cross() {
-    let strikes_left = |orbit: &Orbit| {
+    let strikes_left = |orbit: &OrbitAnswer| {
         let mut impacts = orbit.passage.events.iter().filter(|event| event.kind == EventKind::Impact);
         impacts.any(|event| event.side == Side::Left)
     };

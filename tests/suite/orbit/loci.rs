@@ -11,7 +11,7 @@ use interwell::dynamics::STANDARD_GRAVITY;
 use interwell::mechanics::Mechanism;
 use interwell::scene::Document;
 use interwell_studies::study::{
-    BranchEvent, BranchOptions, Family, FieldRange, Locus, LocusEnd, LocusEvent, Task, branch, loci,
+    BranchEvent, BranchOptions, Family, FieldRange, LocusEnd, LocusEvent, OneLocus, Task, branch, loci,
     loci_table,
 };
 use proptest::prelude::*;
@@ -31,7 +31,7 @@ fn found(
     (field, range): (&str, (f64, f64)),
     of: BranchEvent,
     second: FieldRange,
-) -> Vec<Locus> {
+) -> Vec<OneLocus> {
     let mechanism = Arc::new(Mechanism::build(&document.scene.mechanism, &document.files).unwrap());
     let family = Family::new(&document.scene, &document.files, &mechanism, field);
     let task = Task { tick: &|| (), cancel: &AtomicBool::new(false) };
@@ -41,7 +41,7 @@ fn found(
 }
 
 /// Every row is inside both ranges and holds the condition of the locus, and events are said once a row.
-fn holds(locus: &Locus, range: (f64, f64), second: (f64, f64)) -> Verdict {
+fn holds(locus: &OneLocus, range: (f64, f64), second: (f64, f64)) -> Verdict {
     let inside = |(from, to): (f64, f64), value: f64| {
         let slack = 1e-9 * (to - from).abs();
         (from.min(to) - slack..=from.max(to) + slack).contains(&value)
@@ -170,7 +170,7 @@ fn loci_of_bouncing_balls_lie_where_formulas_say() {
         let second = FieldRange { field: "stops.restitution_left".into(), range: (e, by * e) };
         for (of, to) in [(BranchEvent::Flip, 1.5 * ball.flip()), (BranchEvent::Fold, 0.5 * ball.pace())] {
             let loci = found(&ball.document(a), (AMPLITUDE, (a, to)), of, second.clone());
-            let simple = |locus: &&Locus| locus.orbits[0].passage.impacts == 1;
+            let simple = |locus: &&OneLocus| locus.orbits[0].passage.impacts == 1;
             let locus = loci.iter().find(simple).unwrap();
             holds(locus, (a, to), second.range)?;
             for [amplitude, e] in &locus.values {

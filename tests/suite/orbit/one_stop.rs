@@ -95,7 +95,7 @@ impl OneStop {
     }
 
     /// The branch over amplitudes in g, whose motions with one impact have the multipliers of the formula.
-    fn branch(&self, range: (f64, f64)) -> interwell_studies::study::Branch {
+    fn branch(&self, range: (f64, f64)) -> interwell_studies::study::BranchAnswer {
         let found = over_amplitude(&self.document(), range, Some(1));
         assert_eq!(found.end, BranchEnd::Range);
         for orbit in &found.orbits {

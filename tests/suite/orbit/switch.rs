@@ -7,7 +7,7 @@ use std::sync::atomic::AtomicBool;
 use interwell::mechanics::Mechanism;
 use interwell::scene::Document;
 use interwell_studies::study::{
-    Branch, BranchEnd, BranchEvent, BranchOptions, Family, Task, branch, branches_table, switched,
+    BranchAnswer, BranchEnd, BranchEvent, BranchOptions, Family, Task, branch, branches_table, switched,
 };
 
 use super::one_stop::OneStop;
@@ -16,7 +16,7 @@ use crate::cli::stdout;
 use crate::measured::Noise;
 use crate::support::{changed, near, near_relative};
 
-fn followed(document: &Document, range: (f64, f64), levels: u32) -> Vec<Branch> {
+fn followed(document: &Document, range: (f64, f64), levels: u32) -> Vec<BranchAnswer> {
     let mechanism = Arc::new(Mechanism::build(&document.scene.mechanism, &document.files).unwrap());
     let family = Family::new(&document.scene, &document.files, &mechanism, AMPLITUDE);
     let task = Task { tick: &|| (), cancel: &AtomicBool::new(false) };
@@ -137,11 +137,11 @@ fn a_breaking_of_the_symmetry_leads_to_motions_without_it() {
     let all = followed(&scene(0.5, 0.0), (0.5, 0.8), 1);
     let broken = at(&all[0], BranchEvent::Symmetry);
     assert!(!broken.is_empty());
-    let asymmetric: Vec<&Branch> = all[1..].iter().collect();
+    let asymmetric: Vec<&BranchAnswer> = all[1..].iter().collect();
     assert!(!asymmetric.is_empty());
     near_relative(asymmetric[0].values[0], broken[0], 1e-2);
     for branch in &asymmetric {
-        let is_broken = |orbit: &interwell_studies::study::Orbit| {
+        let is_broken = |orbit: &interwell_studies::study::OrbitAnswer| {
             let [first, _] = two(orbit);
             orbit.period == 1 && first.re.is_finite()
         };

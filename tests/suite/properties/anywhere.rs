@@ -167,7 +167,7 @@ fn basins_take_stops_anywhere() {
         let x_mm = EvenRange { from: at(-size), to: at(size), count: 2 };
         let v = EvenRange { from: 0.0, to: 0.0, count: 1 };
         let Ok(starts) = Starts::grid(&x_mm, &v) else { return Ok(false) };
-        let Ok(mut basins) = Basins::new(&scene, Arc::clone(model.mechanism()), starts) else {
+        let Ok(mut basins) = BasinMap::new(&scene, Arc::clone(model.mechanism()), starts) else {
             return Ok(false);
         };
         prop_assert!(basins.room().0 < basins.room().1);

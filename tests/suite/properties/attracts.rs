@@ -9,7 +9,9 @@ use std::sync::atomic::AtomicBool;
 use interwell::dynamics::{Model, Outcome, Request};
 use interwell::mechanics::Mechanism;
 use interwell::scene::{Document, Files};
-use interwell_studies::study::{Branch, BranchEvent, BranchOptions, Family, Orbit, Task, branch, orbit_near};
+use interwell_studies::study::{
+    BranchAnswer, BranchEvent, BranchOptions, Family, OrbitAnswer, Task, branch, orbit_near,
+};
 use proptest::prelude::*;
 
 use super::harness::hold_for;
@@ -94,7 +96,7 @@ impl Drawn {
         let task = Task { tick: &|| (), cancel: &AtomicBool::new(false) };
         let options = BranchOptions { step: 0.05, count: 80, ..BranchOptions::new(0.0, None) };
         let found = branch(&family, AMPLITUDE, (self.amplitude, 0.7), &options, &task).ok()?;
-        let Branch { values, orbits, events, .. } = found;
+        let BranchAnswer { values, orbits, events, .. } = found;
         let at = events.iter().position(|event| event.is_some_and(|event| event != BranchEvent::Grazing))?;
         let (size, angle) = (10f64.powf(self.off.0), TAU * self.off.1);
         let share = 10f64.powf(self.beside.0) * if self.beside.1 { 1.0 } else { -1.0 };
@@ -196,7 +198,7 @@ impl Long {
 /// The magnitude of the largest multiplier of the orbit near a state.
 fn multiplier(model: &Model, state: (f64, f64), period: usize) -> Option<f64> {
     let found = model.stroboscopic_map(0.0).map(|map| orbit_near(&map, state, period as u32));
-    let largest = |orbit: Orbit| orbit.multipliers()[0].magnitude();
+    let largest = |orbit: OrbitAnswer| orbit.multipliers()[0].magnitude();
     found.and_then(Result::ok).map(largest)
 }
 

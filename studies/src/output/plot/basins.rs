@@ -11,7 +11,7 @@ use super::style::{COOL, KINDS, WARM};
 use super::sweep::{MAX_PICTURE_CELLS, NoPicture};
 use crate::dynamics::Regime;
 use crate::numeric::short;
-use crate::study::{Answer, Attractor, Basins, Edges, Shares, Starts, Table};
+use crate::study::{Answer, Attractor, BasinMap, Edges, Shares, Starts, Table};
 
 /// Number of attractors that the legend names, those with the largest shares.
 const MAX_NAMED: usize = 9;
@@ -25,7 +25,7 @@ pub fn can_show_starts(starts: &Starts) -> Result<(), NoPicture> {
 
 /// The picture of a map of basins, of the fields of a [`BasinsAnswer`](crate::questions::BasinsAnswer), or of
 /// a map that is still incomplete.
-pub fn basins_chart(basins: &Basins, answer: &Answer) -> Chart {
+pub fn basins_chart(basins: &BasinMap, answer: &Answer) -> Chart {
     let starts = basins.starts();
     let all = || (0..starts.count()).map(|row| starts.at(row));
     let (across, up) = match starts.axes() {
@@ -101,7 +101,7 @@ pub fn basins_chart(basins: &Basins, answer: &Answer) -> Chart {
 }
 
 /// The data of the picture: the starts with the numbers of their attractors, and the attractors' states.
-fn drawn(basins: &Basins, answer: &Answer) -> Table {
+fn drawn(basins: &BasinMap, answer: &Answer) -> Table {
     let mut drawn = Drawn::new(["x_mm", "v_m_per_s", "attractor", "sure"], &[]);
     let source = source_row(basins);
     for row in 0..answer.rows.len() {
@@ -119,7 +119,7 @@ fn drawn(basins: &Basins, answer: &Answer) -> Table {
 }
 
 /// For each row, the row whose answer is shown there: itself, or the nearest row that has been run.
-fn source_row(basins: &Basins) -> impl Fn(usize) -> usize {
+fn source_row(basins: &BasinMap) -> impl Fn(usize) -> usize {
     let (levels, done) = basins.levels();
     move |row| {
         if basins.is_whole() || done == 0 { row } else { levels.stand_in(row as u64, done - 1) as usize }
@@ -148,7 +148,7 @@ fn roles(answer: &Answer) -> Vec<Role> {
 
 /// The names of the attractors with their shares; if there are many, only those with the largest shares have
 /// a name.
-fn names(basins: &Basins, answer: &Answer) -> Vec<String> {
+fn names(basins: &BasinMap, answer: &Answer) -> Vec<String> {
     let mut order: Vec<usize> = (0..answer.attractors.len()).collect();
     order.sort_by_key(|place| std::cmp::Reverse(answer.attractors[*place].starts));
     let (mut names, kinds) = (vec![String::new(); order.len()], answer.words());
@@ -174,7 +174,7 @@ fn words(kind: &str, attractor: &Attractor, is_grid: bool) -> String {
 }
 
 /// The subtitle: which starts were run.
-fn about(basins: &Basins, answer: &Answer) -> String {
+fn about(basins: &BasinMap, answer: &Answer) -> String {
     let counted = match basins.starts().axes() {
         Some((x_mm, v)) => format!("{} \u{d7} {} starts", x_mm.len(), v.len()),
         None => format!("{} random starts", answer.rows.len()),

@@ -8,7 +8,9 @@ use super::figure::Point;
 use super::role::Role;
 use super::swept::swept_axis;
 use crate::numeric::short;
-use crate::study::{Branch, BranchEvent, Locus, LocusEvent, Orbit, branches_table, loci_table};
+use crate::study::{
+    BranchAnswer, BranchEvent, LocusEvent, OneLocus, OrbitAnswer, branches_table, loci_table,
+};
 
 /// The kinds of events in the order of their markers.
 const EVENTS: [BranchEvent; 4] =
@@ -16,12 +18,12 @@ const EVENTS: [BranchEvent; 4] =
 
 /// The picture of a branch, and of those that begin on it; `phase_deg` is the phase of their strobe in
 /// degrees.
-pub fn branch_chart(branches: &[Branch], phase_deg: f64, ranges: Ranges) -> Chart {
+pub fn branch_chart(branches: &[BranchAnswer], phase_deg: f64, ranges: Ranges) -> Chart {
     let table = branches_table(branches);
     let field = table.columns()[1].name.as_str();
     let rows =
         || branches.iter().flat_map(|branch| branch.orbits.iter().zip(&branch.values).zip(&branch.events));
-    let point = |orbit: &Orbit, value: f64| (value, orbit.state.x * 1e3);
+    let point = |orbit: &OrbitAnswer, value: f64| (value, orbit.state.x * 1e3);
     let heights = rows().map(|((orbit, value), _)| point(orbit, *value).1);
     let up = PlotAxis::around(heights, 0.08, "displacement at the strobe (mm)");
     let mut panel = Panel::new(swept_axis(&table, field, ranges.x), up.or_given(ranges.y));
@@ -69,7 +71,7 @@ pub fn branch_chart(branches: &[Branch], phase_deg: f64, ranges: Ranges) -> Char
 }
 
 /// The picture of loci over two fields; `phase_deg` is the phase of their strobe in degrees.
-pub fn loci_chart(loci: &[Locus], phase_deg: f64, ranges: Ranges) -> Chart {
+pub fn loci_chart(loci: &[OneLocus], phase_deg: f64, ranges: Ranges) -> Chart {
     let table = loci_table(loci);
     let [across, up] = [1, 2].map(|place| table.columns()[place].name.clone());
     let mut panel = Panel::new(swept_axis(&table, &across, ranges.x), swept_axis(&table, &up, ranges.y));

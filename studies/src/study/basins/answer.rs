@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::Basins;
+use super::BasinMap;
 use super::rounds::{Fate, Kind};
 use super::stroboscopic::final_state;
 use crate::dynamics::{MapState, Model, Outcome, Place, Regime, Request, Summary};
@@ -117,7 +117,7 @@ pub struct Answer {
 
 impl Answer {
     /// `x_mm,v_m_per_s,attractor,periods,sure` of the rows from `begin` to before `end`.
-    pub fn table(&self, basins: &Basins, begin: usize, end: usize) -> Table {
+    pub fn table(&self, basins: &BasinMap, begin: usize, end: usize) -> Table {
         let rows: Vec<usize> = (begin..end.min(self.rows.len())).collect();
         Table::new()
             .each("x_mm", &rows, |row| basins.starts().at(*row).0)
@@ -182,7 +182,7 @@ enum Key {
     Cycle(u32),
 }
 
-impl Basins {
+impl BasinMap {
     /// The results so far; `None` if cancelled.
     pub fn answer(&self, task: &Task) -> Option<Answer> {
         let after: Vec<Option<(Key, u32)>> =

@@ -78,7 +78,7 @@ const MEASURED: f64 = 300.0;
 
 /// A map of basins, computed from coarse to fine.
 #[derive(Debug)]
-pub struct Basins {
+pub struct BasinMap {
     model: Model,
     starts: Starts,
     levels: Levels,
@@ -92,7 +92,7 @@ pub struct Basins {
     finer: Option<Model>,
 }
 
-impl Basins {
+impl BasinMap {
     /// Number of forcing periods after which a motion that has reached no known attractor is classified.
     pub const PATIENCE: u64 = PATIENCE;
 

@@ -4,7 +4,7 @@ use super::orbit::{Rejected, find, is_near};
 use super::region::{Irregular, irregular};
 use super::stroboscopic::{START_WORK, Stroboscope, final_state};
 use super::sure::{are_sure, sure_releases};
-use super::{Basins, Starts, is_inside};
+use super::{BasinMap, Starts, is_inside};
 use crate::dynamics::{
     Arrival, Capture, MapState, Outcome, Place, Pursued, Pursuit, Regime, Region, ReleaseIdentity, Side,
     Summary,
@@ -347,7 +347,7 @@ fn round(
     task.check_cancelled().map(|()| next)
 }
 
-impl Basins {
+impl BasinMap {
     /// Runs the starts of the next level, with a tick for each. False if cancelled; the map is then unusable.
     pub fn run_level(&mut self, pool: &Pool, task: &Task) -> bool {
         self.level(pool, task).is_ok()

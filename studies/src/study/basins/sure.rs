@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 
 use super::rounds::{Fate, Item, MAX_ROUND, Rounds};
 use super::stroboscopic::Stroboscope;
-use super::{Basins, Starts};
+use super::{BasinMap, Starts};
 use crate::dynamics::{Beside, MapState, Model, Pursuit, Trail};
 use crate::study::Result;
 
@@ -101,7 +101,7 @@ pub(super) fn sure_releases(
     Ok(sure)
 }
 
-impl Basins {
+impl BasinMap {
     /// Whether the answer of each row is sure, with everything after the releases that it reaches; empty
     /// unless the map is checked and whole.
     pub(super) fn sure(&self) -> Vec<bool> {

@@ -4,7 +4,7 @@ use std::sync::atomic::AtomicBool;
 
 use nalgebra::Vector3;
 
-use super::{NoOrbit, Orbit, Units, allowed, ended, map_of, orbit_near};
+use super::{NoOrbit, OrbitAnswer, Units, allowed, ended, map_of, orbit_near};
 use crate::dynamics::{MapState, Model, Outcome, Regime, StroboscopicMap};
 use crate::study::settled;
 
@@ -43,7 +43,7 @@ pub fn begun(
     period: Option<u32>,
     begin: Begin,
     cancel: &AtomicBool,
-) -> Result<Orbit, NoOrbit> {
+) -> Result<OrbitAnswer, NoOrbit> {
     let map = || map_of(model, phase, cancel).ok_or(NoOrbit::NotSettled);
     match begin {
         Begin::Run => orbit(model, phase, period, cancel),
@@ -56,7 +56,12 @@ pub fn begun(
 /// periods; with the period `period`, if given.
 ///
 /// Precondition: the drive repeats.
-pub fn orbit(model: &Model, phase: f64, period: Option<u32>, cancel: &AtomicBool) -> Result<Orbit, NoOrbit> {
+pub fn orbit(
+    model: &Model,
+    phase: f64,
+    period: Option<u32>,
+    cancel: &AtomicBool,
+) -> Result<OrbitAnswer, NoOrbit> {
     let (Some(map), Some(forcing)) = (map_of(model, phase, cancel), model.forcing_period()) else {
         return Err(NoOrbit::NotSettled);
     };
@@ -91,7 +96,7 @@ fn closest_return(map: &StroboscopicMap, from: MapState, periods: u32) -> MapSta
 }
 
 /// The orbit, if it has the period that is asked for.
-fn of_period(orbit: Orbit, period: Option<u32>) -> Result<Orbit, NoOrbit> {
+fn of_period(orbit: OrbitAnswer, period: Option<u32>) -> Result<OrbitAnswer, NoOrbit> {
     match period {
         Some(period) if orbit.period != period => Err(NoOrbit::Shorter(orbit.period)),
         _ => Ok(orbit),
@@ -99,12 +104,12 @@ fn of_period(orbit: Orbit, period: Option<u32>) -> Result<Orbit, NoOrbit> {
 }
 
 /// The orbit nearest to a state, of this period or one of at most [`LONGEST`].
-fn nearest(map: &StroboscopicMap, state: MapState, period: Option<u32>) -> Result<Orbit, NoOrbit> {
+fn nearest(map: &StroboscopicMap, state: MapState, period: Option<u32>) -> Result<OrbitAnswer, NoOrbit> {
     if period.is_some() {
         return of_period(orbit_near(map, state, period.unwrap_or(1))?, period);
     }
     let units = Units::of(map.model(), 1.0);
-    let far = |orbit: &Orbit| Vector3::from(units.apart(state, orbit.state)).norm();
+    let far = |orbit: &OrbitAnswer| Vector3::from(units.apart(state, orbit.state)).norm();
     let mut best = Err(NoOrbit::NotConverged);
     for period in 1..=LONGEST {
         match orbit_near(map, state, period) {
@@ -118,7 +123,7 @@ fn nearest(map: &StroboscopicMap, state: MapState, period: Option<u32>) -> Resul
 }
 
 /// The first orbit with a period and this many impacts to which a start leads, at once or after some periods.
-fn with_impacts(map: &StroboscopicMap, period: u32, impacts: u64) -> Result<Orbit, NoOrbit> {
+fn with_impacts(map: &StroboscopicMap, period: u32, impacts: u64) -> Result<OrbitAnswer, NoOrbit> {
     let scales = map.model().scales();
     let share = |place: u32| EXTENT * (2.0 * f64::from(place) / f64::from(STARTS - 1) - 1.0);
     let starts = (0..STARTS * STARTS).map(|number| {

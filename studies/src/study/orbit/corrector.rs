@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicBool;
 
 use nalgebra::{Const, DimMin, SMatrix, SVector, Vector3, Vector4};
 
-use super::{Orbit, SAME, allowed, map_of};
+use super::{OrbitAnswer, SAME, allowed, map_of};
 use crate::dynamics::{Event, EventKind, Jacobian, MapState, Model, Outcome, Passage, Side, StroboscopicMap};
 use crate::study::Family;
 
@@ -89,7 +89,7 @@ pub(crate) struct Point {
     /// and so are its derivatives.
     pub at: Vector4<f64>,
     pub value: f64,
-    pub orbit: Orbit,
+    pub orbit: OrbitAnswer,
     /// Derivatives of the corrector's map by the state, and their determinant.
     pub by_state: Jacobian,
     pub determinant: f64,
@@ -198,7 +198,7 @@ impl Corrector<'_> {
     }
 
     /// Whether an orbit equals its mirror image, and the scenes next to this value equal theirs.
-    pub fn keeps_mirrored(&self, orbit: &Orbit, value: f64) -> bool {
+    pub fn keeps_mirrored(&self, orbit: &OrbitAnswer, value: f64) -> bool {
         let mirrored = Self { mirrored: true, ..*self };
         let has_map = |share: f64| mirrored.model(value + share * self.units.range).is_some();
         let off = || Self::asymmetry(&mirrored.map(value)?, orbit);
@@ -217,7 +217,7 @@ impl Corrector<'_> {
 
     /// Difference of a motion from its mirror image half its period later, relative to the scales; `None` if
     /// the mirror image is not a motion of the scene, or the motion ends early.
-    pub fn asymmetry(map: &StroboscopicMap, orbit: &Orbit) -> Option<Vector3<f64>> {
+    pub fn asymmetry(map: &StroboscopicMap, orbit: &OrbitAnswer) -> Option<Vector3<f64>> {
         let model = map.model();
         if !model.mirrors_in_half_a_period() || orbit.period.is_multiple_of(2) {
             return None;
@@ -229,7 +229,7 @@ impl Corrector<'_> {
 
     /// Difference in the units between the states of an orbit half its period apart; `None` if that is not a
     /// whole number of forcing periods, or the motion ends early.
-    pub fn halfway(&self, map: &StroboscopicMap, orbit: &Orbit) -> Option<Vector3<f64>> {
+    pub fn halfway(&self, map: &StroboscopicMap, orbit: &OrbitAnswer) -> Option<Vector3<f64>> {
         if !orbit.period.is_multiple_of(2) {
             return None;
         }
@@ -239,12 +239,13 @@ impl Corrector<'_> {
     }
 
     /// The orbit at another phase of the drive; `None` if it ends early.
-    pub fn at_phase(&self, orbit: &Orbit, value: f64, phase: f64) -> Option<Orbit> {
+    pub fn at_phase(&self, orbit: &OrbitAnswer, value: f64, phase: f64) -> Option<OrbitAnswer> {
         if phase == self.phase {
             return Some(orbit.clone());
         }
         let passage = self.map(value)?.pass_between(orbit.state, (0.0, (phase - self.phase).rem_euclid(1.0)));
-        (passage.outcome == Outcome::Done).then(|| Orbit { state: MapState::from(&passage), ..orbit.clone() })
+        (passage.outcome == Outcome::Done)
+            .then(|| OrbitAnswer { state: MapState::from(&passage), ..orbit.clone() })
     }
 
     /// The phase that is farthest from all events at stops and from the times `also` (in forcing periods);
@@ -386,7 +387,7 @@ impl Corrector<'_> {
             false => (passage, jacobian),
         };
         let circuit = map.model().circuit_state();
-        let orbit = Orbit { period: self.periods, state, passage, jacobian, circuit };
+        let orbit = OrbitAnswer { period: self.periods, state, passage, jacobian, circuit };
         Some(Point { at: self.at(state, value), value, orbit, by_state, determinant, by_field })
     }
 }

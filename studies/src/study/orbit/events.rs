@@ -3,7 +3,7 @@
 use nalgebra::Vector4;
 
 use super::corrector::{Corrector, Point};
-use super::{Orbit, SAME};
+use super::{OrbitAnswer, SAME};
 use crate::dynamics::{EventKind, Multiplier};
 use crate::numeric::elementary;
 
@@ -39,13 +39,13 @@ const HALVINGS: i32 = 20;
 const MAX_EVALUATIONS: usize = 80;
 
 /// Whether two motions touch the stops in a different order or number.
-pub(super) fn differ(a: &Orbit, b: &Orbit) -> bool {
+pub(super) fn differ(a: &OrbitAnswer, b: &OrbitAnswer) -> bool {
     differ_above(a, b, 0.0)
 }
 
 /// The same without impacts that are slower than this speed in m/s.
-pub(super) fn differ_above(a: &Orbit, b: &Orbit, speed: f64) -> bool {
-    let contacts = |orbit: &Orbit| {
+pub(super) fn differ_above(a: &OrbitAnswer, b: &OrbitAnswer, speed: f64) -> bool {
+    let contacts = |orbit: &OrbitAnswer| {
         let all = orbit.contacts().into_iter();
         let all = all.filter(|event| event.kind != EventKind::Impact || event.v_in.abs() >= speed);
         all.map(|event| (event.kind, event.side)).collect::<Vec<_>>()

@@ -14,7 +14,7 @@ use std::ops::Range;
 use nalgebra::Vector4;
 
 use super::corrector::{Accuracy, Corrector, Equations, Point, newton};
-use super::{Orbit, map_of};
+use super::{OrbitAnswer, map_of};
 use crate::dynamics::{
     Event, EventKind, Jacobian, MapState, Miss, Model, Outcome, Passage, Side, StroboscopicMap,
 };
@@ -313,7 +313,7 @@ impl Touch {
             (by_state, jacobian) = (by_state.mirrored(), by_state.after(&by_state));
         }
         let circuit = maps.with.model().circuit_state();
-        let orbit = Orbit { period: corrector.periods, state, passage, jacobian, circuit };
+        let orbit = OrbitAnswer { period: corrector.periods, state, passage, jacobian, circuit };
         let determinant = corrector.determinant(determinant, &by_state);
         let at = corrector.at(state, value);
         Some(Point { at, value, orbit, by_state, determinant, by_field: [0.0; 3] })

@@ -30,7 +30,7 @@ pub use begin::{Begin, begun, orbit};
 use corrector::Corrector;
 pub(crate) use corrector::Units;
 pub use events::BranchEvent;
-pub use locus::{FieldRange, Locus, LocusEnd, LocusEvent, loci, loci_table};
+pub use locus::{FieldRange, LocusEnd, LocusEvent, OneLocus, loci, loci_table};
 pub use switch::switched;
 use walk::Walk;
 
@@ -62,7 +62,7 @@ const TOLERANCE: f64 = 1e-14;
 /// Jacobian: it is stable if all lie within the unit circle.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
-pub struct Orbit {
+pub struct OrbitAnswer {
     /// Its period in forcing periods.
     pub period: u32,
     /// Its state at the phase of the map.
@@ -135,7 +135,7 @@ fn ended_at(outcome: Outcome) -> String {
     outcome.ended_at().map_or(String::new(), |at| format!(", {at} s after the drive's phase 0"))
 }
 
-impl Orbit {
+impl OrbitAnswer {
     /// Floquet multipliers by falling magnitude: two, or three beside a circuit.
     pub fn multipliers(&self) -> Vec<Multiplier> {
         if self.passage.rested && self.jacobian.size() == 3 {
@@ -210,7 +210,7 @@ impl Orbit {
 }
 
 /// Whether an orbit is stable; `None` where rounding decides, as with a multiplier of 1 or -1.
-fn stability(orbit: &Orbit) -> Option<bool> {
+fn stability(orbit: &OrbitAnswer) -> Option<bool> {
     let largest = orbit.multipliers()[0].magnitude();
     ((largest - 1.0).abs() > 1e-9).then_some(largest < 1.0)
 }
@@ -230,7 +230,11 @@ pub(super) fn map_of<'a>(model: &Model, phase: f64, cancel: &'a AtomicBool) -> O
 
 /// The periodic orbit near a state at the phase of the map, such as `(x, v)` without a circuit, by Newton's
 /// method. Its period is `periods` forcing periods, at least 1, or a divisor.
-pub fn orbit_near(map: &StroboscopicMap, guess: impl Into<MapState>, periods: u32) -> Result<Orbit, NoOrbit> {
+pub fn orbit_near(
+    map: &StroboscopicMap,
+    guess: impl Into<MapState>,
+    periods: u32,
+) -> Result<OrbitAnswer, NoOrbit> {
     let units = Units::of(map.model(), 1.0);
     let mut state = allowed(map.model(), guess.into());
     let mut best = f64::INFINITY;
@@ -249,7 +253,7 @@ pub fn orbit_near(map: &StroboscopicMap, guess: impl Into<MapState>, periods: u3
         let length = largest(step);
         if largest(off) <= CLOSE && (length <= SMALLEST_STEP || length >= 0.5 * best) {
             let circuit = map.model().circuit_state();
-            return shortest(map, Orbit { period: periods, state, passage, jacobian, circuit });
+            return shortest(map, OrbitAnswer { period: periods, state, passage, jacobian, circuit });
         }
         if !length.is_finite() {
             return Err(NoOrbit::NotConverged);
@@ -272,7 +276,7 @@ pub(crate) fn newton_step(jacobian: &Jacobian, off: [f64; 3]) -> Option<[f64; 3]
 }
 
 /// The same orbit with its shortest period.
-fn shortest(map: &StroboscopicMap, orbit: Orbit) -> Result<Orbit, NoOrbit> {
+fn shortest(map: &StroboscopicMap, orbit: OrbitAnswer) -> Result<OrbitAnswer, NoOrbit> {
     let units = Units::of(map.model(), 1.0);
     let divisors = (1..orbit.period).filter(|period| orbit.period.is_multiple_of(*period));
     for period in divisors {
@@ -282,7 +286,7 @@ fn shortest(map: &StroboscopicMap, orbit: Orbit) -> Result<Orbit, NoOrbit> {
         }
         let off = largest(units.apart(orbit.state, (&passage).into()));
         if off <= CLOSE {
-            return Ok(Orbit { period, passage, jacobian, ..orbit });
+            return Ok(OrbitAnswer { period, passage, jacobian, ..orbit });
         }
         // near a doubling both orbits exist
         if off <= SAME
@@ -294,10 +298,10 @@ fn shortest(map: &StroboscopicMap, orbit: Orbit) -> Result<Orbit, NoOrbit> {
     Ok(orbit)
 }
 
-/// The table with the columns of [`Orbit::table`], one row per orbit.
-fn with_orbits(table: Table, orbits: &[Orbit]) -> Table {
+/// The table with the columns of [`OrbitAnswer::table`], one row per orbit.
+fn with_orbits(table: Table, orbits: &[OrbitAnswer]) -> Table {
     let part = |number: usize, of: fn(&Multiplier) -> f64| {
-        move |orbit: &Orbit| orbit.multipliers().get(number).map(of)
+        move |orbit: &OrbitAnswer| orbit.multipliers().get(number).map(of)
     };
     let table = table
         .each("period", orbits, |orbit| Some(u64::from(orbit.period)))
@@ -354,13 +358,13 @@ words! {
 /// field; around a fold they turn back.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
-pub struct Branch {
+pub struct BranchAnswer {
     /// The field that changes.
     pub field: String,
     /// Its value at each orbit.
     pub values: Vec<f64>,
     /// The orbits.
-    pub orbits: Vec<Orbit>,
+    pub orbits: Vec<OrbitAnswer>,
     /// The event at each orbit, if any.
     pub events: Vec<Option<BranchEvent>>,
     /// Why the branch ended.
@@ -371,7 +375,7 @@ pub struct Branch {
     pub unbegun: Vec<f64>,
 }
 
-impl Branch {
+impl BranchAnswer {
     /// One row per orbit: the field, the columns of [`Orbit`](crate::questions::Orbit), and `event`.
     pub fn table(&self) -> Table {
         let column = column_names(&[&self.field]).concat();
@@ -382,7 +386,7 @@ impl Branch {
 }
 
 /// The tables of branches, one below the other, with their numbers from 1 in the column `branch`.
-pub fn branches_table(branches: &[Branch]) -> Table {
+pub fn branches_table(branches: &[BranchAnswer]) -> Table {
     let mut all = Table::new();
     for (number, branch) in (1..).zip(branches) {
         let numbers = vec![Some(number); branch.orbits.len()];
@@ -432,7 +436,7 @@ pub fn branch(
     (from, to): (f64, f64),
     options: &BranchOptions,
     task: &Task,
-) -> Result<Branch, NoOrbit> {
+) -> Result<BranchAnswer, NoOrbit> {
     task.unless_cancelled(|| {
         let BranchOptions { phase, period, begin, .. } = *options;
         let model = family.model(from).map_err(|_| NoOrbit::NotConverged)?;

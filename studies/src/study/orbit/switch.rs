@@ -8,7 +8,7 @@ use nalgebra::{Matrix3, Vector4};
 use super::corrector::{Corrector, Point};
 use super::events::{BranchEvent, characteristic};
 use super::walk::{Directed, Walk};
-use super::{Branch, BranchOptions, NoOrbit, SAME, Units, map_of};
+use super::{BranchAnswer, BranchOptions, NoOrbit, SAME, Units, map_of};
 use crate::study::{Family, Task};
 
 /// Distances of the first motion of a branch from the event, in the units, in the order of trial. In a
@@ -34,12 +34,12 @@ type Start<'a> = (Corrector<'a>, Directed);
 /// per orbit.
 pub fn switched(
     family: &Family,
-    branch: Branch,
+    branch: BranchAnswer,
     range: (f64, f64),
     levels: u32,
     options: &BranchOptions,
     task: &Task,
-) -> Result<Vec<Branch>, NoOrbit> {
+) -> Result<Vec<BranchAnswer>, NoOrbit> {
     task.unless_cancelled(|| {
         let mut all = vec![branch];
         let mut begin = 0;
@@ -73,7 +73,7 @@ pub fn switched(
 /// `None` if one begins there and is not found.
 fn starts<'a>(
     family: &'a Family<'a>,
-    all: &[Branch],
+    all: &[BranchAnswer],
     (number, place): (usize, usize),
     range: (f64, f64),
     options: &BranchOptions,

@@ -5,7 +5,7 @@ use nalgebra::Vector4;
 use super::corrector::{Corrector, Point};
 use super::events::{BranchEvent, between, differ};
 use super::grazing::{Beside, Grazing, grazings};
-use super::{Branch, BranchEnd, BranchOptions, NoOrbit, Orbit, SAME};
+use super::{BranchAnswer, BranchEnd, BranchOptions, NoOrbit, OrbitAnswer, SAME};
 use crate::dynamics::{MapState, Model};
 use crate::study::Task;
 
@@ -53,14 +53,14 @@ struct Stretch {
 /// A row of the branch before it is added, with its state at the phase of the rows.
 struct Row {
     event: Option<BranchEvent>,
-    orbit: Orbit,
+    orbit: OrbitAnswer,
     value: f64,
 }
 
 pub(super) struct Walk<'a> {
     /// Its phase of the drive is kept away from impacts, at which a state has no derivative by the field.
     corrector: Corrector<'a>,
-    branch: Branch,
+    branch: BranchAnswer,
     /// The range, and its ends in its unit.
     range: [f64; 2],
     ends: [f64; 2],
@@ -92,7 +92,7 @@ impl<'a> Walk<'a> {
             (Some(left), Some(right)) => length.min(0.5 * (right - left)),
             _ => length,
         };
-        let branch = Branch {
+        let branch = BranchAnswer {
             field: field.to_owned(),
             values: Vec::new(),
             orbits: Vec::new(),
@@ -118,7 +118,7 @@ impl<'a> Walk<'a> {
     }
 
     /// Walks until the branch ends, and returns it with its end.
-    pub fn run_out(mut self, task: &Task) -> Result<Branch, NoOrbit> {
+    pub fn run_out(mut self, task: &Task) -> Result<BranchAnswer, NoOrbit> {
         if self.rows.is_empty() {
             return Err(NoOrbit::Unrepeated);
         }
@@ -366,7 +366,7 @@ impl<'a> Walk<'a> {
     /// The row of a point, with its state at the phase of the rows if known.
     fn row(&self, event: Option<BranchEvent>, point: &Point, state: Option<MapState>) -> Option<Row> {
         let moved = || self.corrector.at_phase(&point.orbit, point.value, self.options.phase);
-        let known = state.map(|state| Orbit { state, ..point.orbit.clone() });
+        let known = state.map(|state| OrbitAnswer { state, ..point.orbit.clone() });
         let (orbit, value) = (known.or_else(moved)?, point.value);
         let rows = Corrector { mirrored: false, phase: self.options.phase, ..self.corrector };
         // from a grazing state rounding decides whether the motion strikes the stop; `Touch` has checked it

@@ -8,7 +8,7 @@ use super::super::Units;
 use super::super::corrector::{Accuracy, Corrector, Equations, Point, newton, tangent};
 use super::super::events::{characteristic, differ, has, is_at};
 use super::super::grazing::{EXACT, FINEST, Grazing, Touch, grazings};
-use super::{BranchEvent, BranchOptions, FieldRange, LocusEnd, Orbit};
+use super::{BranchEvent, BranchOptions, FieldRange, LocusEnd, OrbitAnswer};
 use crate::scene::FieldPath;
 use crate::study::Family;
 
@@ -73,7 +73,7 @@ impl<'a> Curve<'a> {
     /// The equations near an orbit of a branch, and their first point, or why there is none.
     pub fn new(
         family: &'a Family<'a>,
-        orbit: &Orbit,
+        orbit: &OrbitAnswer,
         value: f64,
         range: (f64, f64),
         (of, second): (BranchEvent, &FieldRange),
@@ -151,12 +151,12 @@ impl<'a> Curve<'a> {
 
     /// The orbit of a point with its state at a phase of the drive in forcing periods; `None` if the motion
     /// from that state ends early or does not come back to it.
-    pub fn orbit_at(&self, spot: &Spot, phase: f64) -> Option<Orbit> {
+    pub fn orbit_at(&self, spot: &Spot, phase: f64) -> Option<OrbitAnswer> {
         let Point { orbit, value, .. } = &spot.point;
         self.at_second(spot.at[4], |corrector| match &self.touch {
             Some(touch) => {
                 let state = touch.at(first_four(&spot.at)).at_phase(corrector, &spot.point, phase)?;
-                Some(Orbit { state, ..orbit.clone() })
+                Some(OrbitAnswer { state, ..orbit.clone() })
             }
             None => {
                 let moved = corrector.at_phase(orbit, *value, phase)?;
@@ -191,7 +191,7 @@ impl<'a> Curve<'a> {
     /// orbit that grazes, whether it grazes once more.
     pub fn is_beside_a_grazing(&self, spot: &Spot) -> bool {
         if self.touch.is_some() {
-            let Orbit { passage, .. } = &spot.point.orbit;
+            let OrbitAnswer { passage, .. } = &spot.point.orbit;
             let gaps = passage.misses.iter().filter(|miss| miss.gap <= AT_BOTH * self.corrector.units.length);
             return gaps.count() > if self.corrector.mirrored { 2 } else { 1 };
         }

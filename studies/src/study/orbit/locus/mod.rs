@@ -9,7 +9,7 @@
 mod curve;
 mod walk;
 
-use super::{Branch, BranchEvent, BranchOptions, NoOrbit, Orbit, SAME, Table, with_orbits};
+use super::{BranchAnswer, BranchEvent, BranchOptions, NoOrbit, OrbitAnswer, SAME, Table, with_orbits};
 use crate::scene::column_names;
 use crate::study::{Family, Task};
 use curve::Curve;
@@ -59,7 +59,7 @@ words! {
 /// the fields.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
-pub struct Locus {
+pub struct OneLocus {
     /// The kind of event at every point.
     pub of: BranchEvent,
     /// The fields.
@@ -67,7 +67,7 @@ pub struct Locus {
     /// Their values at each orbit.
     pub values: Vec<[f64; 2]>,
     /// The orbits.
-    pub orbits: Vec<Orbit>,
+    pub orbits: Vec<OrbitAnswer>,
     /// The event at each orbit, if any.
     pub events: Vec<Option<LocusEvent>>,
     /// Why the locus ended.
@@ -75,8 +75,8 @@ pub struct Locus {
 }
 
 /// One row per orbit: the number of the locus from 1, both fields, the columns of
-/// [`Orbit::table`], and `event`.
-pub fn loci_table(loci: &[Locus]) -> Table {
+/// [`OrbitAnswer::table`], and `event`.
+pub fn loci_table(loci: &[OneLocus]) -> Table {
     let Some(first) = loci.first() else { return Table::new() };
     let numbers = loci.iter().enumerate().flat_map(|(i, locus)| vec![Some(i as u64 + 1); locus.orbits.len()]);
     let mut table = Table::new().with("locus", numbers.collect());
@@ -85,7 +85,7 @@ pub fn loci_table(loci: &[Locus]) -> Table {
         let values = loci.iter().flat_map(|locus| locus.values.iter().map(move |values| values[place]));
         table = table.with(name.clone(), values.collect());
     }
-    let orbits: Vec<Orbit> = loci.iter().flat_map(|locus| locus.orbits.iter().cloned()).collect();
+    let orbits: Vec<OrbitAnswer> = loci.iter().flat_map(|locus| locus.orbits.iter().cloned()).collect();
     let events: Vec<_> = loci.iter().flat_map(|locus| locus.events.iter().copied()).collect();
     with_orbits(table, &orbits).each("event", &events, |event| event.map_or("", LocusEvent::name))
 }
@@ -108,14 +108,14 @@ pub struct FieldRange {
 /// Ticks once per orbit.
 pub fn loci(
     family: &Family,
-    branch: &Branch,
+    branch: &BranchAnswer,
     range: (f64, f64),
     (of, second): (BranchEvent, &FieldRange),
     options: &BranchOptions,
     task: &Task,
-) -> Result<Vec<Locus>, NoOrbit> {
+) -> Result<Vec<OneLocus>, NoOrbit> {
     task.unless_cancelled(|| {
-        let mut found: Vec<Locus> = Vec::new();
+        let mut found: Vec<OneLocus> = Vec::new();
         for (place, event) in branch.events.iter().enumerate() {
             let value = branch.values[place];
             let unit = (range.1 - range.0).abs();
@@ -126,7 +126,7 @@ pub fn loci(
                 continue;
             }
             let orbit = &branch.orbits[place];
-            let locus = Locus {
+            let locus = OneLocus {
                 of,
                 fields: [branch.field.clone(), second.field.clone()],
                 values: Vec::new(),
@@ -140,7 +140,7 @@ pub fn loci(
                     let ranges = [range, second.range];
                     Walk { curve, locus, at: start, ranges, options: *options }.run_out(task)?
                 }
-                Err(end) => Locus { end, ..locus },
+                Err(end) => OneLocus { end, ..locus },
             };
             if locus.orbits.is_empty() {
                 locus.values.push([value, second.range.0]);

@@ -6,7 +6,7 @@ use super::super::corrector::tangent;
 use super::super::events::{characteristic, differ, is_at, root_between};
 use super::super::walk::AT_AN_END;
 use super::curve::{Curve, Spot};
-use super::{BranchEvent, BranchOptions, Locus, LocusEnd, LocusEvent, NoOrbit, Orbit};
+use super::{BranchEvent, BranchOptions, LocusEnd, LocusEvent, NoOrbit, OneLocus, OrbitAnswer};
 use crate::numeric::elementary;
 use crate::study::Task;
 
@@ -30,7 +30,7 @@ const UPRIGHT: f64 = 1e-2;
 
 pub(super) struct Walk<'a> {
     pub curve: Curve<'a>,
-    pub locus: Locus,
+    pub locus: OneLocus,
     pub at: Spot,
     /// The ranges of both fields.
     pub ranges: [(f64, f64); 2],
@@ -40,7 +40,7 @@ pub(super) struct Walk<'a> {
 
 impl Walk<'_> {
     /// Walks until the locus ends, and returns it with its end.
-    pub fn run_out(mut self, task: &Task) -> Result<Locus, NoOrbit> {
+    pub fn run_out(mut self, task: &Task) -> Result<OneLocus, NoOrbit> {
         self.locus.end = self.end(task)?;
         Ok(self.locus)
     }
@@ -65,7 +65,7 @@ impl Walk<'_> {
                     self.events_to(&next.0)?.into_iter().map(|(event, spot)| (Some(event), spot)).collect();
                 rows.push((None, next.0.clone()));
                 let orbit = |(_, spot): &(_, Spot)| self.curve.orbit_at(spot, self.options.phase);
-                let orbits = rows.iter().map(orbit).collect::<Option<Vec<Orbit>>>()?;
+                let orbits = rows.iter().map(orbit).collect::<Option<Vec<OrbitAnswer>>>()?;
                 Some((next, rows.into_iter().zip(orbits)))
             }) else {
                 step *= 0.5;
@@ -94,7 +94,7 @@ impl Walk<'_> {
 
     /// Distance of the last row from the first in the units.
     fn far(&self) -> f64 {
-        let Locus { orbits, values, .. } = &self.locus;
+        let OneLocus { orbits, values, .. } = &self.locus;
         let units = &self.curve.corrector.units;
         let (Some(first), Some(last)) = (orbits.first(), orbits.last()) else { return 0.0 };
         let by_fields = [units.range, self.curve.range];
@@ -224,7 +224,7 @@ impl Walk<'_> {
     }
 
     /// Adds a row with the orbit of a point at the phase of the rows.
-    fn add(&mut self, event: Option<LocusEvent>, spot: &Spot, orbit: Orbit) {
+    fn add(&mut self, event: Option<LocusEvent>, spot: &Spot, orbit: OrbitAnswer) {
         let values = [spot.point.value, spot.at[4] * self.curve.range];
         // a motion at an end is off it by the rounding of the unit
         let (from, to) = self.ranges[1];
