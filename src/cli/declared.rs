@@ -8,7 +8,7 @@ use interwell_studies::study::{
 };
 
 use super::support::{Watch, load_over, mechanism_of_all, outputs, pool, warn};
-use super::{ChartOptions, Common, Failure, Output, Outputs, Picture, ask, bar, interrupt, refuse};
+use super::{ChartOptions, Common, Failure, Output, Outputs, Picture, ask, bar, interrupt, refuse, say};
 
 /// What a study answers, as its help says it.
 pub fn about<S: Study>() -> String {
@@ -57,7 +57,8 @@ pub fn run<S: Study>(options: &Arguments<S>, common: &Common) -> Result<(), Fail
         ask(study.parts(&scenes), common, |progress| study.answer(&scenes, progress))?;
     outputs.table(Output::DATA, &table.without(IMPACTS))?;
     for remark in remarks {
-        common.say(&format!("{}: {}", document.name, remark.text(Spelling::CommandLine)));
+        let text = format!("{}: {}", document.name, remark.text(Spelling::CommandLine));
+        if remark.is_warning { say(&text) } else { common.say(&text) }
     }
     if let Some(chart) = chart {
         outputs.draw(picture, &document, |ranges| Ok(chart(&table, &framing(ranges))?))?;

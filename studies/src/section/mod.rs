@@ -16,8 +16,8 @@ use crate::scene::{Fault, Scene};
 use crate::study::grid_study::{AHEAD, fields};
 use crate::study::walk::without_a_period;
 use crate::study::{
-    Answered, Carry, Cell, Grid, GridStudy, Heading, Over, Question, Row, Scenes, Streamed, Study, Table,
-    Tally, counted, number, study_methods, whole,
+    Answered, Carry, Cell, Grid, GridStudy, Heading, Over, Question, Remark, Row, Scenes, Streamed, Study,
+    Table, Tally, counted, number, study_methods, whole,
 };
 
 /// The state once a forcing period or at every impact; over a field the bifurcation diagram.
@@ -121,14 +121,14 @@ impl Study for Section {
 
     fn check(&self, scenes: &Scenes) -> Result<(), Error> {
         let wrong = |name: &str, value: &str, problem: &str| Err(Error::argument(name, value, problem));
-        let together = "skip and keep belong together: give both, in forcing periods";
+        let together = "--skip and --keep belong together: give both, in forcing periods";
         match (self.at, self.phase_deg, self.carry) {
             (SectionKind::Impacts, Some(degrees), _) => {
-                let problem = "belongs to states once a period, not to impacts: leave it out";
+                let problem = "belongs to states once a period: leave it out, or leave out --at impacts";
                 return wrong("phase_deg", &degrees.to_string(), problem);
             }
             (.., Some(carry)) if scenes.grid.axes().is_empty() => {
-                return wrong("carry", carry.name(), "walks a field: name one by over");
+                return wrong("carry", carry.name(), "walks a field: name one by --over");
             }
             (_, degrees, _) => phase(degrees.unwrap_or(0.0))?,
         };
@@ -155,9 +155,10 @@ impl Study for Section {
             return Err(Error::Cancelled);
         }
         let none = (table.rows() == 0 && self.at == SectionKind::Impacts)
-            .then(|| "no rows, since no impact counts in the settled window".to_owned());
+            .then(|| "no rows, since no impact counts in the settled window".to_owned().into());
         let early = summary.outcome.ended_at().map(|at| {
-            format!("the run ended early at t = {at} s ({}): the rows end there", summary.outcome.name())
+            let name = summary.outcome.name();
+            Remark::warning(format!("the run ended early at t = {at} s ({name}): the rows end there"))
         });
         let (phase_deg, stops) = (self.phase_deg(), model.stop_positions());
         let answer = Answered::new(table).told(none.into_iter().chain(early));

@@ -227,17 +227,26 @@ impl<Q: Question> Rows for GridStudy<Q> {
 }
 
 /// A sentence about an answer, in which arguments are spelled as they are given.
-pub struct Remark(Box<dyn Fn(Spelling) -> String + Send + Sync>);
+pub struct Remark {
+    sentence: Box<dyn Fn(Spelling) -> String + Send + Sync>,
+    /// Whether it is said even where only errors are wanted.
+    pub is_warning: bool,
+}
 
 impl Remark {
     /// A sentence that names arguments.
     pub fn spelled(sentence: impl Fn(Spelling) -> String + Send + Sync + 'static) -> Self {
-        Self(Box::new(sentence))
+        Self { sentence: Box::new(sentence), is_warning: false }
+    }
+
+    /// A sentence on what went wrong.
+    pub fn warning(text: String) -> Self {
+        Self { is_warning: true, ..text.into() }
     }
 
     /// The sentence.
     pub fn text(&self, spelling: Spelling) -> String {
-        self.0(spelling)
+        (self.sentence)(spelling)
     }
 }
 

@@ -233,12 +233,12 @@ impl Threshold {
                 Some((name, value)) => Err(Error::argument(
                     name,
                     value,
-                    "belongs to `probability`: give that too, or leave it out",
+                    "belongs to --probability: give that too, or leave it out",
                 )),
             };
         };
         let without = |name: &str, value: String| {
-            Err(Error::argument(name, value, "has no meaning with `probability`: leave one of them out"))
+            Err(Error::argument(name, value, "has no meaning with --probability: leave one of them out"))
         };
         match self.until_settled {
             _ if self.of != Onset::Crossing => return without("of", self.of.name().to_owned()),
