@@ -1,13 +1,13 @@
 //! Studies that declare their arguments, table, remarks and picture.
 
 use interwell_studies::questions::{Error, Escape, Exponents, Section, Spectrum, Threshold};
-use interwell_studies::study::{Framing, Spelling, Study, answer};
+use interwell_studies::study::{Framing, Study, answer};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use pythonize::depythonize;
 
 use crate::answer::{Answer, no_picture};
-use crate::errors::{raised, renamed};
+use crate::errors::raised;
 use crate::scene::Simulation;
 use crate::work::{Way, work};
 
@@ -41,13 +41,13 @@ fn asked<S: Study>(
 ) -> PyResult<Answer> {
     let study: S = depythonize(arguments)?;
     let (grid, found) = work(py, way, |progress| answer(&study, &scene.inner, progress))?;
-    let remarks = found.remarks.iter().map(|remark| remark.text(Spelling::Program)).collect();
+    let remarks = found.remarks.iter().map(|remark| remark.text.to_string()).collect();
     let answered = Answer::new(py, found.table, scene.caption()).told(remarks);
     let Some(chart) = found.chart else { return Ok(answered) };
     Ok(answered.drawn(move |rows, asked| {
         let (quantity, ranges, cancel) = (asked.quantity.as_deref(), asked.ranges, asked.cancel);
         study.can_draw(&grid).map_err(no_picture)?;
         let drawn = chart(rows, &Framing { quantity, ranges, cancel });
-        drawn.map_err(|error| renamed(error, [["plot_y", "y"]]))
+        drawn.map_err(|error| error.renamed(&[["plot_y", "y"]]))
     }))
 }

@@ -12,28 +12,21 @@ pub fn raised(py: Python<'_>, error: &Error) -> PyErr {
     }
     let exception = || -> PyResult<PyErr> {
         let errors = py.import("interwell._errors")?;
-        let message = in_python(error.to_string());
+        // the library's names are keywords of Python
+        let error = error.clone().renamed(&[["from", "start"], ["to", "end"]]);
+        let message = error.to_string();
         if !error.is_wrong_input() {
             return Ok(PyErr::from_value(errors.getattr("ComputationError")?.call1((message,))?));
         }
         let fault = errors.getattr("Fault")?;
-        let faults = error.faults().into_iter().map(|found| {
-            let (field, problem) = (in_python(found.field), in_python(found.problem));
-            fault.call1((found.file, found.line, field, found.value, problem))
-        });
+        let faults = error
+            .faults()
+            .into_iter()
+            .map(|found| fault.call1((found.file, found.line, found.field, found.value, found.problem)));
         let faults = faults.collect::<PyResult<Vec<_>>>()?;
         Ok(PyErr::from_value(errors.getattr("SceneError")?.call1((message, faults))?))
     };
     exception().unwrap_or_else(|error| error)
-}
-
-/// The text with the names of arguments in Python, which differ where those of the library are keywords.
-fn in_python(text: String) -> String {
-    match text.as_str() {
-        "from" => "start".to_owned(),
-        "to" => "end".to_owned(),
-        _ => text.replace("`from`", "`start`").replace("`to`", "`end`"),
-    }
 }
 
 /// The variant that is called `word`, or the exception that lists all.
@@ -49,22 +42,4 @@ pub fn named<T: Copy>(
         let known: Vec<&str> = all.iter().map(|one| name(*one)).collect();
         raised(py, &Error::argument(argument, word, format!("give one of {}", known.join(", "))))
     })
-}
-
-/// The error with the names that arguments have in Python, in place of those of the question.
-pub fn renamed<const N: usize>(error: Error, names: [[&str; 2]; N]) -> Error {
-    let named = |text: &str| {
-        let option =
-            |text: String, [from, to]: [&str; 2]| text.replace(&format!("--{from}"), &format!("--{to}"));
-        names.into_iter().fold(text.to_owned(), option)
-    };
-    match error {
-        Error::Argument { name, value, problem } => {
-            let known = names.into_iter().find(|[from, _]| *from == name);
-            let name = known.map_or(name, |[_, to]| to.to_owned());
-            Error::Argument { name, value, problem: named(&problem) }
-        }
-        Error::Unfit { scene, problem } => Error::Unfit { scene, problem: named(&problem) },
-        other => other,
-    }
 }

@@ -10,7 +10,7 @@ use interwell_studies::questions::{
 use pyo3::prelude::*;
 
 use crate::answer::Answer;
-use crate::errors::{named, renamed};
+use crate::errors::named;
 use crate::scene::Simulation;
 use crate::work::{Way, work};
 
@@ -70,7 +70,7 @@ pub fn branch(
     let way = Way { threads: None, progress };
     let found = work(py, &way, |progress| {
         let found = question.with_switches(switch, &scene.inner, progress);
-        found.map_err(|error| renamed(error, [["range", "end"]]))
+        found.map_err(|error| error.renamed(&[["range", "end"]]))
     })?;
     let table = if switch > 0 { found.table() } else { found.branches[0].table() };
     let answer = Answer::new(py, table, scene.caption()).told(found.remarks());
@@ -122,7 +122,7 @@ pub fn basins(
 ) -> PyResult<(Answer, Answer)> {
     let question = Basins { random, ..Basins::of(x_mm, v) };
     let found = work(py, &Way { threads, progress }, |progress| {
-        question.run(&scene.inner, progress).map_err(|error| renamed(error, [["v", "v_m_per_s"]]))
+        question.run(&scene.inner, progress).map_err(|error| error.renamed(&[["v", "v_m_per_s"]]))
     })?;
     let attractors = Answer::new(py, found.attractors(), scene.caption());
     let starts = Answer::new(py, found.table(), scene.caption()).told(found.answer.words());

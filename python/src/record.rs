@@ -7,7 +7,7 @@ use interwell_studies::questions::{Identify, Identity, Table, WhatToIdentify};
 use pyo3::prelude::*;
 
 use crate::answer::{Answer, Asked};
-use crate::errors::{named, renamed};
+use crate::errors::named;
 use crate::scene::{VERSION, origin};
 use crate::work::{Way, work};
 
@@ -29,9 +29,7 @@ pub fn identify(
 ) -> PyResult<(Answer, String, Option<f64>)> {
     let of = named(py, "of", of, &WhatToIdentify::ALL, WhatToIdentify::name)?;
     let question = Identify { of, time, column, position, base, between, impact_times, points };
-    let answer = work(py, &Way::default(), |progress| {
-        question.run(&path, progress).map_err(|error| renamed(error, [["from", "start"], ["to", "end"]]))
-    })?;
+    let answer = work(py, &Way::default(), |progress| question.run(&path, progress))?;
     let summary = identified(of.name(), &answer.found, answer.timing.as_ref(), &origin(f64::NAN));
     let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let caption = Caption::of_record(&name, of.name(), VERSION);

@@ -13,7 +13,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use crate::answer::{Answer, Asked};
-use crate::errors::{raised, renamed};
+use crate::errors::raised;
 use crate::function::Function;
 use crate::work::{Way, work, work_calling, work_here};
 
@@ -223,7 +223,7 @@ impl Simulation {
             };
             let picture = RunPicture { panels, ranges: asked.ranges, until_settled };
             let progress = Progress::none().stopped_by(asked.cancel);
-            picture.chart(&shown, &progress).map_err(|error| renamed(error, [["ranges", "x"]]))
+            picture.chart(&shown, &progress).map_err(|error| error.renamed(&[["ranges", "x"]]))
         };
         Ok(Run {
             samples: Py::new(py, Answer::new(py, found.samples, self.caption()).drawn(drawn))?,

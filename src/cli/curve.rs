@@ -176,8 +176,8 @@ impl<'a> Asked<'a> {
         let given = self.options.at_mm.as_ref().map(|text| ("--at-mm", text));
         let given = given.or(self.options.range_mm.as_ref().map(|text| ("--range-mm", text)));
         match (error, given) {
-            (Error::Argument { problem, .. }, Some((option, text))) => {
-                Failure::argument(format!("{option} {text}: {problem}"))
+            (error @ Error::Argument { .. }, Some((option, text))) => {
+                Failure::argument(format!("{option} {text}: {}", error.problem()))
             }
             (error, _) => error.into(),
         }

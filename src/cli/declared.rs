@@ -57,7 +57,7 @@ pub fn run<S: Study>(options: &Arguments<S>, common: &Common) -> Result<(), Fail
         ask(study.parts(&scenes), common, |progress| study.answer(&scenes, progress))?;
     outputs.table(Output::DATA, &table.without(IMPACTS))?;
     for remark in remarks {
-        let text = format!("{}: {}", document.name, remark.text(Spelling::CommandLine));
+        let text = format!("{}: {}", document.name, remark.text.spelled(Spelling::CommandLine));
         if remark.is_warning { say(&text) } else { common.say(&text) }
     }
     if let Some(chart) = chart {

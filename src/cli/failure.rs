@@ -7,7 +7,7 @@ use interwell::output::OpenError;
 use interwell::questions::Error;
 use interwell::scene::lesson::LessonError;
 use interwell::scene::{ArgumentError, SceneError};
-use interwell_studies::study::{GridError, SweepEnd};
+use interwell_studies::study::{GridError, Spelling, SweepEnd};
 
 /// Returns the error of a wrong argument from the function; the message is formatted as by `format!`.
 macro_rules! refuse {
@@ -79,10 +79,10 @@ impl From<Error> for Failure {
             Error::Argument { name, value, problem } => {
                 let option = if name == "threads" { "jobs".to_owned() } else { name.replace('_', "-") };
                 let option = format!("--{option} {value}");
-                Self::argument(format!("{}: {problem}", option.trim_end()))
+                Self::argument(format!("{}: {}", option.trim_end(), problem.spelled(Spelling::CommandLine)))
             }
-            Error::Failed { scene, problem } => Self::failed(format!("{scene}: {problem}")),
             Error::Cancelled => Self::interrupted(),
+            error @ Error::Failed { .. } => Self::failed(error.message()),
             error => Self::argument(error.message()),
         }
     }

@@ -155,7 +155,7 @@ impl MeasuredRecord {
         let Self { offset, time_scale, shift, .. } = *self;
         let motion = MeasuredMotion { times: &times.values, channel, offset, time_scale, shift };
         simulation.compared(&motion, &interrupt::progress()).map_err(|error| match error {
-            Error::Unfit { problem, .. } => Failure::argument(format!("{}: {problem}", self.name)),
+            Error::Unfit { .. } => Failure::argument(format!("{}: {}", self.name, error.problem())),
             error => error.into(),
         })
     }

@@ -17,7 +17,7 @@ use crate::questions::Error;
 use crate::scene::lesson::{BuiltInLesson, LessonDocument, LessonError, Step};
 use crate::scene::{Document, PRESETS, is_link, linked_lesson};
 use crate::system::files;
-use interwell_studies::study::result_fields;
+use interwell_studies::study::{Said, result_fields};
 
 use super::Window;
 use super::layouts::{Arrangement, Tiling};
@@ -76,7 +76,8 @@ struct Suspended {
 }
 
 pub(super) fn read(spec: &str) -> Result<LessonDocument, Error> {
-    let unfit = |scene: &str, problem: &str| Error::Unfit { scene: scene.into(), problem: problem.into() };
+    let unfit =
+        |scene: &str, problem: &str| Error::Unfit { scene: scene.into(), problem: Said::new(problem) };
     let spec = match linked_lesson(spec) {
         Some(name) if BuiltInLesson::find(name).is_none() => {
             let problem = format!("there is no built-in lesson {name:.40}; `lessons` lists them");

@@ -295,7 +295,7 @@ impl Escape {
             ),
             column(
                 "kramers_fails",
-                "the condition that fails there: `until` (`--until crossing`), `damping` (not linear, \
+                "the condition that fails there: `until` (`until` is `crossing`), `damping` (not linear, \
                  none, or a circuit), `barrier` (not one barrier with a well behind it), `noise` (not one \
                  noise alone), `height` (below 3 kT), `kink`, `ends` (of stops or a table), `band`, \
                  `lines` (too few), `rate` (too small for a number)",

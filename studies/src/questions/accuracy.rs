@@ -2,12 +2,12 @@
 
 use super::{Error, Progress, Simulation};
 use crate::numeric::number_text;
-use crate::study::Table;
 use crate::study::accuracy::methods::Scheme;
 use crate::study::accuracy::scene::{
     StepSize, Tolerances, Trust, Unfit, scene_table, step_name, step_size, tolerances, trust,
 };
 use crate::study::accuracy::{Report, Selection, Stopped, accuracy};
+use crate::study::{Said, Table};
 
 /// The error of the run of a scene, the cost of its digits, and the effect of fixed steps.
 ///
@@ -142,7 +142,7 @@ pub fn check_accuracy(selection: &Selection, progress: &Progress) -> Result<Repo
         Stopped::Cancelled => Error::Cancelled,
         Stopped::Scene(problem) => {
             let problem = format!("cannot be run: {problem}");
-            Error::Failed { scene: "a scene of the study".to_owned(), problem }
+            Error::Failed { scene: "a scene of the study".to_owned(), problem: Said::new(problem) }
         }
     })
 }

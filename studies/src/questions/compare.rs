@@ -6,7 +6,9 @@ use super::grid::check_until;
 use super::remarks::of_comparison;
 use super::{Error, Progress, Simulation};
 use crate::scene::{Document, Excitation, Start};
-use crate::study::{Alternative, Rated, Table, Task, alternatives, comparison_parts, comparison_table};
+use crate::study::{
+    Alternative, Rated, Table, Task, alternatives, comparison_parts, comparison_table, named,
+};
 use crate::system::threads::Pool;
 
 /// Comparison of scenes under the sine and with the run settings of the first one, each from rest.
@@ -132,13 +134,19 @@ impl CompareAnswer {
 fn needs_a_sine(environment: &Document) -> Result<(f64, f64), Error> {
     let problem = match (&environment.scene.excitation, environment.scene.harmonic()) {
         (Excitation::Force { .. }, _) => {
-            "its excitation is a Force, which shakes scenes of different masses differently: name a scene \
-             with a Sine or Cosine first, or by --environment"
+            concat!(
+                "its excitation is a Force, which shakes scenes of different masses differently: name a \
+                 scene with a Sine or Cosine first, or by ",
+                named!("environment")
+            )
         }
         (_, Some(drive)) => return Ok((drive.frequency_hz, drive.amplitude_g())),
         _ => {
-            "its excitation is no Sine; amplitude and frequency of one are searched: name a scene with a \
-             Sine first, or by --environment"
+            concat!(
+                "its excitation is no Sine; amplitude and frequency of one are searched: name a scene with \
+                 a Sine first, or by ",
+                named!("environment")
+            )
         }
     };
     Err(Error::unfit(environment, problem))

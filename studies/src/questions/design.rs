@@ -8,7 +8,7 @@ use super::{Error, Progress, Simulation, sweep};
 use crate::scene::{Axis, Document, FieldPath, RunSettings, Transducer, find_name, is_whole, read_number};
 use crate::study::{
     BestDesign, BestQuestion, Constraint, DesignRange, Environment, INTERVALS, MOST_FIELDS, Memory, NoBest,
-    Optimum, Read, SUMMARY_FIELDS, SummaryField, Table, Tolerance, best, names, place, quantity,
+    Optimum, Read, SUMMARY_FIELDS, SummaryField, Table, Tolerance, best, named, names, place, quantity,
 };
 use crate::system::files::{canonical, is_file};
 
@@ -190,13 +190,16 @@ impl Best {
                     Some(name) => Error::unfit(
                         document,
                         format!(
-                            "{name} needs a transducer, and the scene has none; name one with --set \
-                             'transducer=Electromagnetic(coupling_v_s_per_m: 5, coil_ohm: 40, load_ohm: 60)'"
+                            "{name} needs a transducer, and the scene has none; name one with {} \
+                             'transducer=Electromagnetic(coupling_v_s_per_m: 5, coil_ohm: 40, load_ohm: 60)'",
+                            named!("set")
                         ),
                     ),
                     None => {
-                        let constrained =
-                            if question.subject_to.is_empty() { "" } else { ", or one of --subject-to" };
+                        let constrained = match question.subject_to.is_empty() {
+                            true => String::new(),
+                            false => format!(", or one of {}", named!("subject_to")),
+                        };
                         let problem = format!(
                             "no design of the range has this result{constrained} in a run that reaches its \
                              end"
@@ -334,8 +337,8 @@ fn tolerance(text: &str, document: &Document) -> Result<Tolerance, Error> {
     if let Some(by) = ends.strip_prefix("+-").or_else(|| ends.strip_prefix('\u{b1}')) {
         let by = by.trim();
         return Err(wrong(format!(
-            "+- is a standard deviation, as in --uncertain of sweep, and these are bounds: write \
-             {field}=-{by}:{by}"
+            "+- is a standard deviation, as in {} of sweep, and these are bounds: write {field}=-{by}:{by}",
+            named!("uncertain")
         )));
     }
     sweep::can_vary(field, document).map_err(wrong)?;

@@ -6,7 +6,7 @@ use crate::dynamics::Model;
 use crate::mechanics::{BuildError, FunctionError};
 use crate::numeric::number_text;
 use crate::scene::{Document, DriveError, Fault, Origin, SceneError};
-use crate::study::{CellFaults, GridError, followed_until};
+use crate::study::{CellFaults, GridError, Said, Spelling, followed_until};
 
 /// Why a question has no answer.
 ///
@@ -41,21 +41,21 @@ pub enum Error {
         /// Its value as given.
         value: String,
         /// What is wrong, and the remedy.
-        problem: String,
+        problem: Said,
     },
     /// The scene is valid, but the question does not apply to it.
     Unfit {
         /// Name of the scene.
         scene: String,
         /// What is missing, and the remedy.
-        problem: String,
+        problem: Said,
     },
     /// The computation gave no answer.
     Failed {
         /// Name of the scene.
         scene: String,
         /// The reason.
-        problem: String,
+        problem: Said,
     },
     /// The question was cancelled.
     Cancelled,
@@ -83,7 +83,7 @@ const MAX_LISTED_CELLS: usize = 8;
 impl Error {
     /// A wrong argument, as a study of a program's own refuses it.
     pub fn argument(name: impl Into<String>, value: impl fmt::Display, problem: impl fmt::Display) -> Self {
-        Self::Argument { name: name.into(), value: value.to_string(), problem: problem.to_string() }
+        Self::Argument { name: name.into(), value: value.to_string(), problem: Said::new(problem) }
     }
 
     /// A wrong number.
@@ -93,12 +93,12 @@ impl Error {
 
     /// A scene to which the question does not apply.
     pub fn unfit(document: &Document, problem: impl fmt::Display) -> Self {
-        Self::Unfit { scene: document.name.clone(), problem: problem.to_string() }
+        Self::Unfit { scene: document.name.clone(), problem: Said::new(problem) }
     }
 
     /// A computation without an answer.
     pub fn failed(document: &Document, problem: impl fmt::Display) -> Self {
-        Self::Failed { scene: document.name.clone(), problem: problem.to_string() }
+        Self::Failed { scene: document.name.clone(), problem: Said::new(problem) }
     }
 
     /// Faults of a scene.
@@ -146,6 +146,10 @@ impl Error {
     /// The message for users of the command line: its remedies name options such as `--until-settled`, where
     /// those of [`faults`](Self::faults) and of `Display` name arguments.
     pub fn message(&self) -> String {
+        self.spelled(Spelling::CommandLine)
+    }
+
+    fn spelled(&self, spelling: Spelling) -> String {
         match self {
             Self::Scene(error) => error.to_string(),
             Self::Cells(cells) => {
@@ -157,9 +161,13 @@ impl Error {
                 let more = (more > 0).then(|| format!("and {more} more cells are wrong"));
                 lines.chain(more).collect::<Vec<_>>().join("\n")
             }
-            Self::Argument { name, value, problem } if value.is_empty() => format!("{name}: {problem}"),
-            Self::Argument { name, value, problem } => format!("{name} = {value}: {problem}"),
-            Self::Unfit { scene, problem } | Self::Failed { scene, problem } => format!("{scene}: {problem}"),
+            Self::Argument { name, value, problem } => {
+                let value = if value.is_empty() { String::new() } else { format!(" = {value}") };
+                format!("{name}{value}: {}", problem.spelled(spelling))
+            }
+            Self::Unfit { scene, problem } | Self::Failed { scene, problem } => {
+                format!("{scene}: {}", problem.spelled(spelling))
+            }
             Self::Cancelled => "cancelled".to_owned(),
         }
     }
@@ -170,11 +178,28 @@ impl Error {
     pub fn problem(&self) -> String {
         match self {
             Self::Argument { problem, .. } | Self::Unfit { problem, .. } | Self::Failed { problem, .. } => {
-                problem.clone()
+                problem.spelled(Spelling::CommandLine)
             }
             Self::Scene(_) | Self::Cells(_) | Self::Cancelled => {
                 self.faults().first().map_or_else(|| self.message(), |fault| fault.problem.clone())
             }
+        }
+    }
+
+    /// The same error for a surface that calls arguments otherwise: each by the first of its two names here and
+    /// by the second there.
+    #[must_use]
+    pub fn renamed(self, names: &[[&'static str; 2]]) -> Self {
+        let named = |problem: &Said| names.iter().fold(problem.clone(), |text, [a, b]| text.renamed(a, b));
+        match self {
+            Self::Argument { name, value, problem } => {
+                let known = names.iter().find(|[here, _]| *here == name);
+                let name = known.map_or(name, |[_, there]| (*there).to_owned());
+                Self::Argument { name, value, problem: named(&problem) }
+            }
+            Self::Unfit { scene, problem } => Self::Unfit { scene, problem: named(&problem) },
+            Self::Failed { scene, problem } => Self::Failed { scene, problem: named(&problem) },
+            other => other,
         }
     }
 
@@ -185,15 +210,15 @@ impl Error {
 }
 
 impl FaultAt {
-    fn new(file: &str, problem: &str) -> Self {
-        let (file, problem) = (file.to_owned(), with_argument_names(problem));
+    fn new(file: &str, problem: impl fmt::Display) -> Self {
+        let (file, problem) = (file.to_owned(), problem.to_string());
         Self { file, line: None, field: String::new(), value: String::new(), problem }
     }
 }
 
 fn scene_faults(error: &SceneError) -> Vec<FaultAt> {
     match error {
-        SceneError::NoSuchScene { spec, .. } => vec![FaultAt::new(spec, &error.to_string())],
+        SceneError::NoSuchScene { spec, .. } => vec![FaultAt::new(spec, error)],
         SceneError::Unreadable { name, problem } => vec![FaultAt::new(name, problem)],
         SceneError::Structure { name, place, problem, .. } => {
             vec![FaultAt { line: Some(place.line), ..FaultAt::new(name, problem) }]
@@ -216,28 +241,9 @@ fn scene_faults(error: &SceneError) -> Vec<FaultAt> {
     }
 }
 
-/// Replaces options of the command line in a text by names of arguments: --until-settled by
-/// `until_settled`. A word is an option if, after brackets and quotes, it begins with two hyphens
-/// and a letter.
-pub(super) fn with_argument_names(text: &str) -> String {
-    let renamed = |word: &str| {
-        let (open, rest) = word.split_at(word.len() - word.trim_start_matches(['(', '\'', '"', '`']).len());
-        let Some(option) =
-            rest.strip_prefix("--").filter(|name| name.starts_with(|c: char| c.is_ascii_lowercase()))
-        else {
-            return word.to_owned();
-        };
-        let end = option.find(|c: char| !(c.is_ascii_alphanumeric() || c == '-')).unwrap_or(option.len());
-        let (name, after) = option.split_at(end);
-        let quote = if open.ends_with(['\'', '"', '`']) { "" } else { "`" };
-        format!("{open}{quote}{}{quote}{after}", name.replace('-', "_"))
-    };
-    text.split_inclusive(char::is_whitespace).map(renamed).collect()
-}
-
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&with_argument_names(&self.message()))
+        f.write_str(&self.spelled(Spelling::Program))
     }
 }
 
@@ -335,19 +341,4 @@ pub(super) fn check_until_settled(until: f64, document: &Document, model: &Model
         return Err(Error::number("until_settled", until, format!("at most {MAX_UNTIL_SETTLED:e} s")));
     }
     Ok(())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::with_argument_names;
-
-    #[test]
-    fn options_become_arguments_and_paths_stay() {
-        assert_eq!(
-            with_argument_names(
-                "take a longer step (--dt)\nor `--until-settled`, --from; not my--scene-2.ron or --2"
-            ),
-            "take a longer step (`dt`)\nor `until_settled`, `from`; not my--scene-2.ron or --2"
-        );
-    }
 }

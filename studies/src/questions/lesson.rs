@@ -6,7 +6,7 @@ use super::{Error, Progress};
 use crate::mechanics::Mechanism;
 use crate::scene::lesson::{Lesson, LessonDocument, Step};
 use crate::scene::{Files, Scene};
-use crate::study::{Lack, LessonReport, Subject, Unjudged, check_lesson, goal_lack, options_that_hold};
+use crate::study::{Lack, LessonReport, Said, Subject, Unjudged, check_lesson, goal_lack, options_that_hold};
 
 /// Runs lessons, and reports whether their tasks and predictions hold.
 #[doc(hidden)]
@@ -23,7 +23,7 @@ impl From<Unjudged> for Error {
         match error {
             Unjudged::Cancelled => Self::Cancelled,
             Unjudged::Scene { .. } => {
-                Self::Failed { scene: "a scene of the lesson".to_owned(), problem: error.to_string() }
+                Self::Failed { scene: "a scene of the lesson".to_owned(), problem: Said::new(error) }
             }
         }
     }

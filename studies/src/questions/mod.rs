@@ -137,6 +137,6 @@ pub use crate::study::accuracy::scene::{AtTolerance, Course, Lateness, StepSize,
 pub use crate::study::{
     Answer, Attractor, Begin, BestDesign, BestQuestion, BranchAnswer, BranchEnd, BranchEvent, Carry, Column,
     Comparison, Estimate, EvenRange, ExponentOptions, FieldRange, ForceComparison, Grid, Identified,
-    Identity, LocusEnd, LocusEvent, MeasuredMotion, OneLocus, Optimum, OrbitAnswer, Rated, Recorded,
+    Identity, LocusEnd, LocusEvent, MeasuredMotion, OneLocus, Optimum, OrbitAnswer, Rated, Recorded, Said,
     Sampling, SectionAt, SectionOptions, Shares, Spread, Table, Thresholds, Tried, Values,
 };

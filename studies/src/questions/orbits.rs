@@ -6,7 +6,7 @@ use crate::numeric::number_text;
 use crate::scene::{Axis, Document, FieldPath, Scene, is_whole};
 use crate::study::{
     Begin, BranchAnswer, BranchEnd, BranchEvent, BranchOptions, Family, FieldRange, NoBasins, NoOrbit,
-    OneLocus, OrbitAnswer, Table, begun, branch, branches_table, loci, loci_table, switched,
+    OneLocus, OrbitAnswer, Table, begun, branch, branches_table, loci, loci_table, named, switched,
 };
 
 /// The periodic orbit near the settled motion of a run, stable or not, with its Floquet multipliers.
@@ -228,8 +228,11 @@ fn check_fields<'a>(
             return Err(wrong_range("both ends are equal; give a range, such as 0.5:2".to_owned()));
         }
         let problem = if is_whole(scene, field) {
-            "this field holds whole numbers, and a branch takes all values between two ends; follow the \
-             motion by `sweep --carry` over it"
+            concat!(
+                "this field holds whole numbers, and a branch takes all values between two ends; follow the \
+                 motion by a `sweep` over it with ",
+                named!("carry")
+            )
         } else if ["run.", "start."].iter().any(|group| field.starts_with(group)) {
             "a periodic motion does not depend on this field; take another one"
         } else if known.contains(&field.as_str()) {

@@ -5,7 +5,9 @@ use std::path::Path;
 
 use super::{Error, Progress};
 use crate::scene::{Channel, ColumnRequest, Measured, Quantity, Timing, read_measured};
-use crate::study::{Identified, Table, Unidentified, damping, force, restitution, restitution_of_times};
+use crate::study::{
+    Identified, Said, Table, Unidentified, damping, force, named, restitution, restitution_of_times,
+};
 
 words! {
     /// What is identified from a record.
@@ -145,13 +147,15 @@ impl Identify {
             ("position_unit", self.position[1].clone(), Force),
         ] {
             if let Some(value) = given.filter(|_| of != only) {
-                let problem = format!("belongs to --of {}, not to --of {}", only.name(), of.name());
+                let problem =
+                    format!("belongs to {0} {1}, not to {0} {2}", named!("of"), only.name(), of.name());
                 return Err(Error::argument(name, value, problem));
             }
         }
         for (name, given) in ["from", "to"].into_iter().zip(self.between) {
             if let Some(time) = given.filter(|_| of == Force) {
-                return Err(Error::number(name, time, "cuts a record over time; --of force has none"));
+                let problem = format!("cuts a record over time; {} force has none", named!("of"));
+                return Err(Error::number(name, time, problem));
             }
         }
         for (name, time) in ["from", "to"].into_iter().zip(self.between) {
@@ -162,7 +166,8 @@ impl Identify {
         if let [Some(from), Some(to)] = self.between
             && !(from < to)
         {
-            return Err(Error::argument("from", from, format!("must lie before --to, which is {to}")));
+            let problem = format!("must lie before {}, which is {to}", named!("to"));
+            return Err(Error::argument("from", from, problem));
         }
         if let Some(points) = self.points.filter(|points| !(4..=100_000).contains(points)) {
             return Err(Error::argument("points", points, "give 4 to 100000 points"));
@@ -173,11 +178,12 @@ impl Identify {
     /// Refuses a unit without its column, and options that contradict `impact_times`.
     fn check_restitution(&self) -> Result<(), Error> {
         if let [None, Some(unit)] = &self.base {
-            let problem = "is the unit of a column: name the column by --base";
+            let problem = format!("is the unit of a column: name the column by {}", named!("base"));
             return Err(Error::argument("base_unit", unit, problem));
         }
         if let Some(base) = self.base[0].as_ref().filter(|_| self.impact_times) {
-            let problem = "a record of --impact-times has no displacement; leave one of them out";
+            let problem =
+                format!("a record of {} has no displacement; leave one of them out", named!("impact_times"));
             return Err(Error::argument("base", base, problem));
         }
         Ok(())
@@ -187,15 +193,16 @@ impl Identify {
         let request = |quantities: &[Quantity], [column, unit]: &[Option<String>; 2], names| {
             ColumnRequest::by_options(quantities, column, unit, names)
         };
-        let times = request(&[Quantity::Time], &self.time, ["--time", "--time-unit"]);
-        let values_request = |quantities: &[_]| request(quantities, &self.column, ["--column", "--unit"]);
+        let times = request(&[Quantity::Time], &self.time, [named!("time"), named!("time_unit")]);
+        let values_request =
+            |quantities: &[_]| request(quantities, &self.column, [named!("column"), named!("unit")]);
         let answer = |found: Result<Identified, Unidentified>, timing, across, values, columns| {
             let found = found.map_err(|problem| about(path, problem))?;
             Ok(IdentifyAnswer { found, timing, across, values, columns })
         };
         match self.of {
             WhatToIdentify::Force => {
-                let names = ["--position", "--position-unit"];
+                let names = [named!("position"), named!("position_unit")];
                 let positions = request(&[Quantity::Displacement], &self.position, names);
                 let (record, columns) = read(path, &[positions, values_request(&[Quantity::Force])])?;
                 let [x, values] = record.channels;
@@ -220,7 +227,10 @@ impl Identify {
             WhatToIdentify::Restitution => {
                 let values = values_request(&[Quantity::Displacement]);
                 let ([times, values], base, columns) = if self.base[0].is_some() {
-                    let base = request(&[Quantity::Acceleration], &self.base, ["--base", "--base-unit"]);
+                    let base = {
+                        let names = [named!("base"), named!("base_unit")];
+                        request(&[Quantity::Acceleration], &self.base, names)
+                    };
                     let (record, columns) = read(path, &[times, values, base])?;
                     let [times, values, base] = self.cut(record, path)?.channels;
                     ([times, values], Some(base.values), columns)
@@ -242,8 +252,9 @@ impl Identify {
         let to = times.partition_point(|t| *t <= to.unwrap_or(f64::INFINITY));
         if to < from + 2 {
             let (first, last) = (times[0], times[times.len() - 1]);
-            let few = "less than 2 samples from --from to --to; the record goes";
-            return Err(about(path, format!("{few} from {first} to {last} s")));
+            let (from, to) = (named!("from"), named!("to"));
+            let few = format!("less than 2 samples from {from} to {to}");
+            return Err(about(path, format!("{few}; the record goes from {first} to {last} s")));
         }
         for channel in &mut record.channels {
             channel.values = channel.values[from..to].to_vec();
@@ -259,5 +270,5 @@ fn read<const N: usize>(path: &Path, requests: &[ColumnRequest; N]) -> Result<(M
 }
 
 fn about(path: &Path, problem: impl Display) -> Error {
-    Error::Unfit { scene: path.display().to_string(), problem: problem.to_string() }
+    Error::Unfit { scene: path.display().to_string(), problem: Said::new(problem) }
 }

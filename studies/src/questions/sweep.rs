@@ -8,7 +8,7 @@ use crate::scene::{
 };
 use crate::study::{
     self, Carry, Cell, DIRECTION, Draws, Grid, MAX_CELLS, MAX_DRAWS, Over, STANDARD_COLUMNS, SUMMARY_FIELDS,
-    SummaryField, SweepOptions, Table, Variation, share_in_range,
+    SummaryField, SweepOptions, Table, Variation, named, share_in_range,
 };
 
 /// What the settled motion does in each cell of a grid over fields: one run and one row per cell.
@@ -227,7 +227,10 @@ pub fn draws(
     let Uncertain { fields, draws, seed } = uncertain;
     if fields.is_empty() {
         let given = draws.map(|draws| ("draws", draws)).or(seed.map(|seed| ("seed", seed)));
-        let problem = "nothing is uncertain; name a field with --uncertain, such as damping.xi=+-0.002";
+        let problem = format!(
+            "nothing is uncertain; name a field with {}, such as damping.xi=+-0.002",
+            named!("uncertain")
+        );
         return given
             .map_or(Ok(Draws::default()), |(name, value)| Err(Error::argument(name, value, problem)));
     }
@@ -254,7 +257,7 @@ pub fn draws(
         laws.push(law);
     }
     if carry.is_some() {
-        let problem = "a walk with --carry has no bands; leave one of the two out";
+        let problem = format!("a walk with {} has no bands; leave one of the two out", named!("carry"));
         return Err(Error::argument("uncertain", &fields[0], problem));
     }
     if let Some(draws) = draws.filter(|draws| !(1..=MAX_DRAWS).contains(draws)) {
@@ -313,7 +316,7 @@ pub(super) fn can_vary(field: &str, document: &Document) -> Result<(), String> {
     if FieldPath::new(field).get(&document.scene).is_none() {
         // the error of `parse` lists the fields
         Axis::parse(&format!("{field}=1"), &document.scene)?;
-        return Err("the scene leaves this field out; give it a value with --set".to_owned());
+        return Err(format!("the scene leaves this field out; give it a value with {}", named!("set")));
     }
     if is_whole(&document.scene, field) {
         let problem = "holds whole numbers, which do not come out a little otherwise; vary another field";

@@ -17,7 +17,7 @@ use crate::study::grid_study::{AHEAD, fields};
 use crate::study::walk::without_a_period;
 use crate::study::{
     Answered, Carry, Cell, Grid, GridStudy, Heading, Over, Question, Remark, Row, Scenes, Streamed, Study,
-    Table, Tally, counted, number, study_methods, whole,
+    Table, Tally, counted, named, number, study_methods, whole,
 };
 
 /// The state once a forcing period or at every impact; over a field the bifurcation diagram.
@@ -121,20 +121,31 @@ impl Study for Section {
 
     fn check(&self, scenes: &Scenes) -> Result<(), Error> {
         let wrong = |name: &str, value: &str, problem: &str| Err(Error::argument(name, value, problem));
-        let together = "--skip and --keep belong together: give both, in forcing periods";
+        let together = format!(
+            "{} and {} belong together: give both, in forcing periods",
+            named!("skip"),
+            named!("keep")
+        );
         match (self.at, self.phase_deg, self.carry) {
             (SectionKind::Impacts, Some(degrees), _) => {
-                let problem = "belongs to states once a period: leave it out, or leave out --at impacts";
-                return wrong("phase_deg", &degrees.to_string(), problem);
+                let problem = format!(
+                    "belongs to states once a period: leave it out, or leave out {} impacts",
+                    named!("at")
+                );
+                return wrong("phase_deg", &degrees.to_string(), &problem);
             }
             (.., Some(carry)) if scenes.grid.axes().is_empty() => {
-                return wrong("carry", carry.name(), "walks a field: name one by --over");
+                return wrong(
+                    "carry",
+                    carry.name(),
+                    &format!("walks a field: name one by {}", named!("over")),
+                );
             }
             (_, degrees, _) => phase(degrees.unwrap_or(0.0))?,
         };
         match (self.skip, self.keep) {
-            (Some(periods), None) => wrong("skip", &periods.to_string(), together),
-            (None, Some(periods)) => wrong("keep", &periods.to_string(), together),
+            (Some(periods), None) => wrong("skip", &periods.to_string(), &together),
+            (None, Some(periods)) => wrong("keep", &periods.to_string(), &together),
             (Some(periods), _) if periods > MAX_SKIP => {
                 wrong("skip", &periods.to_string(), &format!("skip at most {MAX_SKIP} forcing periods"))
             }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use super::{
-    Cancelled, CellFaults, Cells, Grid, GridStudy, IMPACTS, NoThresholds, Question, Table, Tally, Task,
+    Cancelled, CellFaults, Cells, Grid, GridStudy, IMPACTS, NoThresholds, Question, Said, Table, Tally, Task,
     Values,
 };
 use crate::dynamics::Model;
@@ -226,52 +226,25 @@ impl<Q: Question> Rows for GridStudy<Q> {
     }
 }
 
-/// A sentence about an answer, in which arguments are spelled as they are given.
+/// A sentence about an answer.
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Remark {
-    sentence: Box<dyn Fn(Spelling) -> String + Send + Sync>,
+    /// The sentence.
+    pub text: Said,
     /// Whether it is said even where only errors are wanted.
     pub is_warning: bool,
 }
 
 impl Remark {
-    /// A sentence that names arguments.
-    pub fn spelled(sentence: impl Fn(Spelling) -> String + Send + Sync + 'static) -> Self {
-        Self { sentence: Box::new(sentence), is_warning: false }
-    }
-
     /// A sentence on what went wrong.
     pub fn warning(text: String) -> Self {
         Self { is_warning: true, ..text.into() }
-    }
-
-    /// The sentence.
-    pub fn text(&self, spelling: Spelling) -> String {
-        (self.sentence)(spelling)
     }
 }
 
 impl From<String> for Remark {
     fn from(text: String) -> Self {
-        Self::spelled(move |_| text.clone())
-    }
-}
-
-/// How the arguments of a study are called.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Spelling {
-    /// As options: --until-settled.
-    CommandLine,
-    /// As in a program: `until_settled`.
-    Program,
-}
-
-impl Spelling {
-    /// The argument of this name.
-    pub fn of(self, name: &str) -> String {
-        match self {
-            Self::CommandLine => format!("--{}", name.replace('_', "-")),
-            Self::Program => format!("`{name}`"),
-        }
+        Self { text: Said::new(text), is_warning: false }
     }
 }
 

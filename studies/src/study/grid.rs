@@ -2,6 +2,7 @@
 
 use super::Table;
 use crate::scene::{Axis, Scene, column_names};
+use crate::study::named;
 
 /// Largest number of cells of one sweep: a day on one core at 1 ms per cell.
 pub const MAX_CELLS: u64 = 100_000_000;
@@ -11,7 +12,8 @@ pub const MAX_CELLS: u64 = 100_000_000;
 pub enum GridError {
     /// No axis at all.
     #[error(
-        "there is nothing to sweep: the scene has no `sweep`; name a field with --over FIELD=FROM:TO:STEP"
+        "there is nothing to sweep: the scene has no `sweep`; name a field with {} FIELD=FROM:TO:STEP",
+        named!("over")
     )]
     NoAxes,
     /// More cells than [`MAX_CELLS`].

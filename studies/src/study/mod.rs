@@ -66,6 +66,7 @@ mod map;
 mod measured;
 mod models;
 pub(crate) mod orbit;
+mod said;
 pub(crate) mod settled;
 pub(crate) mod simulate;
 mod slice;
@@ -105,8 +106,8 @@ pub use curve::{
 };
 pub(crate) use curve::{full_curve, shapes, small_amplitude_frequency, stress_warning};
 pub use declared::{
-    Answered, Framing, Heading, Over, PICTURE, Remark, Rows, Scenes, Spelling, Streamed, Study, answer,
-    answer_in, counted, number, whole,
+    Answered, Framing, Heading, Over, PICTURE, Remark, Rows, Scenes, Streamed, Study, answer, answer_in,
+    counted, number, whole,
 };
 pub(crate) use declared::{ColumnOf, column, even, over_fields, study_methods};
 pub(crate) use fields::InJson;
@@ -128,6 +129,8 @@ pub use orbit::{
     Begin, BranchAnswer, BranchEnd, BranchEvent, BranchOptions, FieldRange, LocusEnd, LocusEvent, NoOrbit,
     OneLocus, OrbitAnswer, begun, branch, branches_table, loci, loci_table, orbit, orbit_near, switched,
 };
+pub(crate) use said::named;
+pub use said::{Said, Spelling};
 pub(crate) use settled::followed_until;
 pub use settled::{Standing, lasts, settled, standing};
 pub use simulate::{

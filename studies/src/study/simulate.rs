@@ -6,6 +6,7 @@ use super::Table;
 use crate::dynamics::{Event, Model, Outcome, Output, Request, Sample, Summary};
 use crate::numeric::{Decimal, greatest_common_divisor, short};
 use crate::scene::{Excitation, Harmonic, Scene, TOLERANCES};
+use crate::study::named;
 
 /// When to sample.
 ///
@@ -194,11 +195,13 @@ pub enum TimesError {
     /// A step in s over a duration in s makes too many samples, rounded where they are above 2^53.
     #[error(
         "a step of {0} s over {1} s makes {2} samples; at most {MAX_SAMPLES} fit: \
-         take a longer step (--dt) or name the times (--at)"
+         take a longer step ({dt}) or name the times ({at})",
+        dt = named!("dt"),
+        at = named!("at")
     )]
     TooMany(f64, f64, String),
     /// A time in s beyond the duration of the run.
-    #[error("--at {0} is not within the run, which lasts from 0 to {1} s")]
+    #[error("{at} {0} is not within the run, which lasts from 0 to {1} s", at = named!("at"))]
     Outside(f64, f64),
 }
 

@@ -14,7 +14,8 @@ use crate::output::NoPicture;
 use crate::questions::{Error, Progress, check_until, drive_alone};
 use crate::scene::{Amplitude, Axis, Document, Stops, is_whole};
 use crate::study::{
-    Answered, Grid, Heading, Over, Remark, Scenes, Study, Table, can_cross, number, study_methods, whole,
+    Answered, Grid, Heading, Over, Remark, Scenes, Study, Table, can_cross, named, number, study_methods,
+    whole,
 };
 pub use melnikov::melnikov_threshold;
 use melnikov::{suits_melnikov, with_melnikov};
@@ -233,12 +234,13 @@ impl Threshold {
                 Some((name, value)) => Err(Error::argument(
                     name,
                     value,
-                    "belongs to --probability: give that too, or leave it out",
+                    format!("belongs to {}: give that too, or leave it out", named!("probability")),
                 )),
             };
         };
         let without = |name: &str, value: String| {
-            Err(Error::argument(name, value, "has no meaning with --probability: leave one of them out"))
+            let problem = format!("has no meaning with {}: leave one of them out", named!("probability"));
+            Err(Error::argument(name, value, problem))
         };
         match self.until_settled {
             _ if self.of != Onset::Crossing => return without("of", self.of.name().to_owned()),
@@ -272,13 +274,12 @@ impl Threshold {
     fn too_few(&self, scenes: &Scenes, table: &Table, scan: &Scan, probability: f64) -> Option<Remark> {
         let (rows, last, field) = (without_value(table)?, *scan.values.last()?, scan.field.clone());
         let within = self.within.unwrap_or(scenes.scene().run.duration_s);
-        Some(Remark::spelled(move |spelling| {
-            format!(
-                "{rows}: at {field} = {last} less than a share {probability} of the runs crosses within \
-                 {within} s; give a wider range, or {} a longer time",
-                spelling.of("within")
-            )
-        }))
+        let text = format!(
+            "{rows}: at {field} = {last} less than a share {probability} of the runs crosses within {within} \
+             s; give a wider range, or {} a longer time",
+            named!("within")
+        );
+        Some(text.into())
     }
 
     /// What is searched in the cells of `grid`.
@@ -488,15 +489,14 @@ fn undecided(table: &Table) -> Option<Remark> {
     let words = table.words("undecided");
     let count = words.iter().filter(|word| **word == "true").count();
     let rows = of_rows(count, words.len(), ["is undecided", "are undecided"])?;
-    Some(Remark::spelled(move |spelling| {
-        format!(
-            "{rows}: the answer just below or at the value (without a value, at the end of the range) is not \
-             known: the motion does not repeat in the time for which it is followed, the run ended early, or \
-             there is no valid scene; low and high, where given, are values whose answers are known, and {} \
-             with a longer time may bring them together",
-            spelling.of("until_settled")
-        )
-    }))
+    let text = format!(
+        "{rows}: the answer just below or at the value (without a value, at the end of the range) is not \
+         known: the motion does not repeat in the time for which it is followed, the run ended early, or \
+         there is no valid scene; low and high, where given, are values whose answers are known, and {} with \
+         a longer time may bring them together",
+        named!("until_settled")
+    );
+    Some(text.into())
 }
 
 /// Explains an empty `value`, if a row has one. `blocked` says why no row can have a crossing.
@@ -529,10 +529,7 @@ fn missing(
             format!("{text}; give a wider range or smaller steps").into()
         }
         Searched::Upward { .. } => {
-            let text = tried("");
-            Remark::spelled(move |spelling| {
-                format!("{text}; give a range, {} {field}=FROM:TO", spelling.of("field"))
-            })
+            format!("{}; give a range, {} {field}=FROM:TO", tried(""), named!("field")).into()
         }
     })
 }

@@ -125,5 +125,5 @@ fn a_branch_begins_at_its_own_value_of_the_field() {
 #[test]
 fn a_branch_over_a_field_of_whole_numbers_is_refused() {
     let count = headless("orbit paper --branch mechanism.buckling.count=1:3");
-    refused(count, &["mechanism.buckling.count", "whole numbers", "sweep --carry"]);
+    refused(count, &["mechanism.buckling.count", "whole numbers", "`sweep` over it with --carry"]);
 }

@@ -24,7 +24,8 @@ impl BestDesign {
         if self.seeds == Seeds::Alone {
             lines.push(
                 "the noise has one seed: place and value are those of this seed, and how far those of others \
-                 lie is not known; several seeds say, such as --environment excitation.seed=1,2,3,4,5,6,7,8"
+                 lie is not known; several seeds in the environment say, such as \
+                 excitation.seed=1,2,3,4,5,6,7,8"
                     .to_owned(),
             );
         }

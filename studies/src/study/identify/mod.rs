@@ -16,6 +16,7 @@ use super::{Table, label_and_unit};
 use crate::numeric::{MIN_TURNS, elementary, extent, short};
 pub(super) use crate::numeric::{Turn, turns};
 use crate::scene::unit_ending;
+use crate::study::named;
 use peaks::MIN_SAMPLES;
 use restitution::ENOUGH;
 
@@ -84,7 +85,9 @@ pub enum Unidentified {
     /// Too few oscillations stand out from the noise.
     #[error(
         "{found} turning points stand out from the noise (of standard deviation {noise}); the damping ratio \
-         needs {MIN_TURNS} of a free decay: record longer, pluck harder, or widen --from and --to"
+         needs {MIN_TURNS} of a free decay: record longer, pluck harder, or widen {from} and {to}",
+        from = named!("from"),
+        to = named!("to")
     )]
     FewSwings {
         /// How many were found.
@@ -101,13 +104,17 @@ pub enum Unidentified {
     /// The swing at this time in s has another length in s than the median of those around it.
     #[error(
         "the swing at {0} s takes {1} s where those around it take {2} s: the record has a gap \
-         there or is no free decay in one well; cut it by --from and --to"
+         there or is no free decay in one well; cut it by {from} and {to}",
+        from = named!("from"),
+        to = named!("to")
     )]
     Uneven(String, String, String),
     /// Swings about places that differ, from this time in s on.
     #[error(
         "the middle of the swings moves at {0} s by more than a quarter of a swing: the motion changes \
-         wells there, or the sensor moved; cut the record by --from and --to"
+         wells there, or the sensor moved; cut the record by {from} and {to}",
+        from = named!("from"),
+        to = named!("to")
     )]
     Moved(String),
     /// Too few swings are left beside those with flat tops.
@@ -131,19 +138,23 @@ pub enum Unidentified {
     )]
     CutOff(usize, String),
     /// The turning points follow no decay.
-    #[error("the turning points follow no decaying oscillation: cut the record by --from and --to")]
+    #[error("the turning points follow no decaying oscillation: cut the record by {from} and {to}", from = named!("from"), to = named!("to"))]
     NoDecay,
     /// No impact was found in values with this noise, in SI.
     #[error(
         "no turning point is an impact: at none does the velocity jump by more than noise (of standard \
          deviation {0}) and a smooth turn explain. Impacts show where the flights after them hold \
-         {ENOUGH} samples: sample faster, or cut the record by --from and --to"
+         {ENOUGH} samples: sample faster, or cut the record by {from} and {to}",
+        from = named!("from"),
+        to = named!("to")
     )]
     NoImpact(String),
     /// Contacts, and those of them at which samples are missing.
     #[error(
         "{0} contacts with a stop, but at {1} of them samples are missing: record without gaps, or cut the \
-         record by --from and --to"
+         record by {from} and {to}",
+        from = named!("from"),
+        to = named!("to")
     )]
     Missing(usize, usize),
     /// The rebounds are too short.
@@ -175,7 +186,7 @@ pub enum Unidentified {
     #[error(
         "{0} samples are too few for {1} points of a curve: {remedy}",
         remedy = match *.1 > force::LEAST_POINTS {
-            true => "take fewer by --points",
+            true => concat!("take fewer by ", named!("points")),
             false => "it has at least that many, each with samples of every direction beside it: record more",
         }
     )]
