@@ -106,7 +106,7 @@ def ask(
     arguments: dict[str, Any],
     threads: int | None = None,
     progress: _Told = None,
-) -> Answer: ...
+) -> tuple[Answer, list[Answer]]: ...
 def orbit(
     scene: Simulation,
     period: int | None = None,
@@ -139,14 +139,6 @@ def locus(
     progress: _Told = None,
     begin: tuple[float, float, float] | int | None = None,
 ) -> Answer: ...
-def basins(
-    scene: Simulation,
-    x_mm: tuple[float, float, int],
-    v: tuple[float, float, int],
-    random: tuple[int, int] | None = None,
-    threads: int | None = None,
-    progress: _Told = None,
-) -> tuple[Answer, Answer]: ...
 def compare(
     scene: Simulation,
     name: str,

@@ -95,13 +95,13 @@ def _uncertain(field: str, law: Any) -> str:
     return f"{field}={_value(value)}+-{_value(sigma)}"
 
 
-def _starts(name: str, value: Any, drawn: bool) -> tuple[float, float, int]:
+def _starts(name: str, value: Any, drawn: bool) -> tuple[float, float, int] | tuple[float, float]:
     """Return the range of starts and how many; drawn at random they need no number."""
     low, high, *number = _entries(name, value, "(first, last, count)", *((2, 3) if drawn else (3,)))
     count = number[0] if number else 1.0
     if not (count.is_integer() and 0 <= count < 2**32):
         raise _wrong(name, _shown(value), "give a whole number of starts in (first, last, count)")
-    return low, high, int(count)
+    return (low, high) if drawn else (low, high, int(count))
 
 
 class _Bar:
@@ -224,7 +224,7 @@ class Scene(Studies, Mapping[str, Any]):
         if axes:
             given["over"] = axes
         with _Told(progress, parts) as told:
-            answer = _interwell.ask(study, self._simulation, given, _count("threads", threads), told)
+            answer, _ = _interwell.ask(study, self._simulation, given, _count("threads", threads), told)
         return Grid(answer, arrays) if arrays and cells else Table(answer)
 
     @classmethod
@@ -939,15 +939,16 @@ class Scene(Studies, Mapping[str, Any]):
         >>> weak.basins((-4, 4, 5), (-0.2, 0.2, 3)).attractors["side"]
         array(['left', 'right'], dtype='<U5')
         """
-        seeds = (_count("random", random, 2**64) or 0, _count("seed", seed, 2**64) or 0)
-        drawn = None if random is None else seeds
-        starts_x, starts_v = (
-            _starts(name, given, random is not None)
-            for name, given in [("x_mm", x_mm), ("v_m_per_s", v_m_per_s)]
-        )
+        drawn, seed = random is not None, _whole("seed", seed, 2**64)
+        arguments: dict[str, Any] = {
+            "x_mm": _starts("x_mm", x_mm, drawn),
+            "v": _starts("v_m_per_s", v_m_per_s, drawn),
+        }
+        if drawn:
+            arguments |= {"random": _count("random", random, 2**64), "seed": seed}
         with _Told(progress, "starts followed") as told:
-            starts, attractors = _interwell.basins(
-                self._simulation, starts_x, starts_v, drawn, _count("threads", threads), told
+            starts, (attractors,) = _interwell.ask(
+                "basins", self._simulation, arguments, _count("threads", threads), told
             )
         return Basins(starts, attractors)
 

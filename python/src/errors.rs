@@ -4,6 +4,10 @@ use interwell_studies::questions::Error;
 use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
 
+/// Arguments that Python calls otherwise than the library, some of which are its keywords.
+const NAMES: [[&str; 2]; 5] =
+    [["from", "start"], ["to", "end"], ["v", "v_m_per_s"], ["plot_y", "y"], ["ranges", "x"]];
+
 /// The exception for an error: `SceneError` with its faults where scene or arguments are wrong,
 /// `ComputationError` where there is no answer.
 pub fn raised(py: Python<'_>, error: &Error) -> PyErr {
@@ -12,8 +16,7 @@ pub fn raised(py: Python<'_>, error: &Error) -> PyErr {
     }
     let exception = || -> PyResult<PyErr> {
         let errors = py.import("interwell._errors")?;
-        // the library's names are keywords of Python
-        let error = error.clone().renamed(&[["from", "start"], ["to", "end"]]);
+        let error = error.clone().renamed(&NAMES);
         let message = error.to_string();
         if !error.is_wrong_input() {
             return Ok(PyErr::from_value(errors.getattr("ComputationError")?.call1((message,))?));

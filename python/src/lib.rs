@@ -27,7 +27,6 @@ fn _interwell(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(motion::orbit, module)?)?;
     module.add_function(wrap_pyfunction!(motion::branch, module)?)?;
     module.add_function(wrap_pyfunction!(motion::locus, module)?)?;
-    module.add_function(wrap_pyfunction!(motion::basins, module)?)?;
     module.add_function(wrap_pyfunction!(motion::compare, module)?)?;
     module.add_function(wrap_pyfunction!(motion::best, module)?)?;
     module.add_function(wrap_pyfunction!(record::identify, module)?)?;

@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 
 use interwell_kernel::dynamics::MapState;
-use interwell_studies::output::{basins_chart, branch_chart, comparison_chart, loci_chart};
+use interwell_studies::output::{branch_chart, comparison_chart, loci_chart};
 use interwell_studies::questions::{
-    Basins, Begin, Best, Branch, BranchEvent, Compare, FieldRange, Locus, Orbit,
+    Begin, Best, Branch, BranchEvent, Compare, FieldRange, Locus, Orbit,
 };
 use pyo3::prelude::*;
 
@@ -106,28 +106,6 @@ pub fn locus(
     let found = work(py, &way, |progress| question.run(&scene.inner, progress))?;
     let answer = Answer::new(py, found.table(), scene.caption()).told(found.remarks());
     Ok(answer.drawn(move |_, asked| Ok(loci_chart(&found.loci, phase_deg, asked.ranges))))
-}
-
-/// A row a start, and a row an attractor.
-#[pyfunction]
-#[pyo3(signature = (scene, x_mm, v, random=None, threads=None, progress=None))]
-pub fn basins(
-    scene: &Simulation,
-    py: Python<'_>,
-    x_mm: (f64, f64, u64),
-    v: (f64, f64, u64),
-    random: Option<(u64, u64)>,
-    threads: Option<usize>,
-    progress: Option<Py<PyAny>>,
-) -> PyResult<(Answer, Answer)> {
-    let question = Basins { random, ..Basins::of(x_mm, v) };
-    let found = work(py, &Way { threads, progress }, |progress| {
-        question.run(&scene.inner, progress).map_err(|error| error.renamed(&[["v", "v_m_per_s"]]))
-    })?;
-    let attractors = Answer::new(py, found.attractors(), scene.caption());
-    let starts = Answer::new(py, found.table(), scene.caption()).told(found.answer.words());
-    let starts = starts.drawn(move |_, _| Ok(basins_chart(&found.basins, &found.answer)));
-    Ok((starts, attractors))
 }
 
 /// This scene, called `name`, beside others under its sine.

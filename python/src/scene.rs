@@ -223,7 +223,7 @@ impl Simulation {
             };
             let picture = RunPicture { panels, ranges: asked.ranges, until_settled };
             let progress = Progress::none().stopped_by(asked.cancel);
-            picture.chart(&shown, &progress).map_err(|error| error.renamed(&[["ranges", "x"]]))
+            picture.chart(&shown, &progress)
         };
         Ok(Run {
             samples: Py::new(py, Answer::new(py, found.samples, self.caption()).drawn(drawn))?,

@@ -53,9 +53,28 @@ pub fn run<S: Study>(options: &Arguments<S>, common: &Common) -> Result<(), Fail
     let mechanism = mechanism_of_all(&document, &grid, common, &warnings)?;
     let scenes = Scenes { mechanism: mechanism.as_ref(), ..scenes };
     let mut outputs = outputs(scene, &document, common)?.with_picture(picture)?;
-    let Answered { table, remarks, chart, .. } =
+    let files = study.files();
+    for (option, path) in &files {
+        outputs = outputs.with(Output::further(option), Some(path))?;
+    }
+    if let (false, Some(forecast)) = (common.quiet, study.forecast(&scenes)?) {
+        say(&forecast);
+    }
+    let Answered { table, parts, beside, remarks, chart, manifest } =
         ask(study.parts(&scenes), common, |progress| study.answer(&scenes, progress))?;
-    outputs.table(Output::DATA, &table.without(IMPACTS))?;
+    match parts {
+        Some((count, part)) => {
+            outputs.table(Output::DATA, &part(0, 0))?;
+            for begin in (0..count).step_by(ROWS) {
+                interrupt::check()?;
+                outputs.write(Output::DATA, rows(&part(begin, begin + ROWS), 0..ROWS))?;
+            }
+        }
+        None => outputs.table(Output::DATA, &table.without(IMPACTS))?,
+    }
+    for ((option, _), table) in files.iter().zip(&beside) {
+        outputs.table(Output::further(option), table)?;
+    }
     for remark in remarks {
         let text = format!("{}: {}", document.name, remark.text.spelled(Spelling::CommandLine));
         if remark.is_warning { say(&text) } else { common.say(&text) }
@@ -63,8 +82,13 @@ pub fn run<S: Study>(options: &Arguments<S>, common: &Common) -> Result<(), Fail
     if let Some(chart) = chart {
         outputs.draw(picture, &document, |ranges| Ok(chart(&table, &framing(ranges))?))?;
     }
-    outputs.finish_rows(&document, common.jobs())
+    let Some(manifest) = manifest else { return outputs.finish_rows(&document, common.jobs()) };
+    outputs.manifest(Some(&document), common.jobs(), |made| Ok(manifest(made)))?;
+    outputs.finish()
 }
+
+/// Rows of an answer in parts that are made and written at a time.
+const ROWS: usize = 1 << 14;
 
 fn framing(ranges: interwell::output::Ranges) -> Framing<'static> {
     Framing { quantity: None, ranges, cancel: interrupt::listen() }

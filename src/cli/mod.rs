@@ -1,7 +1,6 @@
 //! The command line: reads arguments, runs a study, writes its table. Nothing is computed here.
 
 mod accuracy;
-mod basins;
 mod best;
 mod check;
 mod compare;
@@ -45,7 +44,7 @@ macro_rules! declared {
     )*};
 }
 
-declared!(escape: Escape exponents: Exponents section: Section spectrum: Spectrum threshold: Threshold);
+declared!(basins: Basins escape: Escape exponents: Exponents section: Section spectrum: Spectrum threshold: Threshold);
 
 pub use failure::Failure;
 pub use options::{Options, command_names};

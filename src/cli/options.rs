@@ -146,8 +146,7 @@ commands! {
     /// The values of some fields at which a result is largest, in one environment or several, with margins
     best Best " [SCENE] --over FIELD=A:B";
     spectrum Spectrum " [SCENE]" asks Spectrum ignores "jobs";
-    /// The attractor that each of many starts goes to: CSV with a row for each start
-    basins Basins " [SCENE] --x-mm A:B:N --v A:B:N";
+    basins Basins " [SCENE] --x-mm A:B:N --v A:B:N" asks Basins;
     /// The periodic motion near that of a run, with its multipliers; or a branch of motions over a field
     orbit Orbit " [SCENE]" ignores "jobs";
     exponents Exponents " [SCENE]" asks Exponents;

@@ -33,7 +33,6 @@ impl Output {
     pub const EVENTS: Self = Self("--events");
     pub const SUMMARY: Self = Self("--summary");
     pub const COMPARISON: Self = Self("--comparison");
-    pub const ATTRACTORS: Self = Self("--attractors");
     pub const LANDSCAPE: Self = Self("--landscape");
     pub const SHAPES: Self = Self("--shapes");
     pub const SHAPES_PLOT: Self = Self("--shapes-plot");
@@ -42,6 +41,11 @@ impl Output {
     pub const CONTACT: Self = Self("--contact");
     pub const CONTACT_PLOT: Self = Self("--contact-plot");
     pub const LESSON: Self = Self("--new");
+
+    /// A further table of a study, called as its option.
+    pub const fn further(option: &'static str) -> Self {
+        Self(option)
+    }
 
     /// The option, as messages name it.
     pub fn option(self) -> &'static str {

@@ -19,8 +19,8 @@ use crate::output::{
     sweep_chart, well_chart,
 };
 use crate::questions::{
-    Accuracy, Basins, Carry, Compare, Curve, EvenRange, Grid, Progress, Scheme, Section, Signal, Simulation,
-    Spectrum, Sweep,
+    Accuracy, Basins, Carry, Compare, Curve, Grid, Progress, Scheme, Section, Signal, Simulation, Spectrum,
+    Sweep,
 };
 use crate::scene::{Document, FieldPath, arguments};
 use interwell_studies::study::{
@@ -192,9 +192,8 @@ impl Drawing<'_> {
     }
 
     fn basins(&self, x_mm: (f64, f64), v: (f64, f64)) -> Result<Chart> {
-        let even = |(from, to): (f64, f64)| EvenRange { from, to, count: STARTS };
-        let question = Basins { x_mm: even(x_mm), v: even(v), random: None };
-        let begun = question.begin(question.starts()?, &self.document, &self.mechanism()?)?;
+        let even = |(from, to): (f64, f64)| (from, to, STARTS);
+        let begun = Basins::of(even(x_mm), even(v)).begin(&self.document, &self.mechanism()?)?;
         let found = Basins::followed(begun.checked(), &self.progress, None)?;
         Ok(basins_chart(&found.basins, &found.answer))
     }

@@ -12,7 +12,7 @@ use crate::app::task::{Background, Each, Question, Uncompared, progress, told};
 use crate::app::words::numbers::decimal;
 use crate::output::{Chart, basins_chart, suited_unit};
 use crate::questions::{
-    Answer, Basins, BasinsAnswer, Error, EvenRange, Signal, Spectrum, SpectrumAnswer, longest_wait, walks,
+    Answer, Basins, BasinsAnswer, Error, Signal, Spectrum, SpectrumAnswer, longest_wait, walks,
 };
 use crate::scene::{Axis, FieldPath, Scene, Start, SweepAxis};
 use interwell_studies::study::{Direction, Visit};
@@ -226,10 +226,10 @@ impl Question for BasinsQuestion {
 impl BasinsQuestion {
     /// The levels, of which the last is returned.
     fn levels(&self, cancel: &AtomicBool, each: &(dyn Fn(Level) + Sync)) -> Result<Level, Error> {
-        let range = |(from, to): (f64, f64)| EvenRange { from, to, count: self.starts };
-        let question = Basins { x_mm: range(self.x_mm), v: range(self.v), random: None };
+        let range = |(from, to): (f64, f64)| (from, to, self.starts);
+        let question = Basins::of(range(self.x_mm), range(self.v));
         let Prepared { of, mechanism, .. } = &self.of;
-        let begun = question.begin(question.starts()?, &of.document(), mechanism)?.checked();
+        let begun = question.begin(&of.document(), mechanism)?.checked();
         let per_speed = suited_unit("m/s", [self.v.0, self.v.1].into_iter()).0;
         let level = |basins: &_, answer: Answer| Level {
             chart: basins_chart(basins, &answer),

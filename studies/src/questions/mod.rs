@@ -97,6 +97,7 @@ mod remarks;
 mod simulation;
 mod sweep;
 
+pub use crate::basins::{Basins, BasinsAnswer};
 pub use crate::escape::{Escape, Until};
 pub use crate::exponents::{Exponents, Lyapunov};
 pub use crate::section::{Section, SectionKind};
@@ -115,7 +116,7 @@ pub(crate) use grid::{check_until, drive_alone, settles};
 #[doc(hidden)]
 pub use lesson::{JudgedStep, check_lessons};
 pub(crate) use motion::may_have_circuit;
-pub use motion::{Basins, BasinsAnswer, Curve, FlexuresAnswer};
+pub use motion::{Curve, FlexuresAnswer};
 pub(crate) use orbits::phase;
 pub use orbits::{Branch, BranchesAnswer, Locus, LocusAnswer, Orbit};
 #[doc(hidden)]

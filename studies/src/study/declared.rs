@@ -2,6 +2,7 @@
 
 use std::convert::Infallible;
 use std::ops::RangeInclusive;
+use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
@@ -50,6 +51,11 @@ pub trait Study: clap::Args + serde::de::DeserializeOwned + Clone + Default + Se
     /// Checks the arguments, before anything is run.
     fn check(&self, scenes: &Scenes) -> Result<(), Error>;
 
+    /// What to know before a long computation; asked where somebody waits for it.
+    fn forecast(&self, _scenes: &Scenes) -> Result<Option<String>, Error> {
+        Ok(None)
+    }
+
     /// Answers the study.
     ///
     /// Precondition: [`check`](Self::check) found no fault.
@@ -58,6 +64,11 @@ pub trait Study: clap::Args + serde::de::DeserializeOwned + Clone + Default + Se
     /// The rows of a grid that are written as they come, in place of an [`answer`](Self::answer).
     fn streamed(&self, _scenes: &Scenes, _progress: &Progress) -> Result<Option<Streamed>, Error> {
         Ok(None)
+    }
+
+    /// The files that the further tables of an answer go to, in their order, each with its option.
+    fn files(&self) -> Vec<(&'static str, &Path)> {
+        Vec::new()
     }
 
     /// Checks whether an answer over this grid can be drawn.
@@ -95,16 +106,18 @@ impl<'a> Scenes<'a> {
         &self.document.scene
     }
 
+    /// The mechanism of the scene itself.
+    pub(crate) fn mechanism(&self) -> Result<Arc<Mechanism>, Error> {
+        if let Some(mechanism) = self.mechanism {
+            return Ok(Arc::clone(mechanism));
+        }
+        let built = Mechanism::build(&self.scene().mechanism, &self.document.files);
+        built.map(Arc::new).map_err(|error| Error::unbuilt(self.document, error))
+    }
+
     /// The model of the scene itself.
     pub(crate) fn model(&self) -> Result<Model, Error> {
-        let mechanism = match self.mechanism {
-            Some(mechanism) => Arc::clone(mechanism),
-            None => {
-                let built = Mechanism::build(&self.scene().mechanism, &self.document.files);
-                Arc::new(built.map_err(|error| Error::unbuilt(self.document, error))?)
-            }
-        };
-        let model = Model::build(self.scene(), mechanism);
+        let model = Model::build(self.scene(), self.mechanism()?);
         model.map_err(|faults| Error::faults_of(self.document, faults))
     }
 
@@ -124,13 +137,25 @@ impl<'a> Scenes<'a> {
 
 /// An answer: its table, what that does not say, and how it is drawn.
 pub struct Answered {
-    /// The table.
+    /// The table, without rows if they are made in [`parts`](Self::parts).
     pub table: Table,
+    /// The rows where there are very many.
+    pub parts: Option<Parts>,
+    /// Further tables.
+    pub beside: Vec<Table>,
     /// What the table does not say.
     pub remarks: Vec<Remark>,
     /// Draws the table, where it can be drawn.
     pub chart: Option<Draw>,
+    /// Makes the manifest of the rows, where it has more than that of any table.
+    pub manifest: Option<Documented>,
 }
+
+/// Rows that are made where they are needed: their number, and those from one to before another.
+pub type Parts = (usize, Box<dyn Fn(usize, usize) -> Table + Send + Sync>);
+
+/// Makes a manifest.
+pub type Documented = Box<dyn Fn(&Manifest) -> String + Send + Sync>;
 
 /// Makes the chart of a table.
 pub type Draw = Box<dyn Fn(&Table, &Framing) -> Result<Chart, Error> + Send + Sync>;
@@ -138,7 +163,31 @@ pub type Draw = Box<dyn Fn(&Table, &Framing) -> Result<Chart, Error> + Send + Sy
 impl Answered {
     /// An answer of one table.
     pub fn new(table: Table) -> Self {
-        Self { table, remarks: Vec::new(), chart: None }
+        Self { table, parts: None, beside: Vec::new(), remarks: Vec::new(), chart: None, manifest: None }
+    }
+
+    /// An answer of this number of rows, which `part` makes.
+    pub(crate) fn in_parts(
+        rows: usize,
+        part: impl Fn(usize, usize) -> Table + Send + Sync + 'static,
+    ) -> Self {
+        Self { parts: Some((rows, Box::new(part))), ..Self::new(Table::new()) }
+    }
+
+    /// The whole table.
+    pub fn into_table(self) -> Table {
+        self.parts.map_or(self.table, |(rows, part)| part(0, rows))
+    }
+
+    /// The same with a further table.
+    pub(crate) fn beside(mut self, table: Table) -> Self {
+        self.beside.push(table);
+        self
+    }
+
+    /// The same with a manifest of its own.
+    pub(crate) fn documented(self, manifest: impl Fn(&Manifest) -> String + Send + Sync + 'static) -> Self {
+        Self { manifest: Some(Box::new(manifest)), ..self }
     }
 
     /// The same with remarks.
@@ -305,6 +354,11 @@ pub struct Heading {
     pub name: &'static str,
     /// What it means, as the documents say it.
     pub words: &'static str,
+}
+
+/// The headings of columns.
+pub(crate) fn headings<R>(columns: Vec<ColumnOf<R>>) -> Vec<Heading> {
+    columns.into_iter().map(|column| column.heading).collect()
 }
 
 /// The values of a column from what its rows are made of.

@@ -50,7 +50,6 @@ pub(crate) use words;
 pub mod accuracy;
 mod alternatives;
 pub(crate) mod amplitudes;
-mod basins;
 mod best;
 pub(crate) mod bisection;
 mod contact;
@@ -81,6 +80,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::dynamics::{Outcome, Run};
 
+pub use crate::basins::{Answer, Attractor, BasinMap, EvenRange, NoBasins, Shares, Starts};
 pub use crate::escape::{NoKramers, depopulation, kramers_rate};
 pub use crate::exponents::{Estimate, ExponentOptions, Lyapunov, NoExponents, average_exponents, exponents};
 pub use crate::section::{IMPACTS, MAX_SECTION, SectionAt, SectionOptions, Sections, section};
@@ -91,8 +91,6 @@ pub use alternatives::{Alternative, Rated, alternatives};
 pub(crate) use alternatives::{SEARCHED_SPAN, comparison_parts, comparison_table};
 pub(crate) use amplitudes::stops_that_cross;
 pub use amplitudes::{Thresholds, can_cross, thresholds};
-pub(crate) use basins::StartsError;
-pub use basins::{Answer, Attractor, BasinMap, EvenRange, NoBasins, Shares, Starts};
 pub use best::{
     BestDesign, BestQuestion, Constraint, DesignRange, DesignRun, Environment, Memory, NoBest, Optimum,
     Results, Seeds, Spread, Tolerance, Tried, best, names, place, quantity,
@@ -109,7 +107,7 @@ pub use declared::{
     Answered, Framing, Heading, Over, PICTURE, Remark, Rows, Scenes, Streamed, Study, answer, answer_in,
     counted, number, whole,
 };
-pub(crate) use declared::{ColumnOf, column, even, over_fields, study_methods};
+pub(crate) use declared::{ColumnOf, column, even, headings, over_fields, study_methods};
 pub(crate) use fields::InJson;
 pub use fields::{RMS_VELOCITY, Read, SUMMARY_FIELDS, SummaryField};
 pub use grid::{Grid, GridError, Levels, MAX_CELLS, STRIDES};
@@ -177,15 +175,15 @@ impl Task<'_> {
 }
 
 /// A run unless it was cancelled.
-fn finished(run: Run) -> Option<Run> {
+pub(crate) fn finished(run: Run) -> Option<Run> {
     (!matches!(run.summary.outcome, Outcome::Cancelled { .. })).then_some(run)
 }
 
 /// The result of a part of a study that can be cancelled.
-type Result<T, E = Cancelled> = std::result::Result<T, E>;
+pub(crate) type Result<T, E = Cancelled> = std::result::Result<T, E>;
 
 /// Displacement in m and velocity in m/s.
-type State = (f64, f64);
+pub(crate) type State = (f64, f64);
 
 /// The error of a study that was cancelled.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 
 use clap::{Arg, ArgAction, Command};
-use interwell::questions::{Escape, Exponents, Section, Spectrum, Threshold};
+use interwell::questions::{Basins, Escape, Exponents, Section, Spectrum, Threshold};
 use interwell_studies::study::{Heading, PICTURE, Study};
 
 /// What is made of one study.
@@ -20,9 +20,9 @@ fn made<S: Study>() -> Made {
     Made { name: S::NAME, method: method::<S>(), has_method: !S::PYTHON.is_empty(), tables: S::columns() }
 }
 
-fn all() -> [Made; 5] {
+fn all() -> [Made; 6] {
     let section = made::<Section>();
-    [made::<Escape>(), made::<Exponents>(), section, made::<Spectrum>(), made::<Threshold>()]
+    [made::<Basins>(), made::<Escape>(), made::<Exponents>(), section, made::<Spectrum>(), made::<Threshold>()]
 }
 
 /// Compares a file with what is made of the declarations; with UPDATE set, writes it.

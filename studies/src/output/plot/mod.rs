@@ -7,7 +7,6 @@
 mod accuracy;
 mod assembly;
 mod axis;
-mod basins;
 mod beside;
 mod best;
 mod branch;
@@ -58,11 +57,11 @@ use crate::study::words;
 
 pub use crate::study::{OutsideCurve, StatesError};
 
+pub use crate::basins::basins_chart;
 pub use crate::spectrum::{SpectrumQuantity, spectrum_chart};
 pub use accuracy::{accuracy_chart, cost_panel, scene_accuracy_chart, steps_panel};
 pub use assembly::{Assembly, MagnetPair};
 pub use axis::{PlotAxis, Ranges};
-pub use basins::{basins_chart, can_show_starts};
 pub use best::best_chart;
 pub use branch::{branch_chart, loci_chart};
 pub use cells::{Colours, Shade, Shades};
@@ -95,6 +94,7 @@ pub use shapes::shapes_chart;
 pub use sheet::{Sheet, SheetError, SheetText};
 pub use sketch::{DrawnPart, Sketch};
 pub use style::{BLACK, Ink, TICK, Theme, is_fine, viridis};
+pub(crate) use style::{COOL, KINDS, WARM};
 pub use surface::{MAX_SURFACE_CELLS, SurfaceFrame};
 pub use sweep::{MAX_PICTURE_CELLS, NoPicture, can_show, can_show_over_field, sweep_about, sweep_chart};
 pub(crate) use sweep::{each_line, few_lines};

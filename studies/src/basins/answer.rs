@@ -7,7 +7,7 @@ use super::rounds::{Fate, Kind};
 use super::stroboscopic::final_state;
 use crate::dynamics::{MapState, Model, Outcome, Place, Regime, Request, Summary};
 use crate::numeric::decimals;
-use crate::study::{State, Table, Task};
+use crate::study::{ColumnOf, State, Table, Task, column};
 
 /// Quantile of the normal distribution for a two-sided 95 % interval.
 const NORMAL_95: f64 = 1.959_963_984_540_054;
@@ -116,15 +116,18 @@ pub struct Answer {
 }
 
 impl Answer {
-    /// `x_mm,v_m_per_s,attractor,periods,sure` of the rows from `begin` to before `end`.
+    /// The rows from `begin` to before `end`.
     pub fn table(&self, basins: &BasinMap, begin: usize, end: usize) -> Table {
-        let rows: Vec<usize> = (begin..end.min(self.rows.len())).collect();
-        Table::new()
-            .each("x_mm", &rows, |row| basins.starts().at(*row).0)
-            .each("v_m_per_s", &rows, |row| basins.starts().at(*row).1)
-            .each("attractor", &rows, |row| self.rows[*row].map(|(number, _)| u64::from(number)))
-            .each("periods", &rows, |row| self.rows[*row].map(|(_, periods)| u64::from(periods)))
-            .each("sure", &rows, |row| self.rows[*row].and_then(|_| self.sure.get(*row).copied()))
+        let row = |row: usize| {
+            let found = self.rows[row];
+            StartRow {
+                start: basins.starts().at(row),
+                found,
+                sure: found.and_then(|_| self.sure.get(row).copied()),
+            }
+        };
+        let rows: Vec<StartRow> = (begin..end.min(self.rows.len())).map(row).collect();
+        Table::new().with_columns(&start_columns(), &rows)
     }
 
     /// A distinct description of each attractor: regime, side and period and, if another one has the same,
@@ -158,21 +161,84 @@ impl Answer {
 
     /// The attractors, one row each.
     pub fn attractors_table(&self) -> Table {
-        let all = &self.attractors;
-        let numbers: Vec<u64> = (1..=all.len() as u64).collect();
-        Table::new()
-            .each("attractor", &numbers, |number| Some(*number))
-            .each("regime", all, |attractor| attractor.regime.name())
-            .each("period", all, |attractor| attractor.period.map(u64::from))
-            .each("side", all, |attractor| attractor.side.map_or("", Place::name))
-            .each("rms_velocity_m_per_s", all, |attractor| attractor.rms_velocity)
-            .each("x_m", all, |attractor| attractor.states[0].0)
-            .each("v_m_per_s", all, |attractor| attractor.states[0].1)
-            .each("starts", all, |attractor| Some(attractor.starts))
-            .each("share", all, |attractor| attractor.share.share)
-            .each("share_low", all, |attractor| attractor.share.low)
-            .each("share_high", all, |attractor| attractor.share.high)
+        let rows: Vec<(u64, &Attractor)> = (1..).zip(&self.attractors).collect();
+        Table::new().with_columns(&attractor_columns(), &rows)
     }
+}
+
+/// What a row of a start is made of.
+pub(super) struct StartRow {
+    /// Displacement in mm and velocity in m/s.
+    start: (f64, f64),
+    /// The number of its attractor, and the periods until it was known.
+    found: Option<(u32, u32)>,
+    sure: Option<bool>,
+}
+
+/// The columns of the table of starts.
+pub(super) fn start_columns() -> Vec<ColumnOf<'static, StartRow>> {
+    vec![
+        column("x_mm", "", |row: &StartRow| row.start.0),
+        column(
+            "v_m_per_s",
+            "displacement and velocity at the start; a circuit begins in the `electrical` state of the \
+             scene's start, at rest without one",
+            |row: &StartRow| row.start.1,
+        ),
+        column(
+            "attractor",
+            "number of the attractor that it goes to: 1 is that of the first row that has one, and so on. \
+             Empty: the start lies beyond a stop or outside the force curve, its run ended early, or it did \
+             not settle within 1000 periods; the last line on standard error says how many of each",
+            |row: &StartRow| row.found.map(|(number, _)| u64::from(number)),
+        ),
+        column(
+            "periods",
+            "forcing periods that it took, see below; without an excitation, periods of small oscillations \
+             in the stiffest well",
+            |row: &StartRow| row.found.map(|(_, periods)| u64::from(periods)),
+        ),
+        column(
+            "sure",
+            "`true` where the error of the integration cannot change the answer: a second run at a \
+             thousandth of the tolerance stays within a tenth of the scene's scales of the first one up to \
+             the attractor; `false` otherwise; empty without an attractor. The last line on standard error \
+             says how many are not sure",
+            |row: &StartRow| row.sure,
+        ),
+    ]
+}
+
+/// An attractor with its number, from 1.
+type Numbered<'a> = (u64, &'a Attractor);
+
+/// The columns of the table of attractors.
+pub(super) fn attractor_columns<'a>() -> Vec<ColumnOf<'a, Numbered<'a>>> {
+    vec![
+        column("attractor", "", |row: &Numbered| Some(row.0)),
+        column("regime", "", |row: &Numbered| row.1.regime.name()),
+        column("period", "", |row: &Numbered| row.1.period.map(u64::from)),
+        column("side", "", |row: &Numbered| row.1.side.map_or("", Place::name)),
+        column("rms_velocity_m_per_s", "its number; the others as in a summary", |row: &Numbered| {
+            row.1.rms_velocity
+        }),
+        column("x_m", "", |row: &Numbered| row.1.states[0].0),
+        column(
+            "v_m_per_s",
+            "one of its states at time 0 of the drive; of several that with the largest displacement",
+            |row: &Numbered| row.1.states[0].1,
+        ),
+        column("starts", "how many starts go to it", |row: &Numbered| Some(row.1.starts)),
+        column("share", "their share of all starts that the mass has room for", |row: &Numbered| {
+            row.1.share.share
+        }),
+        column("share_low", "", |row: &Numbered| row.1.share.low),
+        column(
+            "share_high",
+            "its 95 % interval (Wilson 1927), as of starts drawn at random",
+            |row: &Numbered| row.1.share.high,
+        ),
+    ]
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]

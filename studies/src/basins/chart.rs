@@ -1,27 +1,16 @@
 //! Picture of basins of attraction: the attractor of each start as colour, paler where it is not sure, and
 //! the states of the attractors.
 
-use super::axis::PlotAxis;
-use super::cells::{Colours, Shade, Shades};
-use super::chart::{Chart, Marks, Panel};
-use super::drawn::Drawn;
-use super::quantity::suited_unit;
-use super::role::Role;
-use super::style::{COOL, KINDS, WARM};
-use super::sweep::{MAX_PICTURE_CELLS, NoPicture};
+use super::{Answer, Attractor, BasinMap, Shares};
 use crate::dynamics::Regime;
 use crate::numeric::short;
-use crate::study::{Answer, Attractor, BasinMap, Edges, Shares, Starts, Table};
+use crate::output::{
+    COOL, Chart, Colours, Drawn, KINDS, Marks, Panel, PlotAxis, Role, Shade, Shades, WARM, suited_unit,
+};
+use crate::study::{Edges, Table};
 
 /// Number of attractors that the legend names, those with the largest shares.
 const MAX_NAMED: usize = 9;
-
-/// Whether a map of these starts can be drawn.
-#[doc(hidden)]
-pub fn can_show_starts(starts: &Starts) -> Result<(), NoPicture> {
-    let count = starts.count() as u64;
-    if count > MAX_PICTURE_CELLS { Err(NoPicture::Starts(count)) } else { Ok(()) }
-}
 
 /// The picture of a map of basins, of the fields of a [`BasinsAnswer`](crate::questions::BasinsAnswer), or of
 /// a map that is still incomplete.

@@ -1,9 +1,15 @@
 //! Starts of a map of basins: a grid over displacement and velocity, or random ones.
 
+use std::fmt;
+use std::str::FromStr;
+
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
+use serde::{Deserialize, Serialize};
+
 use crate::numeric::Decimal;
+use crate::scene::read_number;
 use crate::study::{Levels, even_positions};
 
 /// Largest number of starts of one map: minutes on one core if the mass comes to rest on stops, else hours.
@@ -26,23 +32,88 @@ pub enum StartsError {
 /// The values of one axis of a grid: `count` even values from `from` to `to` inclusive.
 ///
 /// Both ends are values themselves: -5 to 5 with a count of 101 has steps of 0.1.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[serde(from = "Ends", into = "(f64, f64, u64)")]
 pub struct EvenRange {
     /// First value, in mm or m/s.
     pub from: f64,
     /// Last value.
     pub to: f64,
-    /// Number of values.
+    /// Number of values; 0 where it is not said.
     pub count: u64,
 }
 
+/// A range as a program writes it, with or without the number of its values.
+#[derive(Deserialize)]
+#[serde(untagged)]
+enum Ends {
+    Even(f64, f64, u64),
+    Range(f64, f64),
+}
+
+impl From<Ends> for EvenRange {
+    fn from(ends: Ends) -> Self {
+        match ends {
+            Ends::Even(from, to, count) => Self { from, to, count },
+            Ends::Range(from, to) => Self { from, to, count: 0 },
+        }
+    }
+}
+
+impl From<(f64, f64, u64)> for EvenRange {
+    fn from((from, to, count): (f64, f64, u64)) -> Self {
+        Self { from, to, count }
+    }
+}
+
+impl From<EvenRange> for (f64, f64, u64) {
+    fn from(range: EvenRange) -> Self {
+        (range.from, range.to, range.count)
+    }
+}
+
+impl fmt::Display for EvenRange {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { from, to, count } = self;
+        if *count == 0 { write!(f, "{from}:{to}") } else { write!(f, "{from}:{to}:{count}") }
+    }
+}
+
+impl FromStr for EvenRange {
+    type Err = String;
+
+    /// Reads A:B:N, or A:B without the number of values.
+    fn from_str(text: &str) -> Result<Self, String> {
+        let parts: Vec<&str> = text.split(':').collect();
+        let (from, to, count) = match parts[..] {
+            [from, to] => (from, to, 0),
+            [from, to, count] => match count.trim().parse() {
+                Ok(0) => return Err(NO_VALUES.to_owned()),
+                Ok(count) => (from, to, count),
+                Err(_) => return Err(format!("N is not a whole number; {AS_EVEN}")),
+            },
+            _ => return Err(AS_EVEN.to_owned()),
+        };
+        Ok(Self { from: read_number(from)?, to: read_number(to)?, count })
+    }
+}
+
+/// The form of a range.
+const AS_EVEN: &str = "write A:B:N, the first value, the last and how many, such as -5:5:101";
+const NO_VALUES: &str = "no values: N counts them, both ends included, such as -5:5:101";
+
 impl EvenRange {
+    /// Its first and its last value.
+    pub(super) fn ends(&self) -> (f64, f64) {
+        (self.from, self.to)
+    }
+
     /// Checks the ends and the number of values.
     pub fn check(&self) -> Result<(), StartsError> {
         check_ends((self.from, self.to))?;
         let wrong = |what| Err(StartsError::Range(what));
         match self.count {
-            0 => wrong("no values: N counts them, both ends included, such as -5:5:101"),
+            0 => wrong(AS_EVEN),
             1 if self.from < self.to => wrong("one value cannot be both ends: write A:A:1, or a larger N"),
             2.. if self.from == self.to => wrong("both ends are equal: write A:A:1 for one value"),
             _ if self.count > MAX_STARTS => Err(StartsError::TooMany(self.count.to_string())),

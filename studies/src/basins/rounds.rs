@@ -1,10 +1,11 @@
 //! Rounds of a map of basins: starts are followed in rounds, between which the known attractors are updated.
 
+use super::map::is_inside;
 use super::orbit::{Rejected, find, is_near};
 use super::region::{Irregular, irregular};
 use super::stroboscopic::{START_WORK, Stroboscope, final_state};
 use super::sure::{are_sure, sure_releases};
-use super::{BasinMap, Starts, is_inside};
+use super::{BasinMap, Starts};
 use crate::dynamics::{
     Arrival, Capture, MapState, Outcome, Place, Pursued, Pursuit, Regime, Region, ReleaseIdentity, Side,
     Summary,

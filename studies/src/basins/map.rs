@@ -1,39 +1,13 @@
-//! Basins of attraction: the attractor that each start of a scene reaches.
-//!
-//! Each start begins at time 0 and is followed until one of the following holds:
-//!
-//! - The mass rests on a rigid stop. The drive alone determines when it is released, so motions that share a
-//!   release are identical from then on, to the last bit. What follows a release is computed once.
-//! - A stroboscopic state comes within a thousandth of the scene's scales of a known stable orbit, inside an
-//!   ellipse around it from which all motions go to the orbit (see `orbit`). A motion that repeats only
-//!   proposes an orbit, so that a transient near a saddle is followed further. (Datseris and Wagemakers
-//!   (2022) also recognise a motion by its return to known ones, on a grid of cells.)
-//! - Neither happens for a thousand periods. A `Verdict` then says whether the motion is irregular. When the
-//!   first such motion is met, the study looks for regions that no motion leaves (see `region`); motions that
-//!   enter one need not be followed further.
-//!
-//! The answer of a start depends on no other start. All use the scales of a mass at rest in the middle; an
-//! orbit has the same ellipses whichever start proposes it, and a start that comes before its orbit is known
-//! is followed again; regions come from starts of their own; and each start may take the same work. Known
-//! attractors change only between rounds, so that the result has the same bits for any number of threads.
-
-mod answer;
-mod orbit;
-mod region;
-mod rounds;
-mod starts;
-mod stroboscopic;
-mod sure;
+//! A map of basins: how starts are followed.
 
 use std::sync::Arc;
 
+use super::rounds::{PATIENCE, Rounds};
+use super::{Starts, sure};
 use crate::dynamics::{Model, Request};
 use crate::mechanics::Mechanism;
 use crate::scene::{Damping, Excitation, Fault, Scene, Start, Stops};
 use crate::study::{Levels, STRIDES};
-pub use answer::{Answer, Attractor, Shares};
-use rounds::{PATIENCE, Rounds};
-pub use starts::{EvenRange, Starts, StartsError};
 
 /// Why a scene has no basins.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -79,17 +53,17 @@ const MEASURED: f64 = 300.0;
 /// A map of basins, computed from coarse to fine.
 #[derive(Debug)]
 pub struct BasinMap {
-    model: Model,
-    starts: Starts,
-    levels: Levels,
+    pub(super) model: Model,
+    pub(super) starts: Starts,
+    pub(super) levels: Levels,
     /// Number of levels that have been run.
-    done: usize,
-    room: (f64, f64),
-    rounds: Rounds,
+    pub(super) done: usize,
+    pub(super) room: (f64, f64),
+    pub(super) rounds: Rounds,
     /// Units of work that a forcing period takes.
-    work_of_a_period: f64,
+    pub(super) work_of_a_period: f64,
     /// The model at a finer tolerance, if the answers are to be checked.
-    finer: Option<Model>,
+    pub(super) finer: Option<Model>,
 }
 
 impl BasinMap {
@@ -196,7 +170,7 @@ fn cost_of_a_period(model: &Model) -> (f64, f64) {
 }
 
 /// Whether a displacement in mm lies between limits in m.
-fn is_inside(room: (f64, f64), x_mm: f64) -> bool {
+pub(super) fn is_inside(room: (f64, f64), x_mm: f64) -> bool {
     (room.0..=room.1).contains(&(x_mm / 1e3))
 }
 
