@@ -4,9 +4,7 @@ use std::path::PathBuf;
 
 use interwell_kernel::dynamics::MapState;
 use interwell_studies::output::{branch_chart, comparison_chart, loci_chart};
-use interwell_studies::questions::{
-    Begin, Best, Branch, BranchEvent, Compare, FieldRange, Locus, Orbit,
-};
+use interwell_studies::questions::{Begin, Best, Branch, BranchEvent, Compare, FieldRange, Locus, Orbit};
 use pyo3::prelude::*;
 
 use crate::answer::Answer;

@@ -7,7 +7,7 @@ use interwell::output::OpenError;
 use interwell::questions::Error;
 use interwell::scene::lesson::LessonError;
 use interwell::scene::{ArgumentError, SceneError};
-use interwell_studies::study::{GridError, Spelling, SweepEnd};
+use interwell_studies::study::{GridError, Said, Spelling, SweepEnd};
 
 /// Returns the error of a wrong argument from the function; the message is formatted as by `format!`.
 macro_rules! refuse {
@@ -89,7 +89,13 @@ impl From<Error> for Failure {
 }
 
 arguments_are_wrong! {
-    SceneError, LessonError, ArgumentError, GridError
+    SceneError, LessonError, ArgumentError
+}
+
+impl From<GridError> for Failure {
+    fn from(error: GridError) -> Self {
+        Self::argument(Said::new(error).spelled(Spelling::CommandLine))
+    }
 }
 
 impl From<OpenError> for Failure {

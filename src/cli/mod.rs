@@ -44,7 +44,14 @@ macro_rules! declared {
     )*};
 }
 
-declared!(basins: Basins escape: Escape exponents: Exponents section: Section spectrum: Spectrum threshold: Threshold);
+declared! {
+    basins: Basins
+    escape: Escape
+    exponents: Exponents
+    section: Section
+    spectrum: Spectrum
+    threshold: Threshold
+}
 
 pub use failure::Failure;
 pub use options::{Options, command_names};

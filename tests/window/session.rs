@@ -1,13 +1,14 @@
 //! The edited scene with its undo and its files, the ranges of its sliders, the speed of its motion.
 
 use std::sync::Arc;
+use std::time::Duration;
 
 use interwell::app::session::Session;
 use interwell::app::session::editor::Editor;
 use interwell::app::session::player::fitting_speed;
 use interwell::app::session::sliders::reach;
 use interwell::app::words::fields::{Reach, info};
-use interwell::scene::{FIELDS, FieldPath, Start, Stops};
+use interwell::scene::{Document, FIELDS, FieldPath, Scene, Start, Stops};
 
 fn editor() -> Editor {
     Editor::open("first-look").unwrap()
@@ -37,6 +38,32 @@ fn one_gesture_is_one_step() {
     editor.undo();
     editor.edit_once(|scene| scene.mass_g = 1.0);
     assert!(!editor.can_redo());
+}
+
+/// A scene whose notes are so long that each copy of it is seen in what is allocated.
+#[test]
+fn a_step_of_a_slider_copies_the_scene_once() {
+    const NOTES: usize = 8 << 20;
+    let mut document = Document::preset("nominal-cubic").unwrap();
+    document.scene.notes = "n".repeat(NOTES);
+    let mut session = Session::new(Editor::new(document), Arc::new(|| ())).unwrap();
+    session.wait(Duration::from_secs(60));
+    let mut step = |limit_mm: f64| {
+        let allocated = allocation_counter::measure(|| {
+            let set = |scene: &mut Scene| {
+                assert!(FieldPath::new("stops.travel_limit_mm").set(scene, limit_mm));
+            };
+            assert!(session.edit(set));
+            session.poll();
+        });
+        allocated.bytes_total as f64 / NOTES as f64
+    };
+    // the first one drops the answers about the scene before
+    assert!(step(3.5) < 3.0);
+    for limit_mm in [3.4, 3.3, 3.2] {
+        let copies = step(limit_mm);
+        assert!((1.0..1.5).contains(&copies), "{copies} copies");
+    }
 }
 
 #[test]

@@ -70,13 +70,13 @@ impl Question for StopsQuestion {
 
 impl Session {
     /// A scene with the mechanism of the open one.
-    pub(super) fn prepared(&self, scene: Scene) -> Prepared {
+    pub(super) fn prepared(&self, scene: impl Into<Arc<Scene>>) -> Prepared {
         let (of, mechanism) = (self.with_files(scene), Arc::clone(&self.mechanism));
         Prepared { of, mechanism, tolerance: self.tolerance }
     }
 
     /// A scene with the files of the open one.
-    pub(super) fn with_files(&self, scene: Scene) -> SceneWithFiles {
+    pub(super) fn with_files(&self, scene: impl Into<Arc<Scene>>) -> SceneWithFiles {
         SceneWithFiles::of(self.editor.document(), scene)
     }
 
@@ -100,8 +100,8 @@ impl Session {
     /// Drops the answers about what it would take to cross. The thresholds stay if only the amplitude was
     /// changed.
     pub(super) fn forget_ways(&mut self) {
-        let scene = unshaken(&self.built);
-        if self.fault.is_some() || self.thresholds.question().is_none_or(|asked| asked.0.of.scene != scene) {
+        let is_other = |asked: &ThresholdsQuestion| *asked.0.of.scene != unshaken(&self.built);
+        if self.fault.is_some() || self.thresholds.question().is_none_or(is_other) {
             self.thresholds.clear();
         }
         self.stops_that_cross.clear();
@@ -118,7 +118,7 @@ impl Session {
         }
         let known = [&self.built.stops, &self.remembered_stops];
         let restitution = known.into_iter().find_map(|stops| stops.restitutions()[1]).unwrap_or(1.0);
-        let (of, restitution) = (self.prepared(self.built.clone()), Uncompared(restitution));
+        let (of, restitution) = (self.prepared(Arc::clone(&self.built)), Uncompared(restitution));
         let question = StopsQuestion { of, restitution };
         self.stops_that_cross.want(question, !self.editor.in_gesture(), &self.wake);
         match (self.settled.answer(), self.thresholds.answer(), self.stops_that_cross.answer()) {

@@ -36,7 +36,7 @@ impl Session {
     /// Changes the mechanism as part of a gesture, if the changed one can be solved and run. Returns whether
     /// it changed, or why the change was refused.
     pub fn edit_mechanism(&mut self, change: impl FnOnce(&mut Mechanism)) -> Result<bool, String> {
-        let mut document = self.editor.runnable();
+        let mut document = self.editor.runnable().into_owned();
         change(&mut document.scene.mechanism);
         if document.scene.mechanism == self.scene().mechanism {
             return Ok(false);
@@ -66,7 +66,7 @@ impl Session {
         }
         let Ok((mechanism, model)) = solve(&self.editor.runnable(), FLEXURE_TOLERANCE) else { return };
         (self.mechanism, self.tolerance) = (mechanism, FLEXURE_TOLERANCE);
-        self.model = SharedModel::new(model, self.prepared(self.built.clone()));
+        self.model = SharedModel::new(model, self.prepared(Arc::clone(&self.built)));
         self.player.change(&self.model);
         self.is_continued = true;
         self.ask_settled();

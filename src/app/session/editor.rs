@@ -3,8 +3,10 @@
 //! Undo is a stack of scenes: a scene is plain, comparable data of a few hundred bytes, and one gesture (a
 //! drag, a click, a number typed) is one step. So is a move of the mass by hand, which changes no scene.
 
+use std::borrow::Cow;
 use std::mem::discriminant;
 use std::path::Path;
+use std::sync::Arc;
 
 use crate::output::write_file;
 use crate::scene::{
@@ -35,7 +37,7 @@ pub enum Placed {
 #[derive(Debug, Clone)]
 enum Step {
     /// Another scene, and the motion when it was left.
-    Scene(Box<Scene>, Option<Moment>),
+    Scene(Arc<Scene>, Option<Moment>),
     Mass {
         from: State,
         to: State,
@@ -45,6 +47,8 @@ enum Step {
 #[derive(Debug, Clone)]
 pub struct Editor {
     document: Document,
+    /// The scene of the document, for all who keep it.
+    now: Arc<Scene>,
     /// The scene as it was opened or last saved.
     saved: Scene,
     named: Scene,
@@ -55,13 +59,14 @@ pub struct Editor {
     /// The motion before the current gesture.
     moment: Option<Moment>,
     /// The scene before the current gesture.
-    gesture: Option<Scene>,
+    gesture: Option<Arc<Scene>>,
 }
 
 impl Editor {
     pub fn new(document: Document) -> Self {
         let (saved, named) = (document.scene.clone(), document.scene.clone());
         Self {
+            now: Arc::new(saved.clone()),
             document,
             saved,
             named,
@@ -108,7 +113,7 @@ impl Editor {
 
     /// The document as it can be run and written: without sweep axes over a field that the scene lacks at
     /// present, such as the travel limit while the stops are off. The edited scene keeps these axes.
-    pub fn runnable(&self) -> Document {
+    pub fn runnable(&self) -> Cow<'_, Document> {
         runnable(&self.document)
     }
 
@@ -123,6 +128,11 @@ impl Editor {
 
     pub fn scene(&self) -> &Scene {
         &self.document.scene
+    }
+
+    /// The scene, which is shared until it is changed.
+    pub fn shared(&self) -> &Arc<Scene> {
+        &self.now
     }
 
     pub fn saved(&self) -> &Scene {
@@ -167,11 +177,11 @@ impl Editor {
 
     /// Changes the scene as part of a gesture, and begins one if necessary. Returns whether it changed.
     pub fn edit(&mut self, change: impl FnOnce(&mut Scene)) -> bool {
-        let before = self.document.scene.clone();
         change(&mut self.document.scene);
         keep_start_inside(&mut self.document.scene);
-        let changed = self.document.scene != before;
+        let changed = self.document.scene != *self.now;
         if changed {
+            let before = std::mem::replace(&mut self.now, Arc::new(self.document.scene.clone()));
             self.gesture.get_or_insert(before);
         }
         changed
@@ -179,10 +189,10 @@ impl Editor {
 
     /// Ends the gesture, which becomes one undo step if it changed anything.
     pub fn end_gesture(&mut self) {
-        let Some(before) = self.gesture.take().filter(|before| *before != self.document.scene) else {
+        let Some(before) = self.gesture.take().filter(|before| *before != self.now) else {
             return;
         };
-        self.push(Step::Scene(Box::new(before), self.moment));
+        self.push(Step::Scene(before, self.moment));
     }
 
     /// Notes the motion before the next change.
@@ -255,9 +265,9 @@ impl Editor {
     /// Takes a step. Returns the one that leads back.
     fn taken(&mut self, step: Step) -> Step {
         match step {
-            Step::Scene(mut scene, _) => {
-                std::mem::swap(&mut self.document.scene, &mut scene);
-                Step::Scene(scene, self.moment)
+            Step::Scene(scene, _) => {
+                self.document.scene = Scene::clone(&scene);
+                Step::Scene(std::mem::replace(&mut self.now, scene), self.moment)
             }
             step => step,
         }
@@ -271,7 +281,7 @@ impl Editor {
         let has_link = |step: &Step| {
             let Step::Scene(scene, _) = step else { return false };
             let mut document = self.document.clone();
-            document.scene.clone_from(scene);
+            document.scene = Scene::clone(scene);
             document.link().is_ok_and(|other| other == link)
         };
         let place = |steps: &[Step]| steps.iter().rev().position(has_link);
@@ -301,19 +311,26 @@ impl Editor {
         let mut now = document.scene.clone();
         for step in self.undo.iter_mut().chain(&mut self.redo) {
             let Step::Scene(scene, _) = step else { continue };
-            update_names(scene, &before, &mut self.document.scene, &mut now);
+            update_names(Arc::make_mut(scene), &before, &mut self.document.scene, &mut now);
         }
         (self.saved, self.named) = (document.scene.clone(), document.scene.clone());
+        self.now = Arc::new(document.scene.clone());
         self.document = document;
         Ok(copied)
     }
 }
 
-fn runnable(document: &Document) -> Document {
-    let mut document = document.clone();
+fn runnable(document: &Document) -> Cow<'_, Document> {
+    if document.scene.sweep.is_empty() {
+        return Cow::Borrowed(document);
+    }
     let fields = numeric_fields(&document.scene);
+    if document.scene.sweep.iter().all(|axis| fields.contains(&axis.field)) {
+        return Cow::Borrowed(document);
+    }
+    let mut document = document.clone();
     document.scene.sweep.retain(|axis| fields.contains(&axis.field));
-    document
+    Cow::Owned(document)
 }
 
 fn text_of(document: &Document) -> Result<String, String> {

@@ -54,7 +54,7 @@ const REPORTED_MOVE: f64 = 0.02;
 /// A column of the view Compare.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Card {
-    pub scene: Scene,
+    pub scene: Arc<Scene>,
     /// What it settles to; `None` until it is known.
     pub settled: Option<Summary>,
     /// Its thresholds; `None` until they are known.
@@ -81,7 +81,7 @@ pub struct Session {
     pub reference: Reference,
     pub measured: MeasuredData,
     /// The scene that the model was built from.
-    built: Scene,
+    built: Arc<Scene>,
     mechanism: Arc<Mechanism>,
     /// What the mechanism was built from, so that a table is fitted once and not at every move of a slider.
     mechanism_of: scene::Mechanism,
@@ -118,8 +118,8 @@ impl Session {
     pub fn new(editor: Editor, wake: Wake) -> Result<Self, Error> {
         let document = editor.document();
         let (mechanism, model) = solve(document, FLEXURE_TOLERANCE)?;
-        let scene = editor.scene().clone();
-        let of = SceneWithFiles::of(document, scene.clone());
+        let scene = Arc::clone(editor.shared());
+        let of = SceneWithFiles::of(document, Arc::clone(&scene));
         let prepared = Prepared { of, mechanism: Arc::clone(&mechanism), tolerance: FLEXURE_TOLERANCE };
         let model = SharedModel::new(model, prepared);
         let mut session = Self {
@@ -132,7 +132,7 @@ impl Session {
             accuracy: Accuracy::default(),
             map: Mapping::default(),
             explore: Explore::default(),
-            reference: Reference::new(scene.clone(), model.clone(), false),
+            reference: Reference::new(Arc::clone(&scene), model.clone(), false),
             measured: MeasuredData::default(),
             mechanism_of: scene.mechanism.clone(),
             tolerance: FLEXURE_TOLERANCE,
@@ -248,14 +248,14 @@ impl Session {
 
     /// Applies the edited scene to the motion, if it has changed.
     fn apply(&mut self) {
-        if *self.editor.scene() == self.built {
+        if *self.editor.shared() == self.built {
             return;
         }
-        self.built = self.editor.scene().clone();
+        self.built = Arc::clone(self.editor.shared());
         match self.build() {
             Ok(model) => {
                 self.fault = None;
-                self.model = SharedModel::new(model, self.prepared(self.built.clone()));
+                self.model = SharedModel::new(model, self.prepared(Arc::clone(&self.built)));
                 self.map.trail.note(&self.built);
                 self.continue_motion();
             }
@@ -300,7 +300,7 @@ impl Session {
     }
 
     fn build(&mut self) -> Result<Model, Error> {
-        let document = &self.editor.runnable();
+        let document = &*self.editor.runnable();
         document.check()?;
         if document.scene.mechanism != self.mechanism_of {
             self.mechanism = build::mechanism(document, FLEXURE_TOLERANCE)?;

@@ -19,7 +19,7 @@ use crate::scene::{self, Document, Fault, Files, Scene, named_texts, read_record
 pub struct SceneWithFiles {
     /// Its name in messages.
     name: String,
-    pub scene: Scene,
+    pub scene: Arc<Scene>,
     pub files: Files,
 }
 
@@ -33,7 +33,7 @@ struct WithTexts {
 
 impl From<SceneWithFiles> for WithTexts {
     fn from(SceneWithFiles { name, scene, files }: SceneWithFiles) -> Self {
-        Self { name, texts: named_texts(&scene, &files), scene }
+        Self { name, texts: named_texts(&scene, &files), scene: Arc::unwrap_or_clone(scene) }
     }
 }
 
@@ -41,19 +41,19 @@ impl From<WithTexts> for SceneWithFiles {
     fn from(WithTexts { name, mut scene, texts }: WithTexts) -> Self {
         let files = Files { cached: texts, ..Files::default() };
         read_records(&mut scene, &files);
-        Self { name, scene, files }
+        Self { name, scene: scene.into(), files }
     }
 }
 
 impl SceneWithFiles {
     /// A scene made from that of a document, with its name and its files.
-    pub fn of(document: &Document, scene: Scene) -> Self {
-        Self { name: document.name.clone(), scene, files: document.files.clone() }
+    pub fn of(document: &Document, scene: impl Into<Arc<Scene>>) -> Self {
+        Self { name: document.name.clone(), scene: scene.into(), files: document.files.clone() }
     }
 
     /// The document of the scene, as questions take it.
     pub fn document(&self) -> Document {
-        let mut document = Document::of_scene(self.scene.clone(), self.files.clone());
+        let mut document = Document::of_scene(Scene::clone(&self.scene), self.files.clone());
         document.name.clone_from(&self.name);
         document
     }

@@ -7,6 +7,7 @@ use crate::dynamics::Summary;
 use crate::scene::Scene;
 use crate::system::clock::WallClock;
 use interwell_studies::study::{Thresholds, Watch};
+use std::sync::Arc;
 
 use super::accuracy::LiveRun;
 use super::ask::unshaken;
@@ -23,7 +24,7 @@ const CHECK_INTERVAL: f64 = 2.0;
 const EQUAL: f64 = 1e-9;
 
 pub struct Reference {
-    pub scene: Scene,
+    pub scene: Arc<Scene>,
     model: SharedModel,
     /// Whether it was pinned; else it is the scene as it was opened.
     pub is_pinned: bool,
@@ -63,7 +64,7 @@ impl Apart {
 }
 
 impl Reference {
-    pub(super) fn new(scene: Scene, model: SharedModel, is_pinned: bool) -> Self {
+    pub(super) fn new(scene: Arc<Scene>, model: SharedModel, is_pinned: bool) -> Self {
         let (apart, known, settled, thresholds) = (None, None, Background::default(), None);
         Self { scene, model, is_pinned, apart, known, settled, thresholds }
     }
@@ -115,13 +116,13 @@ impl Session {
         if let Some(fault) = self.fault() {
             return Err(format!("No motion of this scene can be pinned: {fault}"));
         }
-        self.reference = Reference::new(self.scene().clone(), self.model.clone(), true);
+        self.reference = Reference::new(Arc::clone(self.editor.shared()), self.model.clone(), true);
         Ok(())
     }
 
     /// Replaces the scene by that of the reference, as one undo step. Returns whether the scene changed.
     pub fn take_back(&mut self) -> bool {
-        let scene = self.reference.scene.clone();
+        let scene = Scene::clone(&self.reference.scene);
         self.edit_once(|edited| *edited = scene)
     }
 
@@ -146,7 +147,7 @@ impl Session {
             && (now.x - other.x).abs() <= EQUAL * scales.length
             && (now.v - other.v).abs() <= EQUAL * scales.speed
             && now.electrical == other.electrical;
-        if is_met && !self.player.is_held() && *self.scene() == self.reference.scene {
+        if is_met && !self.player.is_held() && *self.editor.shared() == self.reference.scene {
             self.reference.apart = None;
         }
     }
@@ -156,7 +157,7 @@ impl Session {
         let reference = &self.reference;
         let apart = reference.apart.as_ref()?;
         Some(Card {
-            scene: reference.scene.clone(),
+            scene: Arc::clone(&reference.scene),
             settled: reference.known.or(reference.settled.answer().copied()),
             thresholds: reference.thresholds.filter(|_| !self.keeps_remedy),
             ended: apart.watch.ended().and_then(|outcome| outcome.ended_at()),

@@ -42,8 +42,8 @@ use crate::study::{Answered, Grid, Heading, Scenes, Study, Table, counted, headi
 pub use answer::{Answer, Attractor, Shares};
 pub use chart::basins_chart;
 pub use map::{BasinMap, NoBasins};
-use starts::MAX_STARTS;
-pub use starts::{EvenRange, Starts, StartsError};
+use starts::{AS_EVEN, MAX_STARTS, StartsError};
+pub use starts::{EvenRange, Starts};
 
 /// The attractor that each of many starts goes to, and the share of the starts that go to each attractor.
 ///
@@ -85,9 +85,11 @@ pub use starts::{EvenRange, Starts, StartsError};
 pub struct Basins {
     /// Displacements in mm from which the mass starts: N from A to B, both included; A:B with --random
     #[arg(long, value_name = "A:B:N", allow_hyphen_values = true)]
+    #[arg(default_value_t, hide_default_value = true)]
     pub x_mm: EvenRange,
     /// Velocities in m/s with which it starts, likewise
     #[arg(long, value_name = "A:B:N", allow_hyphen_values = true)]
+    #[arg(default_value_t, hide_default_value = true)]
     pub v: EvenRange,
     /// Number of starts drawn uniformly from the two ranges A:B, in place of a grid; the shares of the
     /// attractors are then their basin stability
@@ -112,7 +114,7 @@ Examples:
   interwell --headless basins duffing --x-mm -2000:2000:200 --v -2:2:200 --attractors - --out /dev/null
   interwell --headless basins paper-unconstrained --x-mm -8:8 --v -0.5:0.5 --random 1000 --out starts.csv";
 
-/// The answer of [`Basins::run`]: [one row per start](Self::table), and [one per attractor](Self::attractors).
+/// The answer of [`Basins::run`]: [one row per start](Self::table), [one per attractor](Self::attractors).
 #[derive(Debug)]
 pub struct BasinsAnswer {
     /// The starts, as [`basins_chart`] takes them.
@@ -194,6 +196,9 @@ impl Basins {
             move |problem: StartsError| Error::argument(name, value, problem)
         };
         let Self { x_mm, v, .. } = *self;
+        if let Some((name, _)) = [("x_mm", x_mm), ("v", v)].iter().find(|(_, range)| !range.is_given()) {
+            return Err(Error::argument(*name, "", format!("is missing: {AS_EVEN}")));
+        }
         let Some(count) = self.random else {
             if let Some(seed) = self.seed {
                 let problem = format!("belongs to {}: give that too, or leave it out", named!("random"));

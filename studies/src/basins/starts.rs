@@ -32,7 +32,7 @@ pub enum StartsError {
 /// The values of one axis of a grid: `count` even values from `from` to `to` inclusive.
 ///
 /// Both ends are values themselves: -5 to 5 with a count of 101 has steps of 0.1.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(from = "Ends", into = "(f64, f64, u64)")]
 pub struct EvenRange {
     /// First value, in mm or m/s.
@@ -79,6 +79,13 @@ impl fmt::Display for EvenRange {
     }
 }
 
+impl Default for EvenRange {
+    /// A range that was not given.
+    fn default() -> Self {
+        Self { from: f64::NAN, to: f64::NAN, count: 0 }
+    }
+}
+
 impl FromStr for EvenRange {
     type Err = String;
 
@@ -99,10 +106,15 @@ impl FromStr for EvenRange {
 }
 
 /// The form of a range.
-const AS_EVEN: &str = "write A:B:N, the first value, the last and how many, such as -5:5:101";
+pub(super) const AS_EVEN: &str = "write A:B:N, the first value, the last and how many, such as -5:5:101";
 const NO_VALUES: &str = "no values: N counts them, both ends included, such as -5:5:101";
 
 impl EvenRange {
+    /// Whether it was given.
+    pub(super) fn is_given(&self) -> bool {
+        self.count > 0 || !self.from.is_nan()
+    }
+
     /// Its first and its last value.
     pub(super) fn ends(&self) -> (f64, f64) {
         (self.from, self.to)

@@ -186,8 +186,8 @@ impl Error {
         }
     }
 
-    /// The same error for a surface that calls arguments otherwise: each by the first of its two names here and
-    /// by the second there.
+    /// The same error for a surface that has other names for some arguments: the first of each pair is the name
+    /// here.
     #[must_use]
     pub fn renamed(self, names: &[[&'static str; 2]]) -> Self {
         let named = |problem: &Said| names.iter().fold(problem.clone(), |text, [a, b]| text.renamed(a, b));

@@ -22,7 +22,14 @@ fn made<S: Study>() -> Made {
 
 fn all() -> [Made; 6] {
     let section = made::<Section>();
-    [made::<Basins>(), made::<Escape>(), made::<Exponents>(), section, made::<Spectrum>(), made::<Threshold>()]
+    [
+        made::<Basins>(),
+        made::<Escape>(),
+        made::<Exponents>(),
+        section,
+        made::<Spectrum>(),
+        made::<Threshold>(),
+    ]
 }
 
 /// Compares a file with what is made of the declarations; with UPDATE set, writes it.

@@ -146,13 +146,13 @@ impl Map {
 
     /// Whether it is of the scene of a question over the same fields.
     pub(super) fn is_of_scene(&self, question: &MapQuestion) -> bool {
-        let mut scene = self.question.scene.scene.clone();
+        let mut scene = Scene::clone(&self.question.scene.scene);
         for axis in &question.axes {
             let path = FieldPath::new(&axis.field);
             let is_set = path.get(&question.scene.scene).is_none_or(|value| path.set(&mut scene, value));
             debug_assert!(is_set, "both maps have the fields of the axes");
         }
-        scene == question.scene.scene
+        scene == *question.scene.scene
     }
 
     /// The rows of the sweep with these columns beside the standard ones, with stand-ins for the cells that

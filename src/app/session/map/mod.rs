@@ -373,15 +373,15 @@ impl Session {
 /// The scenes of the live motion so far, the oldest first.
 #[derive(Default)]
 pub struct Trail {
-    scenes: VecDeque<Scene>,
+    scenes: VecDeque<Arc<Scene>>,
     /// Their positions on `fields`, the two axes that were last asked for.
     places: Vec<[Option<f64>; 2]>,
     fields: [String; 2],
 }
 
 impl Trail {
-    pub(super) fn note(&mut self, scene: &Scene) {
-        self.scenes.push_back(Scene { title: String::new(), notes: String::new(), ..scene.clone() });
+    pub(super) fn note(&mut self, scene: &Arc<Scene>) {
+        self.scenes.push_back(Arc::clone(scene));
         if self.scenes.len() > MAX_SCENES {
             self.scenes.pop_front();
         }

@@ -138,7 +138,11 @@ pub enum Unidentified {
     )]
     CutOff(usize, String),
     /// The turning points follow no decay.
-    #[error("the turning points follow no decaying oscillation: cut the record by {from} and {to}", from = named!("from"), to = named!("to"))]
+    #[error(
+        "the turning points follow no decaying oscillation: cut the record by {from} and {to}",
+        from = named!("from"),
+        to = named!("to")
+    )]
     NoDecay,
     /// No impact was found in values with this noise, in SI.
     #[error(
