@@ -16,6 +16,7 @@ pub mod output;
 #[macro_use]
 #[doc(hidden)]
 pub mod study;
+mod accuracy;
 mod escape;
 mod exponents;
 pub mod questions;

@@ -80,7 +80,6 @@
 //!
 //! A run of a grid that ends early is no error: the column `outcome` says why, and the others continue.
 
-mod accuracy;
 mod compare;
 mod design;
 mod distance;
@@ -97,14 +96,14 @@ mod remarks;
 mod simulation;
 mod sweep;
 
+#[doc(hidden)]
+pub use crate::accuracy::check_accuracy;
+pub use crate::accuracy::{Accuracy, AccuracyAnswer};
 pub use crate::escape::{Escape, Until};
 pub use crate::exponents::{Exponents, Lyapunov};
 pub use crate::section::{Section, SectionKind};
 pub use crate::spectrum::{Signal, Spectrum, SpectrumAnswer};
 pub use crate::threshold::{Found, Onset, Threshold};
-#[doc(hidden)]
-pub use accuracy::check_accuracy;
-pub use accuracy::{Accuracy, AccuracyAnswer};
 pub use compare::{Compare, CompareAnswer};
 pub use design::{Best, BestAnswer};
 pub use distance::{Distance, DistanceAnswer};
@@ -132,8 +131,8 @@ pub use sweep::{SweepCells, assign as assign_uncertain};
 pub use crate::mechanics::flexure::State as FlexureState;
 pub use crate::scene::Uncertain;
 
-pub use crate::study::accuracy::methods::{Scheme, Statistics};
-pub use crate::study::accuracy::scene::{AtTolerance, Course, Lateness, StepSize, Tolerances, Trust};
+pub use crate::accuracy::methods::{Scheme, Statistics};
+pub use crate::accuracy::scene::{AtTolerance, Course, Lateness, StepSize, Tolerances, Trust};
 pub use crate::study::{
     Answer, Attractor, Begin, BestDesign, BestQuestion, BranchAnswer, BranchEnd, BranchEvent, Carry, Column,
     Comparison, Estimate, EvenRange, ExponentOptions, FieldRange, ForceComparison, Grid, Identified,

@@ -47,7 +47,6 @@ macro_rules! words {
 
 pub(crate) use words;
 
-pub mod accuracy;
 mod alternatives;
 pub(crate) mod amplitudes;
 mod basins;
@@ -75,6 +74,11 @@ mod trace;
 mod uncertain;
 pub(crate) mod walk;
 mod watch;
+
+/// Accuracy of runs.
+pub mod accuracy {
+    pub use crate::accuracy::*;
+}
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -174,7 +178,7 @@ impl Task<'_> {
 }
 
 /// A run unless it was cancelled.
-fn finished(run: Run) -> Option<Run> {
+pub(crate) fn finished(run: Run) -> Option<Run> {
     (!matches!(run.summary.outcome, Outcome::Cancelled { .. })).then_some(run)
 }
 

@@ -4,7 +4,6 @@
 //! lays it out as a list of simple shapes, and [`Format::bytes`] paints them. Positions do not depend on the
 //! theme, and equal data give equal bytes.
 
-mod accuracy;
 mod assembly;
 mod axis;
 mod basins;
@@ -58,8 +57,8 @@ use crate::study::words;
 
 pub use crate::study::{OutsideCurve, StatesError};
 
+pub use crate::accuracy::{accuracy_chart, cost_panel, scene_accuracy_chart, steps_panel};
 pub use crate::spectrum::{SpectrumQuantity, spectrum_chart};
-pub use accuracy::{accuracy_chart, cost_panel, scene_accuracy_chart, steps_panel};
 pub use assembly::{Assembly, MagnetPair};
 pub use axis::{PlotAxis, Ranges};
 pub use basins::{basins_chart, can_show_starts};

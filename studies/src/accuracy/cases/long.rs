@@ -1,10 +1,10 @@
 //! Chaos, and one problem in several systems of units.
 
+use crate::accuracy::Stopped;
+use crate::accuracy::measure::{Bench, CHANGE, SMALL_CHANGE, Trial, Trials, impacts_above, off};
+use crate::accuracy::setup::{Setup, rigid};
 use crate::dynamics::{Run, Sample};
 use crate::scene::{Excitation, Mechanism, Start};
-use crate::study::accuracy::Stopped;
-use crate::study::accuracy::measure::{Bench, CHANGE, SMALL_CHANGE, Trial, Trials, impacts_above, off};
-use crate::study::accuracy::setup::{Setup, rigid};
 
 pub(super) fn chaos(bench: &Bench) -> Trials {
     let preset = |changes: &[&str]| Setup::preset("duffing-chaos", changes);

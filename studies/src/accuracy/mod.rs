@@ -1,13 +1,33 @@
-//! Questions about the accuracy of runs.
+//! Accuracy of runs, and its cost.
+//!
+//! - Any scene ([`scene`]): the error of its run, the time up to which its path can be trusted, and the
+//!   effect of a fixed step.
+//! - Three problems ([`PROBLEMS`]): work against precision, compared with other common methods ([`methods`]).
+//!   The error is measured against the program's own integrator in double-double arithmetic.
+//! - Hard cases ([`HARD_CASES`]), which break integrators of impacts: each has its answer ([`exact`] where
+//!   there is a closed form) and the digits that its conditioning allows.
 
-use super::{Error, Progress, Simulation};
+mod cases;
+mod chart;
+pub mod exact;
+mod measure;
+pub mod methods;
+mod precision;
+mod report;
+pub mod scene;
+mod setup;
+
 use crate::numeric::number_text;
+use crate::questions::{Error, Progress, Simulation};
 use crate::study::Table;
-use crate::study::accuracy::methods::Scheme;
-use crate::study::accuracy::scene::{
-    StepSize, Tolerances, Trust, Unfit, scene_table, step_name, step_size, tolerances, trust,
-};
-use crate::study::accuracy::{Report, Selection, Stopped, accuracy};
+pub use cases::{HARD_CASES, HardCase};
+pub use chart::{accuracy_chart, cost_panel, scene_accuracy_chart, steps_panel};
+pub use measure::{Check, REFERENCE_TOLERANCE, STEP_ERROR, Variant};
+use methods::Scheme;
+pub use precision::{OWN, PROBLEMS, Point, Problem};
+pub use report::{Report, Selection, accuracy, description, names};
+use scene::{StepSize, Tolerances, Trust, Unfit, scene_table, step_name, step_size, tolerances, trust};
+pub use setup::Stopped;
 
 /// The error of the run of a scene, the cost of its digits, and the effect of fixed steps.
 ///

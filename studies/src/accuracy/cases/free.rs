@@ -2,12 +2,12 @@
 
 use std::f64::consts::{FRAC_PI_2, SQRT_2};
 
+use crate::accuracy::Stopped;
+use crate::accuracy::exact::{UnitWell, dd, first_hit, impact_time, rest_time, sine_turns};
+use crate::accuracy::measure::{Bench, STEP_ERROR, Trial, Trials, off, times};
+use crate::accuracy::setup::{Setup, polynomial, rigid, stops_at, unit_well};
 use crate::dynamics::{EventKind, Outcome, Side};
 use crate::numeric::{DoubleDouble, Scalar, elementary};
-use crate::study::accuracy::Stopped;
-use crate::study::accuracy::exact::{UnitWell, dd, first_hit, impact_time, rest_time, sine_turns};
-use crate::study::accuracy::measure::{Bench, STEP_ERROR, Trial, Trials, off, times};
-use crate::study::accuracy::setup::{Setup, polynomial, rigid, stops_at, unit_well};
 
 pub(super) fn separatrix(bench: &Bench) -> Trials {
     let starts = [

@@ -2,12 +2,12 @@
 
 use std::f64::consts::PI;
 
+use crate::accuracy::Stopped;
+use crate::accuracy::exact::Corner;
+use crate::accuracy::measure::{Bench, CHANGE, STEP_ERROR, Trial, Trials, hard_impacts, off, times};
+use crate::accuracy::setup::{Setup, polynomial, rigid, sine, stops_at, unit_well};
 use crate::dynamics::{EventKind, Outcome};
 use crate::numeric::elementary;
-use crate::study::accuracy::Stopped;
-use crate::study::accuracy::exact::Corner;
-use crate::study::accuracy::measure::{Bench, CHANGE, STEP_ERROR, Trial, Trials, hard_impacts, off, times};
-use crate::study::accuracy::setup::{Setup, polynomial, rigid, sine, stops_at, unit_well};
 
 pub(super) fn kink(bench: &Bench) -> Trials {
     Ok(vec![flexures(bench)?, corner(bench)?])

@@ -3,13 +3,13 @@
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
+use crate::accuracy::Stopped;
+use crate::accuracy::exact::{Coupled, Forcing, Oscillator, State, dd};
+use crate::accuracy::measure::{Bench, Trial, Trials, off};
+use crate::accuracy::setup::{Setup, coil, layer, polynomial, sine};
 use crate::dynamics::{Model, STANDARD_GRAVITY, TonePart};
 use crate::numeric::Scalar;
 use crate::scene::{Excitation, Record, Transducer};
-use crate::study::accuracy::Stopped;
-use crate::study::accuracy::exact::{Coupled, Forcing, Oscillator, State, dd};
-use crate::study::accuracy::measure::{Bench, Trial, Trials, off};
-use crate::study::accuracy::setup::{Setup, coil, layer, polynomial, sine};
 
 const MASS: f64 = 0.02;
 const STIFFNESS: f64 = 50.0;

@@ -2,13 +2,13 @@
 
 use std::f64::consts::TAU;
 
+use crate::accuracy::Stopped;
+use crate::accuracy::exact::{State, dd, sine_turns, turns};
+use crate::accuracy::measure::{Bench, CHANGE, STEP_ERROR, Trials, off, times};
+use crate::accuracy::setup::{Setup, constant, polynomial, sine, stops_at};
 use crate::dynamics::{EventKind, Run};
 use crate::numeric::{DoubleDouble, Scalar, bisect, elementary};
 use crate::scene::{Damping, Excitation};
-use crate::study::accuracy::Stopped;
-use crate::study::accuracy::exact::{State, dd, sine_turns, turns};
-use crate::study::accuracy::measure::{Bench, CHANGE, STEP_ERROR, Trials, off, times};
-use crate::study::accuracy::setup::{Setup, constant, polynomial, sine, stops_at};
 
 /// 1 kg that 1 N presses to a right stop at 1 m, from a gap in m with a velocity in m/s.
 fn pressed(gap: f64, v: f64, restitution: f64, drive: Excitation, duration: f64) -> Setup {

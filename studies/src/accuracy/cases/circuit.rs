@@ -3,12 +3,12 @@
 use std::f64::consts::TAU;
 
 use super::linear::{closed_form, electrical_size};
+use crate::accuracy::exact::{dd, exp, sin_cos};
+use crate::accuracy::measure::{Bench, CHANGE, STEP_ERROR, Trials, hard_impacts, off, pairs, times};
+use crate::accuracy::setup::{Setup, coil, layer, polynomial, rigid, sine, stops_at};
 use crate::dynamics::EventKind;
 use crate::numeric::{DoubleDouble, Number, Scalar, bisect, elementary};
 use crate::scene::{Mechanism, Transducer};
-use crate::study::accuracy::exact::{dd, exp, sin_cos};
-use crate::study::accuracy::measure::{Bench, CHANGE, STEP_ERROR, Trials, hard_impacts, off, pairs, times};
-use crate::study::accuracy::setup::{Setup, coil, layer, polynomial, rigid, sine, stops_at};
 
 pub(super) fn open_and_short(bench: &Bench) -> Trials {
     let nominal = || Setup::nominal(4.0, 0.36, sine(3.0, 14.7, 0.0), 1.0).start(4e-3, -0.1).damping(0.03);

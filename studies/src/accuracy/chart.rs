@@ -3,24 +3,21 @@
 
 use serde_json::json;
 
-use super::axis::PlotAxis;
-use super::chart::{Chart, Marks, Panel, PanelColumn};
-use super::drawn::Drawn;
-use super::figure::Point;
-use super::mark::Caption;
-use super::names::{DISPLACEMENT, PROCESSOR_TIME, TIME};
-use super::role::Role;
+use super::methods::Scheme;
+use super::scene::{StepSize, Tolerances, duration, step_name};
+use super::{OWN, PROBLEMS};
 use crate::numeric::elementary;
+use crate::output::{
+    Caption, Chart, DISPLACEMENT, Drawn, Marks, PROCESSOR_TIME, Panel, PanelColumn, PlotAxis, Point, Role,
+    TIME,
+};
 use crate::scene::PROGRAM;
 use crate::study::Table;
-use crate::study::accuracy::methods::Scheme;
-use crate::study::accuracy::scene::{StepSize, Tolerances, duration, step_name};
-use crate::study::accuracy::{OWN, PROBLEMS};
 
 /// An error of 0 is drawn here; smaller errors cannot be told apart in double precision.
 const LEAST: f64 = 1e-17;
 
-/// The picture of a table as [`work_table`](crate::study::accuracy::Report::work_table) gives it, and its
+/// The picture of a table as [`work_table`](super::Report::work_table) gives it, and its
 /// caption.
 #[doc(hidden)]
 pub fn accuracy_chart(table: &Table, version: &str) -> (Chart, Caption) {

@@ -5,9 +5,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use serde::{Deserialize, Serialize};
 
 use super::trust::{Beside, times};
+use crate::accuracy::methods::{MethodRun, Scheme, Statistics, fixed_step, path};
+use crate::accuracy::precision::{MEASURED_FOR, median};
 use crate::dynamics::{Event, EventKind, Model, Request};
-use crate::study::accuracy::methods::{MethodRun, Scheme, Statistics, fixed_step, path};
-use crate::study::accuracy::precision::{MEASURED_FOR, median};
 use crate::study::finished;
 
 /// Tolerance of the true run, unless that of the scene is tighter.

@@ -4,10 +4,10 @@ use std::sync::atomic::AtomicBool;
 
 use serde::{Deserialize, Serialize};
 
+use crate::accuracy::methods::{Statistics, path};
+use crate::accuracy::precision::median;
 use crate::dynamics::{Model, Outcome, Regime, Request, Run};
 use crate::numeric::elementary;
-use crate::study::accuracy::methods::{Statistics, path};
-use crate::study::accuracy::precision::median;
 use crate::study::finished;
 
 /// A path is trusted until its error exceeds this share of the travel, which is too small to see in a plot.

@@ -1,26 +1,10 @@
-//! Accuracy of runs, and its cost.
-//!
-//! - Any scene ([`scene`]): the error of its run, the time up to which its path can be trusted, and the
-//!   effect of a fixed step.
-//! - Three problems ([`PROBLEMS`]): work against precision, compared with other common methods ([`methods`]).
-//!   The error is measured against the program's own integrator in double-double arithmetic.
-//! - Hard cases ([`HARD_CASES`]), which break integrators of impacts: each has its answer ([`exact`] where
-//!   there is a closed form) and the digits that its conditioning allows.
+//! Work against precision of the problems, and the hard cases: their selection, run and tables.
 
-mod cases;
-pub mod exact;
-mod measure;
-pub mod methods;
-mod precision;
-pub mod scene;
-mod setup;
-
-pub use cases::{HARD_CASES, HardCase};
-pub use measure::{Check, REFERENCE_TOLERANCE, STEP_ERROR, Variant};
-pub use precision::{OWN, PROBLEMS, Point, Problem};
-pub use setup::Stopped;
-
-use super::{Table, Task};
+use super::cases::{HARD_CASES, HardCase};
+use super::measure::{Check, Variant};
+use super::precision::{OWN, PARTS, PROBLEMS, Point, Problem};
+use super::setup::{Stopped, TOLERANCE};
+use crate::study::{Table, Task};
 
 /// Names of all parts of the study: the problems, then the hard cases.
 pub fn names() -> impl Iterator<Item = &'static str> {
@@ -58,7 +42,7 @@ impl Selection {
 
     /// How often progress is reported.
     pub fn parts(&self) -> u64 {
-        (self.problems.len() * precision::PARTS + self.cases.len()) as u64
+        (self.problems.len() * PARTS + self.cases.len()) as u64
     }
 
     /// Whether work against precision is part of it.
@@ -170,7 +154,7 @@ impl Report {
             .each("method", &rows, |_| OWN)
             .each("variant", &rows, |row| row.1.name)
             .each("quantity", &rows, |row| row.2)
-            .each("tolerance", &rows, |_| setup::TOLERANCE)
+            .each("tolerance", &rows, |_| TOLERANCE)
             .each("step_s", &rows, |_| f64::NAN)
             .each("error", &rows, |row| numbers(row.3).0)
             .each("allowed", &rows, |row| numbers(row.3).1)
