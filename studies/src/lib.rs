@@ -17,6 +17,7 @@ pub mod output;
 #[doc(hidden)]
 pub mod study;
 mod accuracy;
+mod best;
 mod escape;
 mod exponents;
 pub mod questions;

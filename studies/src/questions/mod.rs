@@ -81,11 +81,9 @@
 //! A run of a grid that ends early is no error: the column `outcome` says why, and the others continue.
 
 mod compare;
-mod design;
 mod distance;
 mod error;
 mod grid;
-mod kept;
 mod lesson;
 mod motion;
 mod orbits;
@@ -94,18 +92,18 @@ mod progress;
 mod record;
 mod remarks;
 mod simulation;
-mod sweep;
+pub(crate) mod sweep;
 
 #[doc(hidden)]
 pub use crate::accuracy::check_accuracy;
 pub use crate::accuracy::{Accuracy, AccuracyAnswer};
+pub use crate::best::{Best, BestAnswer};
 pub use crate::escape::{Escape, Until};
 pub use crate::exponents::{Exponents, Lyapunov};
 pub use crate::section::{Section, SectionKind};
 pub use crate::spectrum::{Signal, Spectrum, SpectrumAnswer};
 pub use crate::threshold::{Found, Onset, Threshold};
 pub use compare::{Compare, CompareAnswer};
-pub use design::{Best, BestAnswer};
 pub use distance::{Distance, DistanceAnswer};
 #[doc(hidden)]
 pub use error::longest_wait;

@@ -298,7 +298,7 @@ fn check_share(law: &Variation, value: f64) -> Result<(), String> {
 
 /// The variation of `field` by `by`, a number in its unit or a percentage of its value; `form` is how both
 /// are written. The error is a clause.
-pub(super) fn variation(field: &str, by: &str, form: &str, document: &Document) -> Result<Variation, String> {
+pub(crate) fn variation(field: &str, by: &str, form: &str, document: &Document) -> Result<Variation, String> {
     can_vary(field, document)?;
     let (by, relative) = deviation(by, form)?;
     if by < 0.0 {
@@ -309,7 +309,7 @@ pub(super) fn variation(field: &str, by: &str, form: &str, document: &Document) 
 }
 
 /// Whether a field can have values a little beside its own; the error is a clause.
-pub(super) fn can_vary(field: &str, document: &Document) -> Result<(), String> {
+pub(crate) fn can_vary(field: &str, document: &Document) -> Result<(), String> {
     if FieldPath::new(field).get(&document.scene).is_none() {
         // the error of `parse` lists the fields
         Axis::parse(&format!("{field}=1"), &document.scene)?;
@@ -323,7 +323,7 @@ pub(super) fn can_vary(field: &str, document: &Document) -> Result<(), String> {
 }
 
 /// A number in the unit of a field, or the share of its value that a percentage is, and whether it is one.
-pub(super) fn deviation(text: &str, form: &str) -> Result<(f64, bool), String> {
+pub(crate) fn deviation(text: &str, form: &str) -> Result<(f64, bool), String> {
     let text = text.trim();
     let (number, relative) = text.strip_suffix('%').map_or((text, false), |share| (share, true));
     let number = read_number(number).map_err(|_| form)?;

@@ -121,7 +121,7 @@ impl Grid {
 }
 
 /// The place of cell `index` on each axis of a grid with axes of these lengths, the slowest first.
-pub(super) fn places<L>(lengths: L, index: u64) -> impl Iterator<Item = usize> + Clone
+pub(crate) fn places<L>(lengths: L, index: u64) -> impl Iterator<Item = usize> + Clone
 where
     L: Iterator<Item = usize> + Clone,
 {

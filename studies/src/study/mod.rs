@@ -50,13 +50,12 @@ pub(crate) use words;
 mod alternatives;
 pub(crate) mod amplitudes;
 mod basins;
-mod best;
 pub(crate) mod bisection;
 mod contact;
 mod curve;
 mod declared;
 mod fields;
-mod grid;
+pub(crate) mod grid;
 pub(crate) mod grid_study;
 mod identify;
 mod inspect;
@@ -84,6 +83,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::dynamics::{Outcome, Run};
 
+pub use crate::best::{
+    BestDesign, BestQuestion, Constraint, DesignRange, DesignRun, Environment, Memory, NoBest, Optimum,
+    Results, Seeds, Spread, Tolerance, Tried, best, names, place, quantity,
+};
 pub use crate::escape::{NoKramers, depopulation, kramers_rate};
 pub use crate::exponents::{Estimate, ExponentOptions, Lyapunov, NoExponents, average_exponents, exponents};
 pub use crate::section::{IMPACTS, MAX_SECTION, SectionAt, SectionOptions, Sections, section};
@@ -96,11 +99,6 @@ pub(crate) use amplitudes::stops_that_cross;
 pub use amplitudes::{Thresholds, can_cross, thresholds};
 pub(crate) use basins::StartsError;
 pub use basins::{Answer, Attractor, BasinMap, EvenRange, NoBasins, Shares, Starts};
-pub use best::{
-    BestDesign, BestQuestion, Constraint, DesignRange, DesignRun, Environment, Memory, NoBest, Optimum,
-    Results, Seeds, Spread, Tolerance, Tried, best, names, place, quantity,
-};
-pub(crate) use best::{INTERVALS, MOST_FIELDS, scan_places};
 pub use contact::yield_warning;
 pub(crate) use contact::{contact, yield_speed};
 pub use curve::{

@@ -1,28 +1,13 @@
-//! Best design for an environment: the values of some fields that maximise a result.
-//!
-//! Results of a mass with stops are discontinuous functions of the design (a small change may bring the mass
-//! to rest) and have isolated windows, so gradients are not used. The whole range is scanned first, coarsely
-//! and then finely; then the scan is repeated in ever smaller boxes around the best designs. A maximum that
-//! is narrower than the step of the scan may be missed.
-
-mod evaluate;
-mod plan;
-mod search;
-mod seeds;
-mod varied;
-mod words;
+//! The parsed question and its answer.
 
 use serde::{Deserialize, Serialize};
 
-use super::{SummaryField, Table, Task};
+use super::evaluate::{Evaluator, Memory};
+use super::plan::{Part, Plan};
+use super::{Seeds, names, search, varied};
 use crate::scene::{Fault, Files, Scene};
+use crate::study::{SummaryField, Table, Task};
 use crate::system::threads::Pool;
-use evaluate::Evaluator;
-pub use evaluate::{DesignRun, Memory, Results};
-use plan::{Part, Plan};
-pub use seeds::Seeds;
-pub use varied::SAMPLES;
-pub use words::{names, place, quantity};
 
 /// A field of the design with its range, in the unit of the field.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -36,7 +21,7 @@ pub struct DesignRange {
     /// Number of intervals of the scan: at least 1, and for whole numbers at most the length of the range.
     pub intervals: usize,
     /// Whether only whole numbers are tried, as for a count.
-    whole: bool,
+    pub(super) whole: bool,
 }
 
 impl DesignRange {

@@ -1,16 +1,11 @@
 //! Picture of the search for a best design: the designs that were tried, and the one that was found.
 
-use super::axis::{PlotAxis, Ranges};
-use super::cells::{Colours, Shade, Shades};
-use super::chart::{Chart, Marks, Panel, Side};
-use super::drawn::Drawn;
-use super::figure::Point;
-use super::quantity::suited_unit;
-use super::role::Role;
+use super::{BestDesign, BestQuestion, Optimum, Tried, names, scan_places};
 use crate::numeric::short;
-use crate::study::{
-    BestDesign, BestQuestion, Edges, Optimum, Tried, label_and_unit, names, scan_places, with_unit,
+use crate::output::{
+    Chart, Colours, Drawn, Marks, Panel, PlotAxis, Point, Ranges, Role, Shade, Shades, Side, suited_unit,
 };
+use crate::study::{Edges, label_and_unit, with_unit};
 
 /// Words of the legend.
 const NO_VALUE: &str = "no value";
@@ -21,7 +16,7 @@ const BROKEN: &str = "a constraint broken";
 /// in the order in which they were tried. The design that was found is marked, and designs that break a
 /// constraint are crossed.
 ///
-/// `question` and `design` are the fields of a [`BestAnswer`](crate::questions::BestAnswer).
+/// `question` and `design` are the fields of a [`BestAnswer`](super::BestAnswer).
 pub fn best_chart(question: &BestQuestion, design: &BestDesign, ranges: Ranges) -> Chart {
     let shown = Shown::new(question, design, ranges);
     let panel = match question.over.len() {

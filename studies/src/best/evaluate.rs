@@ -7,8 +7,8 @@ use super::{BestQuestion, DesignRange, NoBest, Optimum, Tried};
 use crate::dynamics::{Model, Outcome, Request, Run, Summary};
 use crate::mechanics::{BuildError, Mechanism};
 use crate::scene::{Fault, FieldPath, Scene, check, is_whole};
-use crate::study::Task;
-use crate::study::settled::{followed, followed_until, runs_from, settled_within, widened};
+use crate::study::settled::{followed, runs_from, settled_within, widened};
+use crate::study::{Task, followed_until};
 use crate::system::threads::{Pool, Queue};
 
 #[derive(Debug, Clone, PartialEq)]

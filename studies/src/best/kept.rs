@@ -4,9 +4,9 @@ use std::collections::HashMap;
 use std::path::Path;
 use std::sync::Mutex;
 
+use super::{BestQuestion, DesignRun, Memory, Results};
 use crate::numeric::number_text;
 use crate::scene::PROGRAM;
-use crate::study::{BestQuestion, DesignRun, Memory, Results};
 use crate::system::checksum::checksum;
 use crate::system::lines::Lines;
 

@@ -1,16 +1,37 @@
-//! The question about the best design for an environment.
+//! Best design for an environment: the values of some fields that maximise a result.
+//!
+//! Results of a mass with stops are discontinuous functions of the design (a small change may bring the mass
+//! to rest) and have isolated windows, so gradients are not used. The whole range is scanned first, coarsely
+//! and then finely; then the scan is repeated in ever smaller boxes around the best designs. A maximum that
+//! is narrower than the step of the scan may be missed.
+
+mod chart;
+mod design;
+mod evaluate;
+mod kept;
+mod plan;
+mod search;
+mod seeds;
+mod varied;
+mod words;
 
 use std::path::PathBuf;
 
-use super::grid::{check_until, drive_alone};
-use super::kept::Kept;
-use super::{Error, Progress, Simulation, sweep};
+use crate::questions::{Error, Progress, Simulation, check_until, drive_alone, sweep};
 use crate::scene::{Axis, Document, FieldPath, RunSettings, Transducer, find_name, is_whole, read_number};
-use crate::study::{
-    BestDesign, BestQuestion, Constraint, DesignRange, Environment, INTERVALS, MOST_FIELDS, Memory, NoBest,
-    Optimum, Read, SUMMARY_FIELDS, SummaryField, Table, Tolerance, best, names, place, quantity,
-};
+use crate::study::{Read, SUMMARY_FIELDS, SummaryField, Table};
 use crate::system::files::{canonical, is_file};
+pub use chart::best_chart;
+pub use design::{
+    BestDesign, BestQuestion, Constraint, DesignRange, Environment, NoBest, Optimum, Spread, Tolerance,
+    Tried, best,
+};
+use design::{INTERVALS, MOST_FIELDS, scan_places};
+pub use evaluate::{DesignRun, Memory, Results};
+use kept::Kept;
+pub use seeds::Seeds;
+use varied::SAMPLES;
+pub use words::{names, place, quantity};
 
 /// The best design for an environment: the values of one to four fields that maximise a result of the run.
 ///
