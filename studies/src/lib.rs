@@ -18,6 +18,7 @@ pub mod output;
 pub mod study;
 mod accuracy;
 mod best;
+mod compare;
 mod escape;
 mod exponents;
 pub mod questions;

@@ -85,7 +85,8 @@ pub use manifest::{Made, Manifest, Provenance, manifest_path, merged_manifest};
 pub use plan::{plan, plan_differences};
 pub use plot::*;
 pub(crate) use plot::{
-    Drawn, Point, as_numbers, ascending, each_line, few_lines, label, map, of_rows, spans, swept_axis,
+    Drawn, Point, REGIMES, as_numbers, ascending, each_line, few_lines, label, map, of_rows, spans,
+    swept_axis,
 };
 pub use text::aligned;
 

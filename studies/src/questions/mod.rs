@@ -80,7 +80,6 @@
 //!
 //! A run of a grid that ends early is no error: the column `outcome` says why, and the others continue.
 
-mod compare;
 mod distance;
 mod error;
 mod grid;
@@ -90,7 +89,6 @@ mod orbits;
 mod parts;
 mod progress;
 mod record;
-mod remarks;
 mod simulation;
 pub(crate) mod sweep;
 
@@ -98,12 +96,12 @@ pub(crate) mod sweep;
 pub use crate::accuracy::check_accuracy;
 pub use crate::accuracy::{Accuracy, AccuracyAnswer};
 pub use crate::best::{Best, BestAnswer};
+pub use crate::compare::{Compare, CompareAnswer};
 pub use crate::escape::{Escape, Until};
 pub use crate::exponents::{Exponents, Lyapunov};
 pub use crate::section::{Section, SectionKind};
 pub use crate::spectrum::{Signal, Spectrum, SpectrumAnswer};
 pub use crate::threshold::{Found, Onset, Threshold};
-pub use compare::{Compare, CompareAnswer};
 pub use distance::{Distance, DistanceAnswer};
 #[doc(hidden)]
 pub use error::longest_wait;

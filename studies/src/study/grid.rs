@@ -31,12 +31,12 @@ pub struct Grid {
     cells: u64,
 }
 
-pub(super) fn is_of_mechanism(field: &str) -> bool {
+pub(crate) fn is_of_mechanism(field: &str) -> bool {
     field.split('.').next() == Some("mechanism")
 }
 
 /// The name of a field, the last part of its path.
-pub(super) fn name_of(field: &str) -> &str {
+pub(crate) fn name_of(field: &str) -> &str {
     field.rsplit('.').next().unwrap_or(field)
 }
 

@@ -47,7 +47,6 @@ macro_rules! words {
 
 pub(crate) use words;
 
-mod alternatives;
 pub(crate) mod amplitudes;
 mod basins;
 pub(crate) mod bisection;
@@ -87,14 +86,13 @@ pub use crate::best::{
     BestDesign, BestQuestion, Constraint, DesignRange, DesignRun, Environment, Memory, NoBest, Optimum,
     Results, Seeds, Spread, Tolerance, Tried, best, names, place, quantity,
 };
+pub use crate::compare::{Alternative, Rated, alternatives};
 pub use crate::escape::{NoKramers, depopulation, kramers_rate};
 pub use crate::exponents::{Estimate, ExponentOptions, Lyapunov, NoExponents, average_exponents, exponents};
 pub use crate::section::{IMPACTS, MAX_SECTION, SectionAt, SectionOptions, Sections, section};
 pub use crate::spectrum::{Signal, SpectrumAnswer, SpectrumOptions, spectrum};
 pub(crate) use crate::threshold::NoThresholds;
 pub use crate::threshold::{Found, Onset, Scan, Verdict, melnikov_threshold, threshold};
-pub use alternatives::{Alternative, Rated, alternatives};
-pub(crate) use alternatives::{SEARCHED_SPAN, comparison_parts, comparison_table};
 pub(crate) use amplitudes::stops_that_cross;
 pub use amplitudes::{Thresholds, can_cross, thresholds};
 pub(crate) use basins::StartsError;
@@ -181,7 +179,7 @@ pub(crate) fn finished(run: Run) -> Option<Run> {
 }
 
 /// The result of a part of a study that can be cancelled.
-type Result<T, E = Cancelled> = std::result::Result<T, E>;
+pub(crate) type Result<T, E = Cancelled> = std::result::Result<T, E>;
 
 /// Displacement in m and velocity in m/s.
 type State = (f64, f64);

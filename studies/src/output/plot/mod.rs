@@ -11,7 +11,6 @@ mod beside;
 mod branch;
 mod cells;
 mod chart;
-mod comparison;
 mod curve;
 mod distance;
 mod drawn;
@@ -58,6 +57,7 @@ pub use crate::study::{OutsideCurve, StatesError};
 
 pub use crate::accuracy::{accuracy_chart, cost_panel, scene_accuracy_chart, steps_panel};
 pub use crate::best::best_chart;
+pub use crate::compare::{compared_name, comparison_chart, comparison_title, three_digits};
 pub use crate::spectrum::{SpectrumQuantity, spectrum_chart};
 pub use assembly::{Assembly, MagnetPair};
 pub use axis::{PlotAxis, Ranges};
@@ -65,7 +65,6 @@ pub use basins::{basins_chart, can_show_starts};
 pub use branch::{branch_chart, loci_chart};
 pub use cells::{Colours, Shade, Shades};
 pub use chart::{Chart, Layer, Marks, Note, Panel, PanelColumn, Side};
-pub use comparison::{compared_name, comparison_chart, comparison_title, three_digits};
 pub use curve::{contact_chart, curve_chart, force_panel, zero_of_energy};
 pub use distance::distance_chart;
 pub(crate) use drawn::{Drawn, as_numbers, of_rows};
@@ -77,6 +76,7 @@ pub use ledger::{LedgerTerm, ledger_bars, ledger_decimals, ledger_number, share_
 pub(crate) use map::map;
 pub use map::shown_columns;
 pub use mark::Caption;
+pub(crate) use mark::REGIMES;
 pub use mechanism::mechanism_chart;
 pub use names::{
     BASE_ACCELERATION, DISPLACEMENT, FREQUENCY, HOLDING_FORCE, PROCESSOR_TIME, TIME, VELOCITY, axis_name,

@@ -2,15 +2,11 @@
 
 use std::collections::BTreeSet;
 
-use super::axis::PlotAxis;
-use super::chart::{Chart, Marks, Panel, PanelColumn};
-use super::mark::REGIMES;
-use super::quantity::suited_unit;
-use super::role::Role;
+use super::{CompareAnswer, Rated, SEARCHED_SPAN};
 use crate::numeric::{Ending, elementary, short, significant};
-use crate::questions::CompareAnswer;
+use crate::output::{Chart, Marks, Panel, PanelColumn, PlotAxis, REGIMES, Role, suited_unit};
 use crate::scene::{Document, is_link};
-use crate::study::{Rated, SEARCHED_SPAN, Table};
+use crate::study::Table;
 
 /// Largest number of panels side by side.
 const COLUMNS: usize = 4;

@@ -1,10 +1,11 @@
 //! What the rows of a comparison lack, in sentences.
 
-use super::Simulation;
+use super::Rated;
 use crate::dynamics::Regime;
 use crate::numeric::short;
+use crate::questions::Simulation;
 use crate::scene::{Document, RunSettings, Stops, Transducer};
-use crate::study::{Rated, Table};
+use crate::study::Table;
 
 /// The remarks on a comparison: which scenes have another excitation or run than in their files, and why the
 /// `rated` ones lack a number. Each begins with the names of the scenes to which it applies.

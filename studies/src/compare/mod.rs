@@ -1,13 +1,20 @@
-//! Questions about several scenes: their comparison under one sine.
+//! Comparison of scenes under one sine: release and crossing amplitudes, settled motion, the band of
+//! frequencies that cross, and the sensitivity of the crossing amplitude to their sizes.
+
+mod chart;
+mod rate;
+mod remarks;
 
 use std::sync::Arc;
 
-use super::grid::check_until;
-use super::remarks::of_comparison;
-use super::{Error, Progress, Simulation};
+use crate::questions::{Error, Progress, Simulation, check_until};
 use crate::scene::{Document, Excitation, Start};
-use crate::study::{Alternative, Rated, Table, Task, alternatives, comparison_parts, comparison_table};
+use crate::study::{Table, Task};
 use crate::system::threads::Pool;
+pub use chart::{compared_name, comparison_chart, comparison_title, three_digits};
+pub use rate::{Alternative, Rated, alternatives};
+use rate::{SEARCHED_SPAN, comparison_table, parts};
+use remarks::of_comparison;
 
 /// Comparison of scenes under the sine and with the run settings of the first one, each from rest.
 ///
@@ -19,10 +26,10 @@ use crate::system::threads::Pool;
 /// # Method
 ///
 /// The release has a closed form; the crossing amplitude is found by a scan and bisection, as by
-/// [`Threshold`](super::Threshold); the band of frequencies by 40 steps per decade, from a tenth to ten times
-/// the frequency of the sine, whose ends are bisected to a thousandth; the sensitivity by changing one
-/// length, thickness or gap of the mechanism at a time by 1 % up and down. Each of these changes is a search
-/// of its own, for which flexures are solved anew.
+/// [`Threshold`](crate::questions::Threshold); the band of frequencies by 40 steps per decade, from a tenth to
+/// ten times the frequency of the sine, whose ends are bisected to a thousandth; the sensitivity by changing
+/// one length, thickness or gap of the mechanism at a time by 1 % up and down. Each of these changes is a
+/// search of its own, for which flexures are solved anew.
 ///
 /// # Errors
 ///
@@ -67,7 +74,7 @@ impl Compare {
         let scenes = self.scenes(simulation, progress)?;
         let all: Vec<_> = scenes.iter().cloned().map(alternative).collect();
         let rate = |pool: &Pool, task: &Task| alternatives(&all, self.until_settled, pool, task);
-        let rated = progress.shared(comparison_parts(&all), rate)?.ok_or(Error::Cancelled)?;
+        let rated = progress.shared(parts(&all).len() as u64, rate)?.ok_or(Error::Cancelled)?;
         let (frequency_hz, amplitude_g) = needs_a_sine(self.environment(simulation))?;
         let table = comparison_table(&rated);
         let given: Vec<_> = self.given(simulation).collect();

@@ -1,20 +1,19 @@
-//! Comparison of scenes under one sine: release and crossing amplitudes, settled motion, the band of
-//! frequencies that cross, and the sensitivity of the crossing amplitude to their sizes.
+//! The numbers of each scene of a comparison, and their table.
 
 use std::sync::Arc;
 
-use super::amplitudes::{crossing, frees_at};
-use super::bisection::multiple;
-use super::grid::{is_of_mechanism, name_of};
-use super::settled::{followed, settled_within, shared_runs};
-use super::{Cancelled, Family, Found, Onset, Result, SummaryField, Table, Task};
 use crate::dynamics::{Model, Run, Summary};
 use crate::mechanics::Mechanism;
 use crate::numeric::elementary;
 use crate::numeric::round::decade;
 use crate::scene::{Excitation, FieldPath, Files, STANDARD_GRAVITY, Scene, numeric_fields};
+use crate::study::amplitudes::{crossing, frees_at};
+use crate::study::bisection::multiple;
+use crate::study::grid::{is_of_mechanism, name_of};
+use crate::study::settled::{followed, settled_within, shared_runs};
+use crate::study::{Cancelled, Family, Result, SummaryField, Table, Task};
 use crate::system::threads::Pool;
-use crate::threshold::{Above, from_rest};
+use crate::threshold::{Above, Found, Onset, from_rest};
 
 /// A scene of a comparison, with the common excitation.
 #[derive(Debug, Clone)]
@@ -66,19 +65,15 @@ pub struct Rated {
 }
 
 /// A part of the work: rating a scene, or finding its crossing threshold with one size changed.
-struct Part {
+pub(super) struct Part {
     /// The index of the scene.
     scene: usize,
     /// The field that is changed, and by which share.
     change: Option<(String, f64)>,
 }
 
-/// Number of parts of the work.
-pub fn comparison_parts(scenes: &[Alternative]) -> u64 {
-    parts(scenes).len() as u64
-}
-
-fn parts(scenes: &[Alternative]) -> Vec<Part> {
+/// The parts of the work.
+pub(super) fn parts(scenes: &[Alternative]) -> Vec<Part> {
     let unchanged = (0..scenes.len()).map(|scene| Part { scene, change: None });
     let changed = scenes.iter().enumerate().flat_map(|(scene, alternative)| {
         let change = |field: &String| [-1.0, 1.0].map(|way| Some((field.clone(), way * SIZE_CHANGE)));
