@@ -19,6 +19,7 @@ pub mod study;
 mod accuracy;
 mod best;
 mod compare;
+mod curve;
 mod escape;
 mod exponents;
 pub mod questions;

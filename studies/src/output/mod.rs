@@ -86,7 +86,7 @@ pub use plan::{plan, plan_differences};
 pub use plot::*;
 pub(crate) use plot::{
     Drawn, Point, REGIMES, as_numbers, ascending, each_line, few_lines, label, map, of_rows, spans,
-    swept_axis,
+    superscript, swept_axis,
 };
 pub use text::aligned;
 

@@ -97,6 +97,7 @@ pub use crate::accuracy::check_accuracy;
 pub use crate::accuracy::{Accuracy, AccuracyAnswer};
 pub use crate::best::{Best, BestAnswer};
 pub use crate::compare::{Compare, CompareAnswer};
+pub use crate::curve::{Curve, FlexuresAnswer};
 pub use crate::escape::{Escape, Until};
 pub use crate::exponents::{Exponents, Lyapunov};
 pub use crate::section::{Section, SectionKind};
@@ -110,7 +111,7 @@ pub(crate) use grid::{check_until, drive_alone, settles};
 #[doc(hidden)]
 pub use lesson::{JudgedStep, check_lessons};
 pub(crate) use motion::may_have_circuit;
-pub use motion::{Basins, BasinsAnswer, Curve, FlexuresAnswer};
+pub use motion::{Basins, BasinsAnswer};
 pub(crate) use orbits::phase;
 pub use orbits::{Branch, BranchesAnswer, Locus, LocusAnswer, Orbit};
 #[doc(hidden)]

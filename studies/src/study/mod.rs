@@ -51,7 +51,6 @@ pub(crate) mod amplitudes;
 mod basins;
 pub(crate) mod bisection;
 mod contact;
-mod curve;
 mod declared;
 mod fields;
 pub(crate) mod grid;
@@ -87,6 +86,11 @@ pub use crate::best::{
     Results, Seeds, Spread, Tolerance, Tried, best, names, place, quantity,
 };
 pub use crate::compare::{Alternative, Rated, alternatives};
+pub(crate) use crate::curve::small_amplitude_frequency;
+pub use crate::curve::{
+    CURVE_PICTURE_POINTS, CURVE_POINTS, OutsideCurve, StatesError, curve, default_positions, even_positions,
+    metres, states, stop_positions,
+};
 pub use crate::escape::{NoKramers, depopulation, kramers_rate};
 pub use crate::exponents::{Estimate, ExponentOptions, Lyapunov, NoExponents, average_exponents, exponents};
 pub use crate::section::{IMPACTS, MAX_SECTION, SectionAt, SectionOptions, Sections, section};
@@ -99,11 +103,6 @@ pub(crate) use basins::StartsError;
 pub use basins::{Answer, Attractor, BasinMap, EvenRange, NoBasins, Shares, Starts};
 pub use contact::yield_warning;
 pub(crate) use contact::{contact, yield_speed};
-pub use curve::{
-    CURVE_PICTURE_POINTS, CURVE_POINTS, OutsideCurve, StatesError, curve, default_positions, even_positions,
-    metres, states, stop_positions,
-};
-pub(crate) use curve::{full_curve, shapes, small_amplitude_frequency, stress_warning};
 pub use declared::{
     Answered, Framing, Heading, Over, PICTURE, Remark, Rows, Scenes, Spelling, Streamed, Study, answer,
     answer_in, counted, number, whole,

@@ -3,12 +3,12 @@
 
 use super::axis::{PlotAxis, Ranges};
 use super::chart::{Chart, Marks, Panel};
-use super::curve::{telling, wall};
 use super::drawn::Drawn;
 use super::figure::Point;
 use super::names::{BASE_ACCELERATION, DISPLACEMENT, HOLDING_FORCE, TIME, VELOCITY, axis_name};
 use super::quantity::suited_unit;
 use super::role::Role;
+use crate::curve::{telling, wall};
 use crate::dynamics::STANDARD_GRAVITY;
 use crate::numeric::{extent, short};
 use crate::scene::{Quantity, Timing};

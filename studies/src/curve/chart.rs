@@ -1,15 +1,13 @@
 //! Pictures of a mechanism: force and potential over displacement, with equilibria, kinks and stops; and the
 //! restitution of a compliant stop.
 
-use super::axis::{PlotAxis, Ranges, superscript};
-use super::chart::{Chart, Layer, Marks, Panel};
-use super::drawn::{Drawn, of_rows};
-use super::figure::Point;
-use super::names::{DISPLACEMENT, HOLDING_FORCE, axis_name};
-use super::role::Role;
 use crate::mechanics::{Hertz, Landscape, Mechanism};
 use crate::numeric::round::decade;
 use crate::numeric::{elementary, extent, short};
+use crate::output::{
+    Chart, DISPLACEMENT, Drawn, HOLDING_FORCE, Layer, Marks, Panel, PlotAxis, Point, Ranges, Role, axis_name,
+    of_rows, superscript,
+};
 use crate::study::{Table, yield_speed};
 
 /// The picture of the force curve of a mechanism with its potential, from the `table` of
@@ -118,7 +116,7 @@ fn drawn(table: &Table, mechanism: &Mechanism, stops: (f64, f64), inside: impl F
     drawn.table()
 }
 
-pub(super) fn subtitle(landscape: &Landscape) -> String {
+pub(crate) fn subtitle(landscape: &Landscape) -> String {
     let Some(barrier) = landscape.barrier else {
         return if landscape.equilibria.is_empty() { "no equilibrium" } else { "one well" }.to_owned();
     };
@@ -132,7 +130,7 @@ pub(super) fn subtitle(landscape: &Landscape) -> String {
 
 /// A note on forces beyond the vertical axis at positions in mm in the range: how large they become, and
 /// where. `scale` is that of the vertical axis.
-pub(super) fn wall(points: &[Point], panel: &Panel, scale: f64) -> Option<String> {
+pub(crate) fn wall(points: &[Point], panel: &Panel, scale: f64) -> Option<String> {
     let shown = points.iter().filter(|(x, force)| panel.x.contains(*x) && force.is_finite());
     let outside = shown.filter(|(_, force)| !panel.y.contains(*force));
     let (x, force) = outside.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
@@ -151,7 +149,7 @@ fn scaled((low, high): (f64, f64), units: &[(f64, &'static str)]) -> (f64, &'sta
 
 /// The range of values of interest. A steep force beyond `ends`, the outermost equilibria, would flatten the
 /// rest of the curve, so it extends the range between the equilibria by at most half of it on each side.
-pub(super) fn telling(points: &[Point], ends: Option<(f64, f64)>) -> (f64, f64) {
+pub(crate) fn telling(points: &[Point], ends: Option<(f64, f64)>) -> (f64, f64) {
     let range = |from: f64, to: f64| {
         let inside = points.iter().filter(|(x, v)| *x >= from && *x <= to && v.is_finite());
         extent(inside.map(|(_, v)| *v))

@@ -1,14 +1,9 @@
 //! Picture of bent flexures: their centre lines in the frame, at one displacement or at several.
 
-use super::axis::PlotAxis;
-use super::chart::{Chart, Marks, Panel};
-use super::drawn::Drawn;
-use super::figure::Point;
-use super::names::DISPLACEMENT;
-use super::role::Role;
 use crate::mechanics::Mechanism;
 use crate::mechanics::flexure::State;
 use crate::numeric::short;
+use crate::output::{Chart, DISPLACEMENT, Drawn, Marks, Panel, PlotAxis, Point, Role};
 use crate::study::Table;
 
 /// Number of states up to which each has a name in the legend; of more the first and the last have one.
@@ -48,11 +43,11 @@ pub fn shapes_chart(states: &[State], mechanism: &Mechanism, stops: (f64, f64)) 
         1 => "centre line of the flexures",
         _ => "centre lines: above the mass the buckling flexures, below it the parallel ones",
     };
-    Chart::stack(vec![panel], format!("{about}; sideways stretched"), drawn(states, stops, &[]))
+    Chart::stack(vec![panel], format!("{about}; sideways stretched"), drawn_shapes(states, stops, &[]))
 }
 
 /// The flexures in these states, stops and masses in m.
-pub(super) fn drawn(states: &[State], stops: (f64, f64), masses: &[f64]) -> Table {
+pub(crate) fn drawn_shapes(states: &[State], stops: (f64, f64), masses: &[f64]) -> Table {
     let mut drawn = Drawn::new(["x_m", "s_m", "px_m", "py_m"], &["flexure"]);
     for state in states {
         for line in &state.lines {

@@ -1,12 +1,11 @@
-//! Force, potential and stiffness of a mechanism over displacement, and shapes, axial force and stress of its
-//! flexures. The force curve is a piecewise polynomial; the states of flexures are solved at each position.
+//! Positions of a mechanism, its force curve and the states of its flexures there, and their stress.
 
-use super::{Table, Task};
 use crate::mechanics::flexure::{FlexureError, Flexures, State};
 use crate::mechanics::{Equilibrium, Mechanism};
 use crate::numeric::round::decade;
 use crate::numeric::{Decimal, elementary, extent, short};
 use crate::scene::Scene;
+use crate::study::{Table, Task};
 
 /// Default number of positions of a force curve.
 pub const CURVE_POINTS: u32 = 401;
@@ -33,7 +32,7 @@ pub fn curve(mechanism: &Mechanism, positions: Vec<f64>) -> Result<Table, Outsid
     Ok(rows(mechanism, &positions))
 }
 
-fn rows(mechanism: &Mechanism, positions: &[f64]) -> Table {
+pub(super) fn rows(mechanism: &Mechanism, positions: &[f64]) -> Table {
     let curve = &mechanism.curve;
     Table::new()
         .each("x_m", positions, |x| *x)
@@ -131,38 +130,6 @@ pub fn states(mechanism: &Mechanism, positions: &[f64], task: &Task) -> Result<V
         Ok(state)
     };
     positions.iter().map(state).collect()
-}
-
-/// The table of [`curve`] at the positions of `states`, with `axial_n,bump_m,max_stress_pa`.
-pub fn full_curve(mechanism: &Mechanism, states: &[State]) -> Table {
-    let positions: Vec<f64> = states.iter().map(|state| state.x).collect();
-    let table = rows(mechanism, &positions);
-    let table = table.each("axial_n", states, |state| state.axial).each("bump_m", states, |state| state.bump);
-    table.each("max_stress_pa", states, |state| state.max_stress)
-}
-
-/// The table `x_m,flexure,s_m,px_m,py_m`: the centre lines of each state, point by point.
-///
-/// px and py are coordinates in the frame, for a shuttle without width: the parallel flexures are clamped at
-/// (0, 0) and reach the shuttle at (L_p - u, x), u being their shortening; the buckling ones are clamped at
-/// (L_p + L_b - preload, 0) and reach the same point of the shuttle. s is the length along a flexure from its
-/// clamp in the frame.
-pub fn shapes(states: &[State]) -> Table {
-    let mut rows = Vec::new();
-    for state in states {
-        for line in &state.lines {
-            // adding 0 turns -0 into 0
-            let row =
-                |[s, px, py]: &[f64; 3]| (line.flexure, [state.x, *s, *px, *py].map(|value| value + 0.0));
-            rows.extend(line.points.iter().map(row));
-        }
-    }
-    Table::new()
-        .each("x_m", &rows, |row| row.1[0])
-        .each("flexure", &rows, |row| row.0)
-        .each("s_m", &rows, |row| row.1[1])
-        .each("px_m", &rows, |row| row.1[2])
-        .each("py_m", &rows, |row| row.1[3])
 }
 
 /// A warning in one sentence if the bending stress of some `states` exceeds the limit of the scene. It gives
