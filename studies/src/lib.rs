@@ -20,6 +20,7 @@ mod accuracy;
 mod best;
 mod compare;
 mod curve;
+mod distance;
 mod escape;
 mod exponents;
 pub mod questions;

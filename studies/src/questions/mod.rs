@@ -80,7 +80,6 @@
 //!
 //! A run of a grid that ends early is no error: the column `outcome` says why, and the others continue.
 
-mod distance;
 mod error;
 mod grid;
 mod lesson;
@@ -98,12 +97,12 @@ pub use crate::accuracy::{Accuracy, AccuracyAnswer};
 pub use crate::best::{Best, BestAnswer};
 pub use crate::compare::{Compare, CompareAnswer};
 pub use crate::curve::{Curve, FlexuresAnswer};
+pub use crate::distance::{Distance, DistanceAnswer};
 pub use crate::escape::{Escape, Until};
 pub use crate::exponents::{Exponents, Lyapunov};
 pub use crate::section::{Section, SectionKind};
 pub use crate::spectrum::{Signal, Spectrum, SpectrumAnswer};
 pub use crate::threshold::{Found, Onset, Threshold};
-pub use distance::{Distance, DistanceAnswer};
 #[doc(hidden)]
 pub use error::longest_wait;
 pub use error::{Error, FaultAt};

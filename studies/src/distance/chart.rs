@@ -1,12 +1,8 @@
 //! Picture of the distance of motions over time, on a logarithmic scale.
 
-use super::axis::PlotAxis;
-use super::chart::{Chart, Marks, Panel};
-use super::drawn::Drawn;
-use super::names::TIME;
-use super::role::Role;
+use super::DistanceAnswer;
 use crate::numeric::elementary;
-use crate::questions::DistanceAnswer;
+use crate::output::{Chart, Drawn, Marks, Panel, PlotAxis, Role, TIME};
 
 /// Decimal logarithm of the smallest distance shown, in mm; below it lies rounding error.
 const MIN_LOG: f64 = -14.0;

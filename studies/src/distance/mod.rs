@@ -1,8 +1,11 @@
 //! Distance of the motions of other scenes from that of one.
 
-use super::{Error, Progress, Simulation};
+mod chart;
+
 use crate::numeric::number_text;
+use crate::questions::{Error, Progress, Simulation};
 use crate::study::{Keep, Table, Values};
+pub use chart::distance_chart;
 
 /// Names of the other scenes.
 const LETTERS: [&str; 3] = ["A", "B", "C"];
@@ -95,8 +98,7 @@ impl DistanceAnswer {
     }
 
     /// The lines with their letters.
-    #[doc(hidden)]
-    pub fn lines(&self) -> impl Iterator<Item = (&'static str, &Vec<(f64, f64)>)> {
+    fn lines(&self) -> impl Iterator<Item = (&'static str, &Vec<(f64, f64)>)> {
         LETTERS.into_iter().zip(&self.lines)
     }
 }
