@@ -23,6 +23,7 @@ mod curve;
 mod distance;
 mod escape;
 mod exponents;
+mod identify;
 pub mod questions;
 mod section;
 mod spectrum;

@@ -87,7 +87,6 @@ mod motion;
 mod orbits;
 mod parts;
 mod progress;
-mod record;
 mod simulation;
 pub(crate) mod sweep;
 
@@ -100,6 +99,9 @@ pub use crate::curve::{Curve, FlexuresAnswer};
 pub use crate::distance::{Distance, DistanceAnswer};
 pub use crate::escape::{Escape, Until};
 pub use crate::exponents::{Exponents, Lyapunov};
+#[doc(hidden)]
+pub use crate::identify::columns_read;
+pub use crate::identify::{Identify, IdentifyAnswer, WhatToIdentify};
 pub use crate::section::{Section, SectionKind};
 pub use crate::spectrum::{Signal, Spectrum, SpectrumAnswer};
 pub use crate::threshold::{Found, Onset, Threshold};
@@ -116,9 +118,6 @@ pub use orbits::{Branch, BranchesAnswer, Locus, LocusAnswer, Orbit};
 #[doc(hidden)]
 pub use parts::{stops_that_cross, thresholds, walks};
 pub use progress::Progress;
-#[doc(hidden)]
-pub use record::columns_read;
-pub use record::{Identify, IdentifyAnswer, WhatToIdentify};
 pub use simulation::Simulation;
 pub use sweep::Sweep;
 #[doc(hidden)]

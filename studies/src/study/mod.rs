@@ -55,7 +55,6 @@ mod declared;
 mod fields;
 pub(crate) mod grid;
 pub(crate) mod grid_study;
-mod identify;
 mod inspect;
 mod lesson;
 mod map;
@@ -93,6 +92,9 @@ pub use crate::curve::{
 };
 pub use crate::escape::{NoKramers, depopulation, kramers_rate};
 pub use crate::exponents::{Estimate, ExponentOptions, Lyapunov, NoExponents, average_exponents, exponents};
+pub use crate::identify::{
+    FORCE_POINTS, Identified, Identity, Unidentified, damping, force, restitution, restitution_of_times,
+};
 pub use crate::section::{IMPACTS, MAX_SECTION, SectionAt, SectionOptions, Sections, section};
 pub use crate::spectrum::{Signal, SpectrumAnswer, SpectrumOptions, spectrum};
 pub(crate) use crate::threshold::NoThresholds;
@@ -113,9 +115,6 @@ pub use fields::{RMS_VELOCITY, Read, SUMMARY_FIELDS, SummaryField};
 pub use grid::{Grid, GridError, Levels, MAX_CELLS, STRIDES};
 pub(crate) use grid_study::{Built, Row};
 pub use grid_study::{Cells, GridStudy, Question};
-pub use identify::{
-    FORCE_POINTS, Identified, Identity, Unidentified, damping, force, restitution, restitution_of_times,
-};
 pub use inspect::inspect;
 pub use lesson::{Lack, LessonFinding, LessonReport, Subject, Value, check_lesson, goal_lack, result_fields};
 pub(crate) use lesson::{Unjudged, options_that_hold};

@@ -2,8 +2,8 @@
 
 use super::axis::Ranges;
 use super::chart::Chart;
-use super::record::measured_chart;
 use super::run::{RunPanel, run_chart};
+use crate::identify::measured_chart;
 use crate::questions::{Error, Progress, Simulation};
 use crate::study::{Comparison, Keep, Sampling};
 

@@ -1,11 +1,29 @@
-//! Questions about measured records.
+//! Parameters identified from measured records: damping, restitution, force curve.
+
+mod chart;
+mod clipped;
+mod damping;
+mod force;
+mod found;
+mod outliers;
+mod peaks;
+mod restitution;
+mod rests;
 
 use std::fmt::Display;
 use std::path::Path;
 
-use super::{Error, Progress};
+use crate::numeric::{Turn, turns};
+use crate::questions::{Error, Progress};
 use crate::scene::{Channel, ColumnRequest, Measured, Quantity, Timing, read_measured};
-use crate::study::{Identified, Table, Unidentified, damping, force, restitution, restitution_of_times};
+use crate::study::Table;
+pub use chart::{identified_chart, measured_chart, measured_force_chart};
+pub use damping::damping;
+pub use force::{FORCE_POINTS, force};
+pub use found::{Identified, Identity, Unidentified};
+pub(crate) use found::{median, noise, reach};
+use found::{noise_between_impacts, with_interval};
+pub use restitution::{restitution, restitution_of_times};
 
 words! {
     /// What is identified from a record.

@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::Motion;
 use super::drift::{Drift, Stop, stop_at, stops, unexplained};
 use super::meeting::{Meeting, Sides};
-use crate::study::identify::{Turn, turns};
+use crate::identify::{Turn, turns};
 
 /// A turning point at a stop.
 #[derive(Debug, Clone)]

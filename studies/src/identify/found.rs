@@ -1,23 +1,11 @@
-//! Parameters identified from measured records: damping, restitution, force curve.
+//! What a record shows, or why it shows nothing, and the noise in it.
 
-mod clipped;
-mod damping;
-mod force;
-mod outliers;
-mod peaks;
-mod restitution;
-mod rests;
-
-pub use damping::damping;
-pub use force::{FORCE_POINTS, force};
-pub use restitution::{restitution, restitution_of_times};
-
-use super::{Table, label_and_unit};
+use super::force;
+use super::peaks::MIN_SAMPLES;
+use super::restitution::ENOUGH;
 use crate::numeric::{MIN_TURNS, elementary, extent, short};
-pub(super) use crate::numeric::{Turn, turns};
 use crate::scene::unit_ending;
-use peaks::MIN_SAMPLES;
-use restitution::ENOUGH;
+use crate::study::{Table, label_and_unit};
 
 /// A number with its interval.
 ///
@@ -33,7 +21,7 @@ pub struct Identity {
 }
 
 impl Identity {
-    fn new(name: &'static str, value: f64, half: f64) -> Self {
+    pub(super) fn new(name: &'static str, value: f64, half: f64) -> Self {
         Self { name, value, interval: (value - half, value + half) }
     }
 
@@ -51,7 +39,7 @@ impl Identity {
 
 /// The table with three more columns: a number for each row and the ends of its interval, whose names have
 /// `_low` and `_high` before the unit.
-fn with_interval<R>(table: Table, name: &str, rows: &[R], of: impl Fn(&R) -> Identity) -> Table {
+pub(super) fn with_interval<R>(table: Table, name: &str, rows: &[R], of: impl Fn(&R) -> Identity) -> Table {
     let (unit, _) = unit_ending(name).unwrap_or_default();
     let end = |end: &str| format!("{}_{end}{unit}", name.strip_suffix(unit).unwrap_or(name));
     let table = table.each(name, rows, |row| of(row).value).each(&end("low"), rows, |row| of(row).interval.0);
@@ -188,7 +176,7 @@ pub enum Unidentified {
 /// standard deviation s sqrt(20). Their median magnitude is insensitive to the few at impacts. For values
 /// that stay constant over many samples, such as those of a converter with few bits, the smallest change is
 /// used.
-pub(super) fn noise(values: &[f64]) -> f64 {
+pub(crate) fn noise(values: &[f64]) -> f64 {
     /// Median magnitude over standard deviation of normal numbers.
     const NORMAL: f64 = 0.674_489_750_196_081_7;
     noise_by(values, 0.5, NORMAL)
@@ -220,14 +208,14 @@ fn noise_by(values: &[f64], share: f64, normal: f64) -> f64 {
 
 /// Largest reversal of the values that noise of this standard deviation can cause: the range of as many
 /// independent errors (twice their expected maximum, s sqrt(2 ln n)) and two standard deviations.
-pub(super) fn reach(values: &[f64], noise: f64) -> f64 {
+pub(crate) fn reach(values: &[f64], noise: f64) -> f64 {
     let count = values.len().max(2) as f64;
     let (low, high) = extent(values.iter().copied());
     (2.0 * noise * ((2.0 * elementary::ln(count)).sqrt() + 1.0)).max(1e-9 * (high - low))
 }
 
 /// The median; for an even number of values, the larger of the two middle ones.
-pub(super) fn median(mut values: Vec<f64>) -> Option<f64> {
+pub(crate) fn median(mut values: Vec<f64>) -> Option<f64> {
     let middle = values.len() / 2;
     (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)
 }

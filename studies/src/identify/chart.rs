@@ -1,18 +1,16 @@
 //! Pictures of a measured record: with a fit or a computed curve, and a lower panel of the residuals or of
 //! numbers with their intervals; or over a computed motion.
 
-use super::axis::{PlotAxis, Ranges};
-use super::chart::{Chart, Marks, Panel};
-use super::drawn::Drawn;
-use super::figure::Point;
-use super::names::{BASE_ACCELERATION, DISPLACEMENT, HOLDING_FORCE, TIME, VELOCITY, axis_name};
-use super::quantity::suited_unit;
-use super::role::Role;
+use super::{Identified, Identity};
 use crate::curve::{telling, wall};
 use crate::dynamics::STANDARD_GRAVITY;
 use crate::numeric::{extent, short};
+use crate::output::{
+    BASE_ACCELERATION, Chart, DISPLACEMENT, Drawn, HOLDING_FORCE, Marks, Panel, PlotAxis, Point, Ranges,
+    Role, TIME, VELOCITY, axis_name, suited_unit,
+};
 use crate::scene::{Quantity, Timing};
-use crate::study::{Comparison, ForceComparison, Identified, Identity, Table, Trace};
+use crate::study::{Comparison, ForceComparison, Table, Trace};
 
 /// Number of samples below which they are drawn as dots.
 const DOTS: usize = 400;

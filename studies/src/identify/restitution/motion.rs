@@ -4,12 +4,12 @@ use std::ops::Range;
 
 use super::base::Base;
 use super::drift::Drift;
+use crate::identify::clipped::{CutOff, cut_off};
+use crate::identify::outliers::outliers;
+use crate::identify::{Turn, noise_between_impacts, reach};
 use crate::numeric::extent;
 use crate::numeric::orthogonal::{Orthogonal, Tangent};
 use crate::scene::Timing;
-use crate::study::identify::clipped::{CutOff, cut_off};
-use crate::study::identify::outliers::outliers;
-use crate::study::identify::{Turn, noise_between_impacts, reach};
 
 /// A record of displacement relative to the base, without clipped samples and those that lie off. SI.
 pub struct Motion {
