@@ -24,6 +24,7 @@ mod distance;
 mod escape;
 mod exponents;
 mod identify;
+mod lesson;
 pub mod questions;
 mod section;
 mod spectrum;

@@ -82,7 +82,6 @@
 
 mod error;
 mod grid;
-mod lesson;
 mod motion;
 mod orbits;
 mod parts;
@@ -102,6 +101,8 @@ pub use crate::exponents::{Exponents, Lyapunov};
 #[doc(hidden)]
 pub use crate::identify::columns_read;
 pub use crate::identify::{Identify, IdentifyAnswer, WhatToIdentify};
+#[doc(hidden)]
+pub use crate::lesson::{JudgedStep, check_lessons};
 pub use crate::section::{Section, SectionKind};
 pub use crate::spectrum::{Signal, Spectrum, SpectrumAnswer};
 pub use crate::threshold::{Found, Onset, Threshold};
@@ -109,8 +110,6 @@ pub use crate::threshold::{Found, Onset, Threshold};
 pub use error::longest_wait;
 pub use error::{Error, FaultAt};
 pub(crate) use grid::{check_until, drive_alone, settles};
-#[doc(hidden)]
-pub use lesson::{JudgedStep, check_lessons};
 pub(crate) use motion::may_have_circuit;
 pub use motion::{Basins, BasinsAnswer};
 pub(crate) use orbits::phase;

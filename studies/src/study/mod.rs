@@ -56,7 +56,6 @@ mod fields;
 pub(crate) mod grid;
 pub(crate) mod grid_study;
 mod inspect;
-mod lesson;
 mod map;
 mod measured;
 mod models;
@@ -95,6 +94,9 @@ pub use crate::exponents::{Estimate, ExponentOptions, Lyapunov, NoExponents, ave
 pub use crate::identify::{
     FORCE_POINTS, Identified, Identity, Unidentified, damping, force, restitution, restitution_of_times,
 };
+pub use crate::lesson::{
+    Lack, LessonFinding, LessonReport, Subject, Value, check_lesson, goal_lack, result_fields,
+};
 pub use crate::section::{IMPACTS, MAX_SECTION, SectionAt, SectionOptions, Sections, section};
 pub use crate::spectrum::{Signal, SpectrumAnswer, SpectrumOptions, spectrum};
 pub(crate) use crate::threshold::NoThresholds;
@@ -116,8 +118,6 @@ pub use grid::{Grid, GridError, Levels, MAX_CELLS, STRIDES};
 pub(crate) use grid_study::{Built, Row};
 pub use grid_study::{Cells, GridStudy, Question};
 pub use inspect::inspect;
-pub use lesson::{Lack, LessonFinding, LessonReport, Subject, Value, check_lesson, goal_lack, result_fields};
-pub(crate) use lesson::{Unjudged, options_that_hold};
 pub use map::{Edges, first_crossing, release_line};
 pub(crate) use map::{first_crossing_edge, line_meets};
 pub use measured::{Comparison, ForceComparison, MeasuredMotion, NoComparison, compare, compare_force};

@@ -230,9 +230,9 @@ mod tests {
     use std::sync::atomic::AtomicBool;
 
     use super::*;
+    use crate::lesson::result_fields;
     use crate::scene::Document;
     use crate::scene::lesson::LessonDocument;
-    use crate::study::result_fields;
 
     #[test]
     fn a_subject_is_of_a_scene_with_its_files() {
