@@ -27,5 +27,6 @@ mod identify;
 mod lesson;
 pub mod questions;
 mod section;
+mod simulate;
 mod spectrum;
 mod threshold;

@@ -61,14 +61,12 @@ mod measured;
 mod models;
 pub(crate) mod orbit;
 pub(crate) mod settled;
-pub(crate) mod simulate;
 mod slice;
 mod sweep;
 mod table;
-mod trace;
 mod uncertain;
 pub(crate) mod walk;
-mod watch;
+pub(crate) mod watch;
 
 /// Accuracy of runs.
 pub mod accuracy {
@@ -98,6 +96,10 @@ pub use crate::lesson::{
     Lack, LessonFinding, LessonReport, Subject, Value, check_lesson, goal_lack, result_fields,
 };
 pub use crate::section::{IMPACTS, MAX_SECTION, SectionAt, SectionOptions, Sections, section};
+pub use crate::simulate::{
+    Keep, Recorded, Sampling, Trace, between, ended_remedy, events_table, sample_times, samples_table,
+    simulate, simulate_with_trace,
+};
 pub use crate::spectrum::{Signal, SpectrumAnswer, SpectrumOptions, spectrum};
 pub(crate) use crate::threshold::NoThresholds;
 pub use crate::threshold::{Found, Onset, Scan, Verdict, melnikov_threshold, threshold};
@@ -128,14 +130,10 @@ pub use orbit::{
 };
 pub(crate) use settled::followed_until;
 pub use settled::{Standing, lasts, settled, standing};
-pub use simulate::{
-    Keep, Recorded, Sampling, ended_remedy, events_table, sample_times, samples_table, simulate,
-};
 pub use slice::{Shard, Slice};
 pub(crate) use sweep::CellFaults;
 pub use sweep::{Cell, DIRECTION, STANDARD as STANDARD_COLUMNS, Sweep, SweepEnd, SweepOptions, Tally};
 pub use table::{Column, Table, Values, label_and_unit, with_unit};
-pub use trace::{Trace, between, simulate_with_trace};
 pub use uncertain::MAX_DRAWS;
 pub(crate) use uncertain::{Draws, Variation, share_in_range};
 pub use walk::{Carry, Direction, Family, Visit, up_and_down};

@@ -3,20 +3,14 @@
 use std::ops::Range;
 use std::sync::atomic::AtomicBool;
 
-use super::axis::{PlotAxis, Ranges};
-use super::chart::{Chart, Layer, Marks, Note, Panel, PanelColumn};
-use super::drawn::Drawn;
-use super::figure::Point;
-use super::ledger::{LedgerTerm, ledger_panel};
-use super::mark::REGIMES;
-use super::names::{DISPLACEMENT, TIME};
-use super::over_time::OverTime;
-use super::portrait::portrait_panel;
-use super::quantity::suited_unit;
-use super::role::Role;
+use super::Trace;
 use crate::dynamics::{Model, Outcome, STANDARD_GRAVITY, Summary};
 use crate::numeric::{extent, short};
-use crate::study::{Table, Trace, words};
+use crate::output::{
+    Chart, DISPLACEMENT, Drawn, Layer, LedgerTerm, Marks, Note, OverTime, Panel, PanelColumn, PlotAxis,
+    Point, REGIMES, Ranges, Role, TIME, ledger_panel, portrait_panel, suited_unit,
+};
+use crate::study::Table;
 
 words! {
     /// A panel of the picture of a run, in the order in which they stand.

@@ -1,11 +1,11 @@
 //! Pictures of one run that a program asks for: of the run alone, and with a measured motion over it.
 
-use super::axis::Ranges;
-use super::chart::Chart;
-use super::run::{RunPanel, run_chart};
+use super::chart::{RunPanel, run_chart};
+use super::{Keep, Sampling};
 use crate::identify::measured_chart;
+use crate::output::{Chart, Ranges};
 use crate::questions::{Error, Progress, Simulation};
-use crate::study::{Comparison, Keep, Sampling};
+use crate::study::Comparison;
 
 /// A picture of one run over time.
 ///

@@ -4,10 +4,10 @@
 
 use std::sync::atomic::AtomicBool;
 
-use super::simulate::in_order;
-use super::watch::ledger_over;
-use super::{Keep, Recorded, Table, events_table, samples_table};
+use super::{Keep, Recorded, events_table, in_order, samples_table};
 use crate::dynamics::{Event, EventKind, Live, LiveLedger, Model, Outcome, Phase, Request, Sample, Side};
+use crate::study::Table;
+use crate::study::watch::ledger_over;
 
 /// The data of a run that a picture shows.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,11 +1,18 @@
 //! One run: its sample times, samples, events and summary, and remedies for a run that ended early.
 
+mod chart;
+mod picture;
+mod trace;
+
 use std::sync::atomic::AtomicBool;
 
-use super::Table;
 use crate::dynamics::{Event, Model, Outcome, Output, Request, Sample, Summary};
 use crate::numeric::{Decimal, greatest_common_divisor, short};
 use crate::scene::{Excitation, Harmonic, Scene, TOLERANCES};
+use crate::study::Table;
+pub use chart::{RunPanel, run_chart};
+pub use picture::RunPicture;
+pub use trace::{Trace, between, simulate_with_trace};
 
 /// When to sample.
 ///
@@ -90,7 +97,7 @@ pub fn simulate(model: &Model, keep: &Keep, cancel: Option<&AtomicBool>) -> Reco
 }
 
 /// The samples in the order of `times`; times after an early end of the run are left out.
-pub(super) fn in_order(times: &[f64], samples: &[Sample]) -> Vec<Sample> {
+fn in_order(times: &[f64], samples: &[Sample]) -> Vec<Sample> {
     let find = |t: &f64| {
         let at = samples.partition_point(|sample| sample.t < *t);
         samples.get(at).filter(|sample| sample.t == *t).copied()
