@@ -29,4 +29,5 @@ pub mod questions;
 mod section;
 mod simulate;
 mod spectrum;
+mod sweep;
 mod threshold;

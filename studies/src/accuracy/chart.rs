@@ -8,11 +8,13 @@ use super::scene::{StepSize, Tolerances, duration, step_name};
 use super::{OWN, PROBLEMS};
 use crate::numeric::elementary;
 use crate::output::{
-    Caption, Chart, DISPLACEMENT, Drawn, Marks, PROCESSOR_TIME, Panel, PanelColumn, PlotAxis, Point, Role,
-    TIME,
+    Caption, Chart, DISPLACEMENT, Drawn, Marks, Panel, PanelColumn, PlotAxis, Point, Role, TIME,
 };
 use crate::scene::PROGRAM;
 use crate::study::Table;
+
+/// The axis of the time that the processor took.
+const PROCESSOR_TIME: &str = "processor time (s)";
 
 /// An error of 0 is drawn here; smaller errors cannot be told apart in double precision.
 const LEAST: f64 = 1e-17;

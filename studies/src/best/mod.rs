@@ -17,9 +17,10 @@ mod words;
 
 use std::path::PathBuf;
 
-use crate::questions::{Error, Progress, Simulation, check_until, drive_alone, sweep};
+use crate::questions::{Error, Progress, Simulation, check_until, drive_alone};
 use crate::scene::{Axis, Document, FieldPath, RunSettings, Transducer, find_name, is_whole, read_number};
 use crate::study::{Read, SUMMARY_FIELDS, SummaryField, Table};
+use crate::sweep::{can_vary, deviation};
 use crate::system::files::{canonical, is_file};
 pub use chart::best_chart;
 pub use design::{
@@ -359,10 +360,10 @@ fn tolerance(text: &str, document: &Document) -> Result<Tolerance, Error> {
              {field}=-{by}:{by}"
         )));
     }
-    sweep::can_vary(field, document).map_err(wrong)?;
+    can_vary(field, document).map_err(wrong)?;
     let (low, high) = ends.split_once(':').ok_or_else(|| wrong(form.to_owned()))?;
     let [(low, of_low), (high, of_high)] =
-        [sweep::deviation(low, form).map_err(wrong)?, sweep::deviation(high, form).map_err(wrong)?];
+        [deviation(low, form).map_err(wrong)?, deviation(high, form).map_err(wrong)?];
     // 0 is both a share and a length
     let relative = if low == 0.0 { of_high } else { of_low };
     if low != 0.0 && high != 0.0 && of_low != of_high {

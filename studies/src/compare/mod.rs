@@ -26,10 +26,10 @@ use remarks::of_comparison;
 /// # Method
 ///
 /// The release has a closed form; the crossing amplitude is found by a scan and bisection, as by
-/// [`Threshold`](crate::questions::Threshold); the band of frequencies by 40 steps per decade, from a tenth to
-/// ten times the frequency of the sine, whose ends are bisected to a thousandth; the sensitivity by changing
-/// one length, thickness or gap of the mechanism at a time by 1 % up and down. Each of these changes is a
-/// search of its own, for which flexures are solved anew.
+/// [`Threshold`](crate::questions::Threshold); the band of frequencies by 40 steps per decade, from a tenth
+/// to ten times the frequency of the sine, whose ends are bisected to a thousandth; the sensitivity by
+/// changing one length, thickness or gap of the mechanism at a time by 1 % up and down. Each of these changes
+/// is a search of its own, for which flexures are solved anew.
 ///
 /// # Errors
 ///

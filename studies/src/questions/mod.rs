@@ -87,7 +87,6 @@ mod orbits;
 mod parts;
 mod progress;
 mod simulation;
-pub(crate) mod sweep;
 
 #[doc(hidden)]
 pub use crate::accuracy::check_accuracy;
@@ -105,11 +104,14 @@ pub use crate::identify::{Identify, IdentifyAnswer, WhatToIdentify};
 pub use crate::lesson::{JudgedStep, check_lessons};
 pub use crate::section::{Section, SectionKind};
 pub use crate::spectrum::{Signal, Spectrum, SpectrumAnswer};
+pub use crate::sweep::Sweep;
+#[doc(hidden)]
+pub use crate::sweep::{SweepCells, assign as assign_uncertain};
 pub use crate::threshold::{Found, Onset, Threshold};
 #[doc(hidden)]
 pub use error::longest_wait;
 pub use error::{Error, FaultAt};
-pub(crate) use grid::{check_until, drive_alone, settles};
+pub(crate) use grid::{all_rows, check_until, drive_alone, settles};
 pub(crate) use motion::may_have_circuit;
 pub use motion::{Basins, BasinsAnswer};
 pub(crate) use orbits::phase;
@@ -118,9 +120,6 @@ pub use orbits::{Branch, BranchesAnswer, Locus, LocusAnswer, Orbit};
 pub use parts::{stops_that_cross, thresholds, walks};
 pub use progress::Progress;
 pub use simulation::Simulation;
-pub use sweep::Sweep;
-#[doc(hidden)]
-pub use sweep::{SweepCells, assign as assign_uncertain};
 
 pub use crate::mechanics::flexure::State as FlexureState;
 pub use crate::scene::Uncertain;

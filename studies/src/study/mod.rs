@@ -56,15 +56,13 @@ mod fields;
 pub(crate) mod grid;
 pub(crate) mod grid_study;
 mod inspect;
-mod map;
 mod measured;
 mod models;
 pub(crate) mod orbit;
 pub(crate) mod settled;
 mod slice;
-mod sweep;
 mod table;
-mod uncertain;
+mod tally;
 pub(crate) mod walk;
 pub(crate) mod watch;
 
@@ -101,6 +99,9 @@ pub use crate::simulate::{
     simulate, simulate_with_trace,
 };
 pub use crate::spectrum::{Signal, SpectrumAnswer, SpectrumOptions, spectrum};
+pub(crate) use crate::sweep::Draws;
+pub use crate::sweep::cells::Sweep;
+pub use crate::sweep::{Edges, MAX_DRAWS, STANDARD_COLUMNS, SweepOptions, first_crossing, release_line};
 pub(crate) use crate::threshold::NoThresholds;
 pub use crate::threshold::{Found, Onset, Scan, Verdict, melnikov_threshold, threshold};
 pub(crate) use amplitudes::stops_that_cross;
@@ -120,8 +121,6 @@ pub use grid::{Grid, GridError, Levels, MAX_CELLS, STRIDES};
 pub(crate) use grid_study::{Built, Row};
 pub use grid_study::{Cells, GridStudy, Question};
 pub use inspect::inspect;
-pub use map::{Edges, first_crossing, release_line};
-pub(crate) use map::{first_crossing_edge, line_meets};
 pub use measured::{Comparison, ForceComparison, MeasuredMotion, NoComparison, compare, compare_force};
 pub(crate) use models::ModelUse;
 pub use orbit::{
@@ -131,11 +130,9 @@ pub use orbit::{
 pub(crate) use settled::followed_until;
 pub use settled::{Standing, lasts, settled, standing};
 pub use slice::{Shard, Slice};
-pub(crate) use sweep::CellFaults;
-pub use sweep::{Cell, DIRECTION, STANDARD as STANDARD_COLUMNS, Sweep, SweepEnd, SweepOptions, Tally};
 pub use table::{Column, Table, Values, label_and_unit, with_unit};
-pub use uncertain::MAX_DRAWS;
-pub(crate) use uncertain::{Draws, Variation, share_in_range};
+pub(crate) use tally::CellFaults;
+pub use tally::{Cell, DIRECTION, SweepEnd, Tally};
 pub use walk::{Carry, Direction, Family, Visit, up_and_down};
 pub(crate) use walk::{NoModel, choice_fault, excitation_fault};
 pub use watch::{Watch, continued_scene, watched_events};

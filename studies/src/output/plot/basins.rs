@@ -8,10 +8,10 @@ use super::drawn::Drawn;
 use super::quantity::suited_unit;
 use super::role::Role;
 use super::style::{COOL, KINDS, WARM};
-use super::sweep::{MAX_PICTURE_CELLS, NoPicture};
 use crate::dynamics::Regime;
 use crate::numeric::short;
 use crate::study::{Answer, Attractor, BasinMap, Edges, Shares, Starts, Table};
+use crate::sweep::{MAX_PICTURE_CELLS, NoPicture};
 
 /// Number of attractors that the legend names, those with the largest shares.
 const MAX_NAMED: usize = 9;

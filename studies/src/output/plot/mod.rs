@@ -18,7 +18,6 @@ mod frame;
 mod grid;
 mod labels;
 mod ledger;
-mod map;
 mod mark;
 mod mechanism;
 mod names;
@@ -37,10 +36,7 @@ mod style;
 mod subset;
 mod surface;
 mod svg;
-mod sweep;
-mod swept;
 mod thinned;
-mod walked;
 mod well;
 
 use std::path::Path;
@@ -57,6 +53,13 @@ pub use crate::distance::distance_chart;
 pub use crate::identify::{identified_chart, measured_chart, measured_force_chart};
 pub use crate::simulate::{RunPanel, RunPicture, run_chart};
 pub use crate::spectrum::{SpectrumQuantity, spectrum_chart};
+pub use crate::sweep::{
+    Cut, MAX_PICTURE_CELLS, NOT_SETTLED, NoPicture, Overlay, SweepPicture, View, Walk, WalkedRun, can_show,
+    shown_columns, sweep_chart,
+};
+pub(crate) use crate::sweep::{
+    ascending, can_show_over_field, each_line, few_lines, label, map, spans, swept_axis,
+};
 pub use assembly::{Assembly, MagnetPair};
 pub(crate) use axis::superscript;
 pub use axis::{PlotAxis, Ranges};
@@ -71,28 +74,20 @@ pub use font::{HACK, INTER, width as text_width};
 pub use frame::Frame;
 pub(crate) use ledger::ledger_panel;
 pub use ledger::{LedgerTerm, ledger_bars, ledger_decimals, ledger_number, share_of_work};
-pub(crate) use map::map;
-pub use map::shown_columns;
 pub use mark::Caption;
 pub(crate) use mark::REGIMES;
 pub use mechanism::mechanism_chart;
-pub use names::{
-    BASE_ACCELERATION, DISPLACEMENT, FREQUENCY, HOLDING_FORCE, PROCESSOR_TIME, TIME, VELOCITY, axis_name,
-};
+pub use names::{BASE_ACCELERATION, DISPLACEMENT, FREQUENCY, HOLDING_FORCE, TIME, VELOCITY, axis_name};
 pub use over_time::OverTime;
 pub use png::PaintError;
 pub use portrait::portrait_panel;
+pub(crate) use quantity::Quantity;
 pub use quantity::{RMS, quantities, suited_unit, words_of};
 pub use role::{Look, Role};
 pub use sheet::{Sheet, SheetError, SheetText};
 pub use sketch::{DrawnPart, Sketch};
-pub use style::{BLACK, Ink, TICK, Theme, is_fine, viridis};
+pub use style::{BLACK, Ink, TICK, Theme, is_fine};
 pub use surface::{MAX_SURFACE_CELLS, SurfaceFrame};
-pub use sweep::{MAX_PICTURE_CELLS, NoPicture, can_show, can_show_over_field, sweep_about, sweep_chart};
-pub(crate) use sweep::{each_line, few_lines};
-pub use swept::{Cut, NOT_SETTLED, Overlay, SweepPicture, View};
-pub(crate) use swept::{ascending, label, spans, swept_axis};
-pub use walked::{Walk, WalkedRun};
 pub use well::{TippedPotential, well_chart, well_panel};
 
 words! {

@@ -1,15 +1,29 @@
 //! Sweeps: a run for each cell of a grid, with bands where inputs are uncertain.
 
-use super::grid::{all_rows, settles};
-use super::{Error, Progress, Simulation};
-use crate::numeric::number_text;
-use crate::scene::{
-    Axis, Document, FieldPath, SceneError, Uncertain, field_info, find_name, is_whole, read_number,
-};
-use crate::study::{
-    self, Carry, Cell, DIRECTION, Draws, Grid, MAX_CELLS, MAX_DRAWS, Over, STANDARD_COLUMNS, SUMMARY_FIELDS,
-    SummaryField, SweepOptions, Table, Variation, share_in_range,
-};
+pub(crate) mod cells;
+mod chart;
+mod lines;
+mod map;
+mod picture;
+mod uncertain;
+mod walked;
+
+use crate::questions::{Error, Progress, Simulation, all_rows, settles};
+use crate::scene::{Document, Uncertain, find_name};
+use crate::study::{Carry, Cell, DIRECTION, Grid, Over, SUMMARY_FIELDS, SummaryField, Table};
+pub use cells::{STANDARD_COLUMNS, SweepOptions};
+pub use chart::{MAX_PICTURE_CELLS, NoPicture, can_show, sweep_chart};
+pub(crate) use chart::{can_show_over_field, distinct, each_line, few_lines};
+pub use lines::{Edges, first_crossing, release_line};
+use lines::{first_crossing_edge, line_meets};
+pub(crate) use map::map;
+pub use map::shown_columns;
+pub use picture::{Cut, NOT_SETTLED, Overlay, SweepPicture, View};
+pub(crate) use picture::{ascending, label, spans, swept_axis};
+use uncertain::draws;
+pub(crate) use uncertain::{Draws, can_vary, deviation};
+pub use uncertain::{MAX_DRAWS, assign};
+pub use walked::{Walk, WalkedRun};
 
 /// What the settled motion does in each cell of a grid over fields: one run and one row per cell.
 ///
@@ -102,8 +116,9 @@ impl Sweep {
         Ok(cells.rows(document, progress)?.only(&cells.written))
     }
 
-    /// The cells of a grid, not yet run; see [`Section::cells`](super::Section::cells). The document has the
-    /// [values](Self::nominal) of the uncertain inputs, and `shown` are columns that a picture needs.
+    /// The cells of a grid, not yet run; see [`Section::cells`](crate::questions::Section::cells). The
+    /// document has the [values](Self::nominal) of the uncertain inputs, and `shown` are columns that a
+    /// picture needs.
     #[doc(hidden)]
     pub fn cells(
         &self,
@@ -119,7 +134,7 @@ impl Sweep {
         let shown = shown.iter().copied().filter(|name| !columns.iter().any(|column| column == name));
         let fields = columns.iter().map(String::as_str).chain(shown).filter_map(SummaryField::find).collect();
         let options = SweepOptions { columns: fields, until_settled, carry: self.carry, draws };
-        let sweep = study::Sweep::new(&document.scene, &document.files, grid).with(options);
+        let sweep = cells::Sweep::new(&document.scene, &document.files, grid).with(options);
         Ok(SweepCells { sweep: settles(sweep, until_settled, document, progress)?, chosen, written })
     }
 }
@@ -129,7 +144,7 @@ impl Sweep {
 #[derive(Debug)]
 pub struct SweepCells {
     /// The sweep.
-    pub sweep: study::Sweep,
+    pub sweep: cells::Sweep,
     /// The columns after those of the fields and of the direction, without bands.
     pub chosen: Vec<String>,
     /// The columns that are written.
@@ -183,152 +198,4 @@ fn column_names(chosen: &[String], grid: &Grid, carry: Option<Carry>) -> Result<
         }
     }
     Ok(names)
-}
-
-const FORM: &str = "write FIELD=VALUE+-SIGMA, FIELD=+-SIGMA or FIELD=+-5%, such as damping.xi=0.023+-0.002";
-
-/// The least share of a normal distribution that must lie in the range of its field: a half, as at an end of
-/// the range, up to rounding.
-const LEAST_SHARE: f64 = 0.5 - 1e-9;
-
-/// The field of an uncertain input, its value, which may be empty, and its standard deviation.
-fn parts(input: &str) -> Result<[&str; 3], Error> {
-    let parts = input.split_once('=').and_then(|(field, law)| {
-        let (value, sigma) = law.split_once("+-").or_else(|| law.split_once('\u{b1}'))?;
-        Some([field, value, sigma].map(str::trim))
-    });
-    parts.ok_or_else(|| Error::argument("uncertain", input, FORM))
-}
-
-/// Gives the fields of a document the values of the uncertain inputs, and says whether there are any. The
-/// document is to be checked afterwards.
-#[doc(hidden)]
-pub fn assign(uncertain: &Uncertain, document: &mut Document) -> Result<bool, Error> {
-    let mut assigned = false;
-    for input in &uncertain.fields {
-        let [field, value, _] = parts(input)?;
-        if !value.is_empty() {
-            let done = document.assign(field, value, &format!("--uncertain {input}"));
-            done.map_err(|error| Error::Scene(SceneError::Argument(error)))?;
-            assigned = true;
-        }
-    }
-    Ok(assigned)
-}
-
-/// The draws of the uncertain inputs of a sweep of `grid` over a document, whose fields have been
-/// [assigned](assign).
-pub fn draws(
-    uncertain: &Uncertain,
-    document: &Document,
-    grid: &Grid,
-    carry: Option<Carry>,
-) -> Result<Draws, Error> {
-    let Uncertain { fields, draws, seed } = uncertain;
-    if fields.is_empty() {
-        let given = draws.map(|draws| ("draws", draws)).or(seed.map(|seed| ("seed", seed)));
-        let problem = "nothing is uncertain; name a field with --uncertain, such as damping.xi=+-0.002";
-        return given
-            .map_or(Ok(Draws::default()), |(name, value)| Err(Error::argument(name, value, problem)));
-    }
-    let mut laws: Vec<Variation> = Vec::new();
-    for input in fields {
-        let wrong = |problem: String| Error::argument("uncertain", input, problem);
-        let [field, value, sigma] = parts(input)?;
-        let law = variation(field, sigma, FORM, document).map_err(wrong)?;
-        let axis = grid.axes().iter().find(|axis| axis.field == field);
-        if axis.is_some() && !value.is_empty() {
-            let problem = "the field is swept: leave VALUE out, and SIGMA is that of each value of the sweep";
-            return Err(wrong(problem.to_owned()));
-        }
-        if laws.iter().any(|known| known.field == field) {
-            return Err(wrong("the field is given twice; give it once".to_owned()));
-        }
-        let of_scene = FieldPath::new(field).get(&document.scene).unwrap_or(f64::NAN);
-        let values = axis.map_or_else(|| vec![of_scene], |axis| axis.values.clone());
-        if axis.is_none() && law.relative && values[0] == 0.0 {
-            let problem = "a percentage of 0 is nothing; give SIGMA in the unit of the field";
-            return Err(wrong(problem.to_owned()));
-        }
-        values.iter().try_for_each(|value| check_share(&law, *value).map_err(wrong))?;
-        laws.push(law);
-    }
-    if carry.is_some() {
-        let problem = "a walk with --carry has no bands; leave one of the two out";
-        return Err(Error::argument("uncertain", &fields[0], problem));
-    }
-    if let Some(draws) = draws.filter(|draws| !(1..=MAX_DRAWS).contains(draws)) {
-        let problem = format!("give a whole number from 1 to {MAX_DRAWS}");
-        return Err(Error::argument("draws", draws, problem));
-    }
-    let made = Draws::new(laws, uncertain, &document.scene, grid);
-    match grid.cells().checked_mul(made.runs()) {
-        Some(runs) if runs <= MAX_CELLS => Ok(made),
-        _ => {
-            let (cells, runs) = (grid.cells(), made.runs());
-            let problem = format!(
-                "{cells} cells of {runs} runs are more than the {MAX_CELLS} runs of one sweep; take longer \
-                 steps or fewer draws"
-            );
-            Err(Error::argument("draws", runs - 1, problem))
-        }
-    }
-}
-
-/// Checks that a normal distribution about a value lies mostly in the range of its field.
-fn check_share(law: &Variation, value: f64) -> Result<(), String> {
-    if !value.is_finite() {
-        return Err(format!(
-            "nothing lies about {}; give the field a finite value or leave it out",
-            number_text(value)
-        ));
-    }
-    let share = share_in_range(law, value);
-    if share >= LEAST_SHARE {
-        return Ok(());
-    }
-    let range = field_info(&law.field).map_or_else(String::new, |field| field.range.to_string());
-    Err(format!(
-        "about {} only {:.1} % of the distribution lie in {range}, where the field is valid; give a smaller \
-         SIGMA",
-        number_text(value),
-        100.0 * share
-    ))
-}
-
-/// The variation of `field` by `by`, a number in its unit or a percentage of its value; `form` is how both
-/// are written. The error is a clause.
-pub(crate) fn variation(field: &str, by: &str, form: &str, document: &Document) -> Result<Variation, String> {
-    can_vary(field, document)?;
-    let (by, relative) = deviation(by, form)?;
-    if by < 0.0 {
-        let given = if relative { 100.0 * by } else { by };
-        return Err(format!("{} is negative; give 0 or more", number_text(given)));
-    }
-    Ok(Variation { field: field.to_owned(), by, relative })
-}
-
-/// Whether a field can have values a little beside its own; the error is a clause.
-pub(crate) fn can_vary(field: &str, document: &Document) -> Result<(), String> {
-    if FieldPath::new(field).get(&document.scene).is_none() {
-        // the error of `parse` lists the fields
-        Axis::parse(&format!("{field}=1"), &document.scene)?;
-        return Err("the scene leaves this field out; give it a value with --set".to_owned());
-    }
-    if is_whole(&document.scene, field) {
-        let problem = "holds whole numbers, which do not come out a little otherwise; vary another field";
-        return Err(problem.to_owned());
-    }
-    Ok(())
-}
-
-/// A number in the unit of a field, or the share of its value that a percentage is, and whether it is one.
-pub(crate) fn deviation(text: &str, form: &str) -> Result<(f64, bool), String> {
-    let text = text.trim();
-    let (number, relative) = text.strip_suffix('%').map_or((text, false), |share| (share, true));
-    let number = read_number(number).map_err(|_| form)?;
-    if !number.is_finite() {
-        return Err(format!("{} is not finite; give a finite number", number_text(number)));
-    }
-    Ok((if relative { number / 100.0 } else { number }, relative))
 }

@@ -2,17 +2,13 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::axis::{PlotAxis, Ranges};
-use super::cells::{Colours, Shade, Shades};
-use super::chart::Marks;
-use super::drawn::{Drawn, as_numbers};
-use super::figure::Point;
-use super::quantity::Quantity;
+use super::{Edges, first_crossing, release_line};
 use crate::mechanics::Mechanism;
 use crate::numeric::short;
+use crate::output::{Colours, Drawn, Marks, PlotAxis, Point, Quantity, Ranges, Shade, Shades, as_numbers};
 use crate::questions::Simulation;
 use crate::scene::Scene;
-use crate::study::{Column, DIRECTION, Edges, Grid, Table, first_crossing, label_and_unit, release_line};
+use crate::study::{Column, DIRECTION, Grid, Table, label_and_unit};
 
 /// The lines over a map, as far as they apply.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -58,7 +54,7 @@ pub struct Cut {
     pub value: f64,
 }
 
-/// The data of the picture of a sweep, which [`sweep_chart`](super::sweep_chart) draws.
+/// The data of the picture of a sweep, which [`sweep_chart`](crate::output::sweep_chart) draws.
 #[derive(Debug, Clone)]
 pub struct SweepPicture<'a> {
     /// All rows.

@@ -1,9 +1,7 @@
 //! Lines of a walk up and down over a field: gaps where the motion jumps, ranges in which the ways differ.
 
-use super::drawn::as_numbers;
-use super::figure::Point;
-use super::quantity::{Quantity, RMS};
-use super::swept::is_transient;
+use super::picture::is_transient;
+use crate::output::{Point, Quantity, RMS, as_numbers};
 use crate::study::{Table, Visit};
 
 /// Relative difference up to which two RMS velocities are the same.

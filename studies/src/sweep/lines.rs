@@ -2,12 +2,12 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::grid::name_of;
-use super::{Grid, Table, Values};
 use crate::dynamics::Regime;
 use crate::mechanics::Mechanism;
 use crate::numeric::extent;
 use crate::scene::{Axis, Scene, Start};
+use crate::study::grid::name_of;
+use crate::study::{Grid, Table, Values};
 
 /// The travel limit, over which the release is known in closed form.
 const LIMIT: &str = "stops.travel_limit_mm";
@@ -131,9 +131,9 @@ impl Edges {
     }
 }
 
-/// The line of [`first_crossing`](super::first_crossing) over a map of `x` and `y`: along the edges of its
-/// cells, towards smaller amplitudes, in one part for each stretch without a gap. A place where the cell of
-/// the smallest amplitude crosses has no edge: the first crossing is at or below that amplitude.
+/// The line of [`first_crossing`] over a map of `x` and `y`: along the edges of its cells, towards smaller
+/// amplitudes, in one part for each stretch without a gap. A place where the cell of the smallest amplitude
+/// crosses has no edge: the first crossing is at or below that amplitude.
 pub fn first_crossing_edge(
     table: &Table,
     (x, y): (&str, &str),

@@ -1,18 +1,15 @@
 //! Picture of a sweep: lines over one field, maps over two, both directions of a walk, surfaces and cuts.
 
-use super::axis::PlotAxis;
-use super::cells::{Colours, Shade, Shades};
-use super::chart::{Chart, Layer, Marks, Panel, PanelColumn};
-use super::drawn::as_numbers;
 use super::map::{cells_panel, map, surface};
-use super::quantity::{Quantity, quantities, words_of};
-use super::role::Role;
-use super::surface::MAX_SURFACE_CELLS;
-use super::swept::{
+use super::picture::{
     NOT_SETTLED, SweepPicture, View, ascending, cells, drawn, is_transient, marks, of_each, spans, swept_axis,
 };
 use super::walked::{Walk, WalkedRun};
 use crate::numeric::short;
+use crate::output::{
+    Chart, Colours, Layer, MAX_SURFACE_CELLS, Marks, Panel, PanelColumn, PlotAxis, Quantity, Role, Shade,
+    Shades, as_numbers, quantities, words_of,
+};
 use crate::scene::{Scene, Start, find_name};
 use crate::study::{DIRECTION, Direction, Grid, SUMMARY_FIELDS, Table};
 
@@ -116,8 +113,7 @@ pub fn can_show<'a>(
 }
 
 /// Checks that `what` can be shown over the field of this grid.
-#[doc(hidden)]
-pub fn can_show_over_field(grid: &Grid, what: &'static str) -> Result<(), NoPicture> {
+pub(crate) fn can_show_over_field(grid: &Grid, what: &'static str) -> Result<(), NoPicture> {
     match grid.axes().len() {
         1 if grid.cells() > MAX_PICTURE_CELLS => Err(NoPicture::Cells(grid.cells())),
         1 => Ok(()),
@@ -209,7 +205,7 @@ pub(super) fn are_few(few: usize, many: usize) -> bool {
 }
 
 /// The values in ascending order, each once.
-pub(super) fn distinct(values: &[f64]) -> Vec<f64> {
+pub(crate) fn distinct(values: &[f64]) -> Vec<f64> {
     let mut values = values.to_vec();
     values.sort_by(f64::total_cmp);
     values.dedup();
@@ -218,8 +214,7 @@ pub(super) fn distinct(values: &[f64]) -> Vec<f64> {
 
 /// A description of the runs in one line, with the directions in which they were `walked`, if each continued
 /// from the one before, and the time in s up to which runs continued until they repeat, if they did.
-#[doc(hidden)]
-pub fn sweep_about(grid: &Grid, scene: &Scene, walked: &[Direction], until_settled: Option<f64>) -> String {
+fn sweep_about(grid: &Grid, scene: &Scene, walked: &[Direction], until_settled: Option<f64>) -> String {
     let lengths = grid.axes().iter().map(|axis| axis.values.len());
     let counts = Some(walked.len()).filter(|ways| *ways > 1).into_iter().chain(lengths);
     let counts: Vec<String> = counts.map(|n| n.to_string()).collect();

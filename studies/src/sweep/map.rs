@@ -1,20 +1,17 @@
 //! Maps of a sweep over two fields: cells with lines over them, cuts through them, surfaces.
 
-use super::axis::PlotAxis;
-use super::cells::{Colours, Shades};
-use super::chart::{Chart, Marks, Panel, PanelColumn};
-use super::drawn::Drawn;
-use super::figure::Point;
-use super::quantity::Quantity;
-use super::role::Role;
-use super::sweep::{are_few, distinct};
-use super::swept::{
+use super::chart::{are_few, distinct};
+use super::picture::{
     Cut, NOT_SETTLED, OF_DOTS, Overlay, SweepPicture, View, ascending, cells, drawn, is_transient, label,
     marks,
 };
 use super::walked::OF_WALK;
+use super::{first_crossing_edge, line_meets};
 use crate::numeric::short;
-use crate::study::{Grid, Table, first_crossing_edge, label_and_unit, line_meets};
+use crate::output::{
+    Chart, Colours, Drawn, Marks, Panel, PanelColumn, PlotAxis, Point, Quantity, Role, Shades,
+};
+use crate::study::{Grid, Table, label_and_unit};
 
 /// Largest number of columns or rows of a map in which cells are marked by dots.
 const MAX_DOTS: usize = 110;
