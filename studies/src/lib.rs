@@ -16,10 +16,19 @@ pub mod output;
 #[macro_use]
 #[doc(hidden)]
 pub mod study;
+mod accuracy;
 mod basins;
+mod best;
+mod compare;
+mod curve;
+mod distance;
 mod escape;
 mod exponents;
+mod identify;
+mod lesson;
 pub mod questions;
 mod section;
+mod simulate;
 mod spectrum;
+mod sweep;
 mod threshold;

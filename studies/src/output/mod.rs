@@ -84,10 +84,6 @@ pub use json::{identified, landscape, summary};
 pub use manifest::{Made, Manifest, Provenance, manifest_path, merged_manifest};
 pub use plan::{plan, plan_differences};
 pub use plot::*;
-pub(crate) use plot::{
-    COOL, Drawn, KINDS, Point, WARM, as_numbers, ascending, each_line, few_lines, label, map, of_rows, spans,
-    swept_axis,
-};
 pub use text::aligned;
 
 pub use crate::numeric::push_number;

@@ -34,7 +34,7 @@ pub(crate) fn settles<Q: Question>(
 }
 
 /// Checks all cells; then runs these and returns all rows.
-pub(super) fn all_rows<Q: Question>(
+pub(crate) fn all_rows<Q: Question>(
     study: &GridStudy<Q>,
     document: &Document,
     progress: &Progress,

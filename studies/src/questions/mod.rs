@@ -80,61 +80,52 @@
 //!
 //! A run of a grid that ends early is no error: the column `outcome` says why, and the others continue.
 
-mod accuracy;
-mod compare;
-mod design;
-mod distance;
 mod error;
 mod grid;
-mod kept;
-mod lesson;
 mod motion;
 mod orbits;
 mod parts;
 mod progress;
-mod record;
-mod remarks;
 mod simulation;
-mod sweep;
 
+#[doc(hidden)]
+pub use crate::accuracy::check_accuracy;
+pub use crate::accuracy::{Accuracy, AccuracyAnswer};
 pub use crate::basins::{Basins, BasinsAnswer};
+pub use crate::best::{Best, BestAnswer};
+pub use crate::compare::{Compare, CompareAnswer};
+pub use crate::curve::{Curve, FlexuresAnswer};
+pub use crate::distance::{Distance, DistanceAnswer};
 pub use crate::escape::{Escape, Until};
 pub use crate::exponents::{Exponents, Lyapunov};
+#[doc(hidden)]
+pub use crate::identify::columns_read;
+pub use crate::identify::{Identify, IdentifyAnswer, WhatToIdentify};
+#[doc(hidden)]
+pub use crate::lesson::{JudgedStep, check_lessons};
 pub use crate::section::{Section, SectionKind};
 pub use crate::spectrum::{Signal, Spectrum, SpectrumAnswer};
-pub use crate::threshold::{Found, Onset, Threshold};
+pub use crate::sweep::Sweep;
 #[doc(hidden)]
-pub use accuracy::check_accuracy;
-pub use accuracy::{Accuracy, AccuracyAnswer};
-pub use compare::{Compare, CompareAnswer};
-pub use design::{Best, BestAnswer};
-pub use distance::{Distance, DistanceAnswer};
+pub use crate::sweep::{SweepCells, assign as assign_uncertain};
+pub use crate::threshold::{Found, Onset, Threshold};
 #[doc(hidden)]
 pub use error::longest_wait;
 pub use error::{Error, FaultAt};
-pub(crate) use grid::{check_until, drive_alone, settles};
-#[doc(hidden)]
-pub use lesson::{JudgedStep, check_lessons};
+pub(crate) use grid::{all_rows, check_until, drive_alone, settles};
 pub(crate) use motion::may_have_circuit;
-pub use motion::{Curve, FlexuresAnswer};
 pub(crate) use orbits::phase;
 pub use orbits::{Branch, BranchesAnswer, Locus, LocusAnswer, Orbit};
 #[doc(hidden)]
 pub use parts::{stops_that_cross, thresholds, walks};
 pub use progress::Progress;
-#[doc(hidden)]
-pub use record::columns_read;
-pub use record::{Identify, IdentifyAnswer, WhatToIdentify};
 pub use simulation::Simulation;
-pub use sweep::Sweep;
-#[doc(hidden)]
-pub use sweep::{SweepCells, assign as assign_uncertain};
 
 pub use crate::mechanics::flexure::State as FlexureState;
 pub use crate::scene::Uncertain;
 
-pub use crate::study::accuracy::methods::{Scheme, Statistics};
-pub use crate::study::accuracy::scene::{AtTolerance, Course, Lateness, StepSize, Tolerances, Trust};
+pub use crate::accuracy::methods::{Scheme, Statistics};
+pub use crate::accuracy::scene::{AtTolerance, Course, Lateness, StepSize, Tolerances, Trust};
 pub use crate::study::{
     Answer, Attractor, Begin, BestDesign, BestQuestion, BranchAnswer, BranchEnd, BranchEvent, Carry, Column,
     Comparison, Estimate, EvenRange, ExponentOptions, FieldRange, ForceComparison, Grid, Identified,

@@ -130,7 +130,7 @@ impl Simulation {
     }
 
     /// The simulation of a changed document, with the same mechanism if that is not changed.
-    pub(super) fn with_document(&self, document: Document, progress: &Progress) -> Result<Self, Error> {
+    pub(crate) fn with_document(&self, document: Document, progress: &Progress) -> Result<Self, Error> {
         let same_mechanism = document.scene.mechanism == self.document.scene.mechanism;
         let known = same_mechanism && document.files == self.document.files;
         Self::of(document, known.then(|| self.mechanism()), progress)

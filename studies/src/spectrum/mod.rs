@@ -14,7 +14,7 @@ use crate::numeric::{Taper, number_text, periodogram, short};
 use crate::output::{NoPicture, Ranges};
 use crate::questions::{Error, Progress, Simulation, check_until};
 use crate::scene::Document;
-use crate::study::simulate::MAX_SAMPLES;
+use crate::simulate::MAX_SAMPLES;
 use crate::study::{Answered, Grid, Heading, PICTURE, Scenes, Study, Table, Task, Values, number};
 pub use chart::{SpectrumQuantity, spectrum_chart};
 

@@ -3,9 +3,9 @@
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
-use super::identify::median;
 use super::{Table, finished};
 use crate::dynamics::{EventKind, Model, Request, Summary};
+use crate::identify::median;
 use crate::mechanics::Hertz;
 use crate::numeric::round::{ONE_TWO_FIVE, round_up};
 use crate::numeric::{bisect, elementary, short};

@@ -33,12 +33,12 @@ pub struct Grid {
     cells: u64,
 }
 
-pub(super) fn is_of_mechanism(field: &str) -> bool {
+pub(crate) fn is_of_mechanism(field: &str) -> bool {
     field.split('.').next() == Some("mechanism")
 }
 
 /// The name of a field, the last part of its path.
-pub(super) fn name_of(field: &str) -> &str {
+pub(crate) fn name_of(field: &str) -> &str {
     field.rsplit('.').next().unwrap_or(field)
 }
 
@@ -123,7 +123,7 @@ impl Grid {
 }
 
 /// The place of cell `index` on each axis of a grid with axes of these lengths, the slowest first.
-pub(super) fn places<L>(lengths: L, index: u64) -> impl Iterator<Item = usize> + Clone
+pub(crate) fn places<L>(lengths: L, index: u64) -> impl Iterator<Item = usize> + Clone
 where
     L: Iterator<Item = usize> + Clone,
 {

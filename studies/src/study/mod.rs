@@ -47,62 +47,68 @@ macro_rules! words {
 
 pub(crate) use words;
 
-pub mod accuracy;
-mod alternatives;
 pub(crate) mod amplitudes;
-mod best;
 pub(crate) mod bisection;
 mod contact;
-mod curve;
 mod declared;
 mod fields;
-mod grid;
+pub(crate) mod grid;
 pub(crate) mod grid_study;
-mod identify;
 mod inspect;
-mod lesson;
-mod map;
 mod measured;
 mod models;
 pub(crate) mod orbit;
 mod said;
 pub(crate) mod settled;
-pub(crate) mod simulate;
 mod slice;
-mod sweep;
 mod table;
-mod trace;
-mod uncertain;
+mod tally;
 pub(crate) mod walk;
-mod watch;
+pub(crate) mod watch;
+
+/// Accuracy of runs.
+pub mod accuracy {
+    pub use crate::accuracy::*;
+}
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::dynamics::{Outcome, Run};
 
 pub use crate::basins::{Answer, Attractor, BasinMap, EvenRange, NoBasins, Shares, Starts};
-pub use crate::escape::{NoKramers, depopulation, kramers_rate};
-pub use crate::exponents::{Estimate, ExponentOptions, Lyapunov, NoExponents, average_exponents, exponents};
-pub use crate::section::{IMPACTS, MAX_SECTION, SectionAt, SectionOptions, Sections, section};
-pub use crate::spectrum::{Signal, SpectrumAnswer, SpectrumOptions, spectrum};
-pub(crate) use crate::threshold::NoThresholds;
-pub use crate::threshold::{Found, Onset, Scan, Verdict, melnikov_threshold, threshold};
-pub use alternatives::{Alternative, Rated, alternatives};
-pub(crate) use alternatives::{SEARCHED_SPAN, comparison_parts, comparison_table};
-pub(crate) use amplitudes::stops_that_cross;
-pub use amplitudes::{Thresholds, can_cross, thresholds};
-pub use best::{
+pub use crate::best::{
     BestDesign, BestQuestion, Constraint, DesignRange, DesignRun, Environment, Memory, NoBest, Optimum,
     Results, Seeds, Spread, Tolerance, Tried, best, names, place, quantity,
 };
-pub(crate) use best::{INTERVALS, MOST_FIELDS, scan_places};
-pub use contact::yield_warning;
-pub(crate) use contact::{contact, yield_speed};
-pub use curve::{
+pub use crate::compare::{Alternative, Rated, alternatives};
+pub(crate) use crate::curve::small_amplitude_frequency;
+pub use crate::curve::{
     CURVE_PICTURE_POINTS, CURVE_POINTS, OutsideCurve, StatesError, curve, default_positions, even_positions,
     metres, states, stop_positions,
 };
-pub(crate) use curve::{full_curve, shapes, small_amplitude_frequency, stress_warning};
+pub use crate::escape::{NoKramers, depopulation, kramers_rate};
+pub use crate::exponents::{Estimate, ExponentOptions, Lyapunov, NoExponents, average_exponents, exponents};
+pub use crate::identify::{
+    FORCE_POINTS, Identified, Identity, Unidentified, damping, force, restitution, restitution_of_times,
+};
+pub use crate::lesson::{
+    Lack, LessonFinding, LessonReport, Subject, Value, check_lesson, goal_lack, result_fields,
+};
+pub use crate::section::{IMPACTS, MAX_SECTION, SectionAt, SectionOptions, Sections, section};
+pub use crate::simulate::{
+    Keep, Recorded, Sampling, Trace, between, ended_remedy, events_table, sample_times, samples_table,
+    simulate, simulate_with_trace,
+};
+pub use crate::spectrum::{Signal, SpectrumAnswer, SpectrumOptions, spectrum};
+pub(crate) use crate::sweep::Draws;
+pub use crate::sweep::cells::Sweep;
+pub use crate::sweep::{Edges, MAX_DRAWS, STANDARD_COLUMNS, SweepOptions, first_crossing, release_line};
+pub(crate) use crate::threshold::NoThresholds;
+pub use crate::threshold::{Found, Onset, Scan, Verdict, melnikov_threshold, threshold};
+pub(crate) use amplitudes::stops_that_cross;
+pub use amplitudes::{Thresholds, can_cross, thresholds};
+pub use contact::yield_warning;
+pub(crate) use contact::{contact, yield_speed};
 pub use declared::{
     Answered, Framing, Heading, Over, PICTURE, Remark, Rows, Scenes, Streamed, Study, answer, answer_in,
     counted, number, whole,
@@ -113,14 +119,7 @@ pub use fields::{RMS_VELOCITY, Read, SUMMARY_FIELDS, SummaryField};
 pub use grid::{Grid, GridError, Levels, MAX_CELLS, STRIDES};
 pub(crate) use grid_study::{Built, Row};
 pub use grid_study::{Cells, GridStudy, Question};
-pub use identify::{
-    FORCE_POINTS, Identified, Identity, Unidentified, damping, force, restitution, restitution_of_times,
-};
 pub use inspect::inspect;
-pub use lesson::{Lack, LessonFinding, LessonReport, Subject, Value, check_lesson, goal_lack, result_fields};
-pub(crate) use lesson::{Unjudged, options_that_hold};
-pub use map::{Edges, first_crossing, release_line};
-pub(crate) use map::{first_crossing_edge, line_meets};
 pub use measured::{Comparison, ForceComparison, MeasuredMotion, NoComparison, compare, compare_force};
 pub(crate) use models::ModelUse;
 pub use orbit::{
@@ -131,16 +130,10 @@ pub(crate) use said::named;
 pub use said::{Said, Spelling};
 pub(crate) use settled::followed_until;
 pub use settled::{Standing, lasts, settled, standing};
-pub use simulate::{
-    Keep, Recorded, Sampling, ended_remedy, events_table, sample_times, samples_table, simulate,
-};
 pub use slice::{Shard, Slice};
-pub(crate) use sweep::CellFaults;
-pub use sweep::{Cell, DIRECTION, STANDARD as STANDARD_COLUMNS, Sweep, SweepEnd, SweepOptions, Tally};
 pub use table::{Column, Table, Values, label_and_unit, with_unit};
-pub use trace::{Trace, between, simulate_with_trace};
-pub use uncertain::MAX_DRAWS;
-pub(crate) use uncertain::{Draws, Variation, share_in_range};
+pub(crate) use tally::CellFaults;
+pub use tally::{Cell, DIRECTION, SweepEnd, Tally};
 pub use walk::{Carry, Direction, Family, Visit, up_and_down};
 pub(crate) use walk::{NoModel, choice_fault, excitation_fault};
 pub use watch::{Watch, continued_scene, watched_events};

@@ -244,7 +244,7 @@ fn finite_range(low: f64, high: f64) -> (f64, f64) {
 }
 
 /// A whole number in superscript digits.
-pub(super) fn superscript(power: i32) -> String {
+pub(crate) fn superscript(power: i32) -> String {
     let digit = |c: char| match c {
         '-' => '\u{207b}',
         '1' => '\u{b9}',

@@ -6,11 +6,11 @@ use super::chart::{Chart, Marks, Panel};
 use super::drawn::Drawn;
 use super::figure::Point;
 use super::role::Role;
-use super::swept::swept_axis;
 use crate::numeric::short;
 use crate::study::{
     BranchAnswer, BranchEvent, LocusEvent, OneLocus, OrbitAnswer, branches_table, loci_table,
 };
+use crate::sweep::swept_axis;
 
 /// The kinds of events in the order of their markers.
 const EVENTS: [BranchEvent; 4] =

@@ -122,7 +122,7 @@ fn value_of(term: &LedgerTerm, ledger: &LiveLedger, unit: f64) -> f64 {
 
 /// The panel of a ledger over a range of times in s, with its numbers and the shares of the work of the base,
 /// in a unit in J with this name.
-pub(super) fn ledger_panel(
+pub(crate) fn ledger_panel(
     ledger: &LiveLedger,
     has_transducer: bool,
     (from, to): (&str, &str),

@@ -7,7 +7,7 @@ use super::axis::PlotAxis;
 use super::chart::{Chart, Marks, Panel, PanelColumn, Side};
 use super::names::DISPLACEMENT;
 use super::role::Role;
-use super::shapes::drawn;
+use crate::curve::drawn_shapes;
 use crate::dynamics::Model;
 use crate::mechanics::flexure::State;
 use crate::numeric::short;
@@ -41,7 +41,7 @@ pub fn mechanism_chart(of: &[(&Model, f64)]) -> Result<Chart, StatesError> {
         }
         columns.push(PanelColumn { width: 1.0, panels: vec![panel] });
         let [left, right] = <[_; 2]>::from(model.stop_positions()).map(|stop| stop.unwrap_or(f64::NAN));
-        data.append(&drawn(bent, (left, right), &[*x]));
+        data.append(&drawn_shapes(bent, (left, right), &[*x]));
     }
     let at: Vec<String> = of.iter().map(|(_, x)| format!("at {} mm", short(x * 1e3))).collect();
     let is_bent = bent.iter().any(|bent| !bent.is_empty());

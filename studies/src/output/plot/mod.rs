@@ -4,17 +4,12 @@
 //! lays it out as a list of simple shapes, and [`Format::bytes`] paints them. Positions do not depend on the
 //! theme, and equal data give equal bytes.
 
-mod accuracy;
 mod assembly;
 mod axis;
 mod beside;
-mod best;
 mod branch;
 mod cells;
 mod chart;
-mod comparison;
-mod curve;
-mod distance;
 mod drawn;
 mod figure;
 mod font;
@@ -22,7 +17,6 @@ mod frame;
 mod grid;
 mod labels;
 mod ledger;
-mod map;
 mod mark;
 mod mechanism;
 mod names;
@@ -34,21 +28,14 @@ mod portrait;
 mod projection;
 mod push;
 mod quantity;
-mod record;
 mod role;
-mod run;
-mod run_picture;
-mod shapes;
 mod sheet;
 mod sketch;
 mod style;
 mod subset;
 mod surface;
 mod svg;
-mod sweep;
-mod swept;
 mod thinned;
-mod walked;
 mod well;
 
 use std::path::Path;
@@ -57,50 +44,50 @@ use crate::study::words;
 
 pub use crate::study::{OutsideCurve, StatesError};
 
+pub use crate::accuracy::{accuracy_chart, cost_panel, scene_accuracy_chart, steps_panel};
 pub use crate::basins::basins_chart;
+pub use crate::best::best_chart;
+pub use crate::compare::{compared_name, comparison_chart, comparison_title, three_digits};
+pub use crate::curve::{contact_chart, curve_chart, force_panel, shapes_chart, zero_of_energy};
+pub use crate::distance::distance_chart;
+pub use crate::identify::{identified_chart, measured_chart, measured_force_chart};
+pub use crate::simulate::{RunPanel, RunPicture, run_chart};
 pub use crate::spectrum::{SpectrumQuantity, spectrum_chart};
-pub use accuracy::{accuracy_chart, cost_panel, scene_accuracy_chart, steps_panel};
+pub use crate::sweep::{
+    Cut, MAX_PICTURE_CELLS, NOT_SETTLED, NoPicture, Overlay, SweepPicture, View, Walk, WalkedRun, can_show,
+    shown_columns, sweep_chart,
+};
+pub(crate) use crate::sweep::{
+    ascending, can_show_over_field, each_line, few_lines, label, map, spans, swept_axis,
+};
 pub use assembly::{Assembly, MagnetPair};
+pub(crate) use axis::superscript;
 pub use axis::{PlotAxis, Ranges};
-pub use best::best_chart;
 pub use branch::{branch_chart, loci_chart};
 pub use cells::{Colours, Shade, Shades};
 pub use chart::{Chart, Layer, Marks, Note, Panel, PanelColumn, Side};
-pub use comparison::{compared_name, comparison_chart, comparison_title, three_digits};
-pub use curve::{contact_chart, curve_chart, force_panel, zero_of_energy};
-pub use distance::distance_chart;
 pub(crate) use drawn::{Drawn, as_numbers, of_rows};
 pub(crate) use figure::Point;
 pub use figure::{Area, Figure, Shape, Text};
 pub use font::{HACK, INTER, width as text_width};
 pub use frame::Frame;
+pub(crate) use ledger::ledger_panel;
 pub use ledger::{LedgerTerm, ledger_bars, ledger_decimals, ledger_number, share_of_work};
-pub(crate) use map::map;
-pub use map::shown_columns;
 pub use mark::Caption;
+pub(crate) use mark::REGIMES;
 pub use mechanism::mechanism_chart;
-pub use names::{
-    BASE_ACCELERATION, DISPLACEMENT, FREQUENCY, HOLDING_FORCE, PROCESSOR_TIME, TIME, VELOCITY, axis_name,
-};
+pub use names::{BASE_ACCELERATION, DISPLACEMENT, FREQUENCY, HOLDING_FORCE, TIME, VELOCITY, axis_name};
 pub use over_time::OverTime;
 pub use png::PaintError;
 pub use portrait::portrait_panel;
+pub(crate) use quantity::Quantity;
 pub use quantity::{RMS, quantities, suited_unit, words_of};
-pub use record::{identified_chart, measured_chart, measured_force_chart};
 pub use role::{Look, Role};
-pub use run::{RunPanel, run_chart};
-pub use run_picture::RunPicture;
-pub use shapes::shapes_chart;
 pub use sheet::{Sheet, SheetError, SheetText};
 pub use sketch::{DrawnPart, Sketch};
-pub use style::{BLACK, Ink, TICK, Theme, is_fine, viridis};
+pub use style::{BLACK, Ink, TICK, Theme, is_fine};
 pub(crate) use style::{COOL, KINDS, WARM};
 pub use surface::{MAX_SURFACE_CELLS, SurfaceFrame};
-pub use sweep::{MAX_PICTURE_CELLS, NoPicture, can_show, can_show_over_field, sweep_about, sweep_chart};
-pub(crate) use sweep::{each_line, few_lines};
-pub use swept::{Cut, NOT_SETTLED, Overlay, SweepPicture, View};
-pub(crate) use swept::{ascending, label, spans, swept_axis};
-pub use walked::{Walk, WalkedRun};
 pub use well::{TippedPotential, well_chart, well_panel};
 
 words! {

@@ -8,9 +8,6 @@ pub const TIME: &str = "time (s)";
 /// Displacement of the mass, or the position of a measured force.
 #[doc(hidden)]
 pub const DISPLACEMENT: &str = "displacement (mm)";
-/// Time that the processor took.
-#[doc(hidden)]
-pub const PROCESSOR_TIME: &str = "processor time (s)";
 /// Frequency.
 #[doc(hidden)]
 pub const FREQUENCY: &str = "frequency (Hz)";

@@ -4,7 +4,7 @@ use super::axis::PlotAxis;
 use super::chart::{Layer, Marks, Panel, Side};
 use super::names::{BASE_ACCELERATION, VELOCITY, axis_name};
 use super::role::Role;
-use super::run::RunPanel;
+use crate::simulate::RunPanel;
 
 /// Events and positions that a panel over time shows in addition to the values. Unknown numbers are NaN.
 #[doc(hidden)]
@@ -72,7 +72,7 @@ impl RunPanel {
 
 impl Panel {
     /// Adds the times at rest.
-    pub(super) fn rests(&mut self, beside: &OverTime) {
+    pub(crate) fn rests(&mut self, beside: &OverTime) {
         let (spans, name) = &beside.rests;
         self.layer_if_any(Role::Rest, *name, Marks::Spans(spans.clone()));
     }

@@ -5,9 +5,9 @@ use super::cells::Shade;
 use super::drawn::as_numbers;
 use super::mark::{REGIMES, regime_words};
 use super::role::Role;
-use super::sweep::distinct;
 use crate::numeric::extent;
 use crate::study::{Grid, RMS_VELOCITY, Read, SummaryField, Table, Values, label_and_unit, with_unit};
+use crate::sweep::distinct;
 
 /// The column that is shown by default.
 pub const RMS: &str = RMS_VELOCITY.name;
@@ -36,7 +36,7 @@ const MAX_COUNTS: usize = 8;
 
 /// A column to show.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Quantity {
+pub(crate) struct Quantity {
     /// Its values, one per row, NaN for missing ones; for kinds, their indices.
     pub values: Vec<f64>,
     pub label: String,

@@ -213,8 +213,7 @@ pub const OVER_MAP: Ink = VERMILION;
 
 /// The colour of `share` from 0 to 1 on the map's scale: viridis (van der Walt and Smith 2015), whose
 /// lightness increases evenly, so that it can be read with any colour blindness and in black and white.
-#[doc(hidden)]
-pub fn viridis(share: f64) -> Ink {
+pub(super) fn viridis(share: f64) -> Ink {
     const STOPS: [Ink; 16] = [
         Ink(0x44, 0x01, 0x54),
         Ink(0x48, 0x1a, 0x6c),

@@ -5,12 +5,12 @@
 
 use super::axis::PlotAxis;
 use super::chart::{Chart, Layer, Marks, Panel};
-use super::curve::{subtitle, telling, zero_of_energy};
 use super::drawn::Drawn;
 use super::figure::Point;
 use super::names::{DISPLACEMENT, axis_name};
 use super::quantity::suited_unit;
 use super::role::Role;
+use crate::curve::{subtitle, telling, zero_of_energy};
 use crate::dynamics::{Model, STANDARD_GRAVITY};
 use crate::numeric::{extent, short};
 

@@ -1,10 +1,10 @@
 //! Characteristic numbers of a measured and of the computed motion.
 
 use crate::dynamics::Model;
-use crate::numeric::extent;
+use crate::identify::{noise, reach};
+use crate::numeric::{Turn, extent, turns};
 use crate::scene::{Excitation, Quantity, Scene};
 use crate::study::Table;
-use crate::study::identify::{Turn, noise, reach, turns};
 
 /// Distance from a stop below which a turning point is an impact, as a share of the distance of the stops.
 const AT_STOP: f64 = 0.1;
