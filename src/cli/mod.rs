@@ -15,7 +15,6 @@ mod lesson;
 mod measured;
 mod merge;
 mod options;
-mod orbit;
 mod outputs;
 mod pages;
 mod picture;
@@ -44,7 +43,10 @@ macro_rules! declared {
     )*};
 }
 
-declared!(basins: Basins escape: Escape exponents: Exponents section: Section spectrum: Spectrum threshold: Threshold);
+declared! {
+    basins: Basins escape: Escape exponents: Exponents orbit: Orbits section: Section spectrum: Spectrum
+    threshold: Threshold
+}
 
 pub use failure::Failure;
 pub use options::{Options, command_names};

@@ -19,6 +19,7 @@ pub mod study;
 mod basins;
 mod escape;
 mod exponents;
+mod orbit;
 pub mod questions;
 mod section;
 mod spectrum;

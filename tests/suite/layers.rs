@@ -17,7 +17,7 @@ struct Order {
 const CRATES: [&str; 3] = ["kernel/src", "studies/src", "src"];
 
 /// The folders of the studies, which stand side by side: a room a study, and what all share.
-const STUDIES: &str = "study questions output basins escape exponents section spectrum threshold";
+const STUDIES: &str = "study questions output basins escape exponents orbit section spectrum threshold";
 
 /// The orders that hold. The binary may name all. That of the crates is held by the compiler.
 const ORDERS: [Order; 3] = [

@@ -89,7 +89,6 @@ mod grid;
 mod kept;
 mod lesson;
 mod motion;
-mod orbits;
 mod parts;
 mod progress;
 mod record;
@@ -100,6 +99,10 @@ mod sweep;
 pub use crate::basins::{Basins, BasinsAnswer};
 pub use crate::escape::{Escape, Until};
 pub use crate::exponents::{Exponents, Lyapunov};
+#[doc(hidden)]
+pub use crate::orbit::Orbits;
+pub(crate) use crate::orbit::phase;
+pub use crate::orbit::{Branch, BranchesAnswer, Locus, LocusAnswer, Orbit};
 pub use crate::section::{Section, SectionKind};
 pub use crate::spectrum::{Signal, Spectrum, SpectrumAnswer};
 pub use crate::threshold::{Found, Onset, Threshold};
@@ -117,8 +120,6 @@ pub(crate) use grid::{check_until, drive_alone, settles};
 pub use lesson::{JudgedStep, check_lessons};
 pub(crate) use motion::may_have_circuit;
 pub use motion::{Curve, FlexuresAnswer};
-pub(crate) use orbits::phase;
-pub use orbits::{Branch, BranchesAnswer, Locus, LocusAnswer, Orbit};
 #[doc(hidden)]
 pub use parts::{stops_that_cross, thresholds, walks};
 pub use progress::Progress;

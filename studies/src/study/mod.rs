@@ -64,7 +64,6 @@ mod lesson;
 mod map;
 mod measured;
 mod models;
-pub(crate) mod orbit;
 mod said;
 pub(crate) mod settled;
 pub(crate) mod simulate;
@@ -83,6 +82,11 @@ use crate::dynamics::{Outcome, Run};
 pub use crate::basins::{Answer, Attractor, BasinMap, EvenRange, NoBasins, Shares, Starts};
 pub use crate::escape::{NoKramers, depopulation, kramers_rate};
 pub use crate::exponents::{Estimate, ExponentOptions, Lyapunov, NoExponents, average_exponents, exponents};
+pub(crate) use crate::orbit;
+pub use crate::orbit::{
+    Begin, BranchAnswer, BranchEnd, BranchEvent, BranchOptions, FieldRange, LocusEnd, LocusEvent, NoOrbit,
+    OneLocus, OrbitAnswer, begun, branch, branches_table, loci, loci_table, orbit, orbit_near, switched,
+};
 pub use crate::section::{IMPACTS, MAX_SECTION, SectionAt, SectionOptions, Sections, section};
 pub use crate::spectrum::{Signal, SpectrumAnswer, SpectrumOptions, spectrum};
 pub(crate) use crate::threshold::NoThresholds;
@@ -123,10 +127,6 @@ pub use map::{Edges, first_crossing, release_line};
 pub(crate) use map::{first_crossing_edge, line_meets};
 pub use measured::{Comparison, ForceComparison, MeasuredMotion, NoComparison, compare, compare_force};
 pub(crate) use models::ModelUse;
-pub use orbit::{
-    Begin, BranchAnswer, BranchEnd, BranchEvent, BranchOptions, FieldRange, LocusEnd, LocusEvent, NoOrbit,
-    OneLocus, OrbitAnswer, begun, branch, branches_table, loci, loci_table, orbit, orbit_near, switched,
-};
 pub(crate) use said::named;
 pub use said::{Said, Spelling};
 pub(crate) use settled::followed_until;
@@ -167,7 +167,10 @@ impl Task<'_> {
 
     /// The result of `work`, or an error if the study was cancelled meanwhile: a run that was cut short looks
     /// like one that ends early.
-    fn unless_cancelled<T, E: From<Cancelled>>(&self, work: impl FnOnce() -> Result<T, E>) -> Result<T, E> {
+    pub(crate) fn unless_cancelled<T, E: From<Cancelled>>(
+        &self,
+        work: impl FnOnce() -> Result<T, E>,
+    ) -> Result<T, E> {
         let found = work();
         self.check_cancelled()?;
         found
