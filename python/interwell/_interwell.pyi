@@ -107,38 +107,6 @@ def ask(
     threads: int | None = None,
     progress: _Told = None,
 ) -> tuple[Answer, list[Answer]]: ...
-def orbit(
-    scene: Simulation,
-    period: int | None = None,
-    phase_deg: float = 0.0,
-    begin: tuple[float, float, float] | int | None = None,
-) -> Answer: ...
-def branch(
-    scene: Simulation,
-    field: str,
-    range: tuple[float, float],
-    step: float,
-    count: int,
-    switch: int,
-    period: int | None = None,
-    phase_deg: float = 0.0,
-    progress: _Told = None,
-    begin: tuple[float, float, float] | int | None = None,
-) -> Answer: ...
-def locus(
-    scene: Simulation,
-    event: str,
-    field: str,
-    range: tuple[float, float],
-    second: str,
-    second_range: tuple[float, float],
-    step: float,
-    count: int,
-    period: int | None = None,
-    phase_deg: float = 0.0,
-    progress: _Told = None,
-    begin: tuple[float, float, float] | int | None = None,
-) -> Answer: ...
 def compare(
     scene: Simulation,
     name: str,

@@ -22,15 +22,16 @@ _TEXTS = ("title", "notes", "path", "field")
 
 
 def _begin(begin: Any) -> Any:
-    """Return the motion that is meant: nothing, the number of its impacts, or its state in three numbers."""
+    """Return the motion that is meant: nothing, the number of its impacts, or its state."""
     if begin is None:
         return None
     if np.ndim(begin) == 0:
-        return _whole("begin", begin, 2**63)
+        return {"Impacts": _whole("begin", begin, 2**63)}
     state = _numbers("begin", begin)
     if len(state) not in (2, 3):
         raise _wrong("begin", begin, "give (x_mm, v_m_per_s), with A or V of a circuit as a third number")
-    return (state[0], state[1], state[2] if len(state) == 3 else 0.0)
+    x_mm, v, *electrical = state.tolist()
+    return {"State": {"x": 1e-3 * x_mm, "v": v, "electrical": electrical[0] if electrical else 0.0}}
 
 
 def _value(value: Any) -> str:
@@ -226,6 +227,17 @@ class Scene(Studies, Mapping[str, Any]):
         with _Told(progress, parts) as told:
             answer, _ = _interwell.ask(study, self._simulation, given, _count("threads", threads), told)
         return Grid(answer, arrays) if arrays and cells else Table(answer)
+
+    def _orbits(
+        self, over: dict[str, Any], period: int | None, phase_deg: float, begin: Any, step: float = 0.01,
+        count: int = 5000, progress: Progress = False
+    ) -> Table:
+        """Return a periodic motion or, with the fields that are covered, a branch or loci."""
+        arguments = {
+            "period": _count("period", period), "phase_deg": _number("phase_deg", phase_deg),
+            "from": _begin(begin), "step": _number("step", step), "count": _whole("count", count, 2**64),
+        }
+        return self._ask("orbit", "motions", None, None, progress, {**over, **arguments}, False)
 
     @classmethod
     def _of(cls, simulation: _interwell.Simulation, before: Scene | None = None) -> Scene:
@@ -997,8 +1009,7 @@ class Scene(Studies, Mapping[str, Any]):
         >>> scene.orbit()["period"]
         array([1])
         """
-        phase = _number("phase_deg", phase_deg)
-        return Table(_interwell.orbit(self._simulation, _count("period", period), phase, _begin(begin)))
+        return self._orbits({}, period, phase_deg, begin)
 
     def branch(
         self,
@@ -1062,13 +1073,8 @@ class Scene(Studies, Mapping[str, Any]):
         array([0.7])
         """
         ends = (_number("start", start), _number("end", end))
-        relative, motions = _number("step", step), _whole("count", count, 2**64)
-        with _Told(progress, "motions") as told:
-            answer = _interwell.branch(
-                self._simulation, field, ends, relative, motions, _whole("switch", switch),
-                _count("period", period), _number("phase_deg", phase_deg), told, _begin(begin)
-            )
-        return Table(answer)
+        over = {"branch": {"field": field, "range": ends}, "switch": _whole("switch", switch)}
+        return self._orbits(over, period, phase_deg, begin, step, count, progress)
 
     def locus(
         self,
@@ -1129,15 +1135,12 @@ class Scene(Studies, Mapping[str, Any]):
         >>> bool(abs(reached - 1).max() < 1e-8)
         True
         """
-        low, high = _entries("range", range, "(first, last)", 2)
-        left, right = _entries("second_range", second_range, "(first, last)", 2)
-        relative, motions = _number("step", step), _whole("count", count, 2**64)
-        with _Told(progress, "motions") as told:
-            answer = _interwell.locus(
-                self._simulation, event, field, (low, high), second, (left, right), relative, motions,
-                _count("period", period), _number("phase_deg", phase_deg), told, _begin(begin)
-            )
-        return Table(answer)
+        over = {
+            "branch": {"field": field, "range": _entries("range", range, "(first, last)", 2)},
+            "locus": _word("event", event or "", ("fold", "flip", "symmetry", "grazing")),
+            "and": {"field": second, "range": _entries("second_range", second_range, "(first, last)", 2)},
+        }
+        return self._orbits(over, period, phase_deg, begin, step, count, progress)
 
     def compare(
         self,

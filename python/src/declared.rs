@@ -1,6 +1,6 @@
 //! Studies that declare their arguments, table, remarks and picture.
 
-use interwell_studies::questions::{Basins, Error, Escape, Exponents, Section, Spectrum, Threshold};
+use interwell_studies::questions::{Basins, Error, Escape, Exponents, Orbits, Section, Spectrum, Threshold};
 use interwell_studies::study::{Framing, Study, answer};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -27,6 +27,7 @@ pub fn ask(
         Basins::NAME => asked::<Basins>(py, scene, arguments, &way),
         Escape::NAME => asked::<Escape>(py, scene, arguments, &way),
         Exponents::NAME => asked::<Exponents>(py, scene, arguments, &way),
+        Orbits::NAME => asked::<Orbits>(py, scene, arguments, &way),
         Section::NAME => asked::<Section>(py, scene, arguments, &way),
         Spectrum::NAME => asked::<Spectrum>(py, scene, arguments, &way),
         Threshold::NAME => asked::<Threshold>(py, scene, arguments, &way),

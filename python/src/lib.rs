@@ -24,9 +24,6 @@ fn _interwell(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(scene::presets, module)?)?;
     module.add_function(wrap_pyfunction!(grid::sweep, module)?)?;
     module.add_function(wrap_pyfunction!(declared::ask, module)?)?;
-    module.add_function(wrap_pyfunction!(motion::orbit, module)?)?;
-    module.add_function(wrap_pyfunction!(motion::branch, module)?)?;
-    module.add_function(wrap_pyfunction!(motion::locus, module)?)?;
     module.add_function(wrap_pyfunction!(motion::compare, module)?)?;
     module.add_function(wrap_pyfunction!(motion::best, module)?)?;
     module.add_function(wrap_pyfunction!(record::identify, module)?)?;

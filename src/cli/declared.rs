@@ -7,6 +7,7 @@ use interwell_studies::study::{
     Answered, Cancelled, Framing, IMPACTS, Scenes, Spelling, Streamed, Study, Task,
 };
 
+use super::options::takes_one_thread;
 use super::support::{Watch, load_over, mechanism_of_all, outputs, pool, warn};
 use super::{ChartOptions, Common, Failure, Output, Outputs, Picture, ask, bar, interrupt, refuse, say};
 
@@ -38,7 +39,7 @@ pub fn run<S: Study>(options: &Arguments<S>, common: &Common) -> Result<(), Fail
         refuse!("--over {field}: `{}` takes one scene: leave it out", S::NAME);
     }
     let picture = Picture::of_chart(chart, common)?;
-    let (document, warnings, grid) = load_over(scene, over, common)?;
+    let (document, warnings, grid) = load_over(scene, over, |document| study.prepare(document), common)?;
     if let Some(picture) = picture {
         study.can_draw(&grid)?;
         study.check_ranges(&picture.ranges)?;
@@ -82,8 +83,9 @@ pub fn run<S: Study>(options: &Arguments<S>, common: &Common) -> Result<(), Fail
     if let Some(chart) = chart {
         outputs.draw(picture, &document, |ranges| Ok(chart(&table, &framing(ranges))?))?;
     }
-    let Some(manifest) = manifest else { return outputs.finish_rows(&document, common.jobs()) };
-    outputs.manifest(Some(&document), common.jobs(), |made| Ok(manifest(made)))?;
+    let jobs = if takes_one_thread(S::NAME) { 1 } else { common.jobs() };
+    let Some(manifest) = manifest else { return outputs.finish_rows(&document, jobs) };
+    outputs.manifest(Some(&document), jobs, |made| Ok(manifest(made)))?;
     outputs.finish()
 }
 

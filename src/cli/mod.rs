@@ -15,7 +15,6 @@ mod lesson;
 mod measured;
 mod merge;
 mod options;
-mod orbit;
 mod outputs;
 mod pages;
 mod picture;
@@ -48,6 +47,7 @@ declared! {
     basins: Basins
     escape: Escape
     exponents: Exponents
+    orbit: Orbits
     section: Section
     spectrum: Spectrum
     threshold: Threshold

@@ -147,8 +147,7 @@ commands! {
     best Best " [SCENE] --over FIELD=A:B";
     spectrum Spectrum " [SCENE]" asks Spectrum ignores "jobs";
     basins Basins " [SCENE] --x-mm A:B:N --v A:B:N" asks Basins;
-    /// The periodic motion near that of a run, with its multipliers; or a branch of motions over a field
-    orbit Orbit " [SCENE]" ignores "jobs";
+    orbit Orbit " [SCENE]" asks Orbits ignores "jobs";
     exponents Exponents " [SCENE]" asks Exponents;
     escape Escape " [SCENE]" asks Escape;
     /// Damping ratio, restitution or force curve from a measured record, each number with its interval
@@ -169,6 +168,11 @@ pub fn command_line() -> clap::Command {
             unused.fold(sub.long_about(None::<&str>), |sub, name| sub.mut_arg(name, |arg| arg.hide(true)))
         })
     })
+}
+
+/// Whether a command takes one thread, whatever `--jobs` says.
+pub fn takes_one_thread(name: &str) -> bool {
+    COMMANDS.iter().any(|(word, _, ignored)| *word == name && ignored.contains(&"jobs"))
 }
 
 /// The names of all commands, as a sentence lists them.

@@ -143,6 +143,9 @@ impl From<NoPicture> for Failure {
                                            map), and there is one threshold: add --over \
                                            FIELD=FROM:TO:STEP, or leave --plot out"
                 .to_owned(),
+            NoPicture::SingleMotion => {
+                "--plot shows a branch; add --branch FIELD=A:B, or leave it out".to_owned()
+            }
             NoPicture::OneField(what, count) => format!(
                 "--plot shows {what} over one field, not over {count}: name it with --over \
                  FIELD=FROM:TO:STEP"

@@ -33,14 +33,18 @@ struct Lines {
 }
 
 /// The answer of a question that Ctrl-C cancels, that has the threads of `--jobs`, and whose parts, called
-/// `unit`, are counted by a [`bar`].
+/// `unit`, are counted by a [`bar`], or by their number alone where that of all is not known.
 pub fn ask<T>(
     unit: &str,
     common: &Common,
     question: impl FnOnce(&questions::Progress) -> Result<T, Error>,
 ) -> Result<T, Failure> {
     let bar = bar(0, 0, unit, common);
-    let count = |done: u64, all: Option<u64>| bar.count(done, all.unwrap_or(0));
+    let count = |done: u64, all: Option<u64>| match all {
+        Some(all) => bar.count(done, all),
+        None if done == 0 => bar.bar.set_style(style(&format!("{{human_pos}} {unit}"))),
+        None => bar.bar.set_position(done),
+    };
     Ok(question(&interrupt::progress().reporting_to(&count).threads(common.jobs()))?)
 }
 
@@ -48,28 +52,28 @@ pub fn ask<T>(
 /// rate and time left on a terminal, unless the rows go there too; lines if standard error is no terminal.
 pub fn bar(parts: u64, before: u64, unit: &str, common: &Common) -> Progress {
     let rows_on_terminal = common.out() == Path::new("-") && std::io::stdout().is_terminal();
+    let on_terminal = std::io::stderr().is_terminal();
     let (clock, done, printed) = (WallClock::start(), AtomicU64::new(before), AtomicU64::new(0));
     let (parts_of_lines, begun) = (AtomicU64::new(parts), AtomicU64::new(0));
     let lines = Lines { parts: parts_of_lines, unit: unit.to_owned(), clock, begun, before, done, printed };
-    let lines = Some(lines).filter(|_| !common.quiet && !std::io::stderr().is_terminal());
+    let lines = Some(lines).filter(|_| !common.quiet && !on_terminal);
     let template = format!("{{wide_bar}} {{human_pos}}/{{human_len}} {unit}  {{rate}}  {{eta}} left");
-    let bar = bar_on_terminal(Some(parts), &template, common.quiet || rows_on_terminal);
+    let bar = match on_terminal && !common.quiet && !rows_on_terminal {
+        true => ProgressBar::new(parts).with_style(style(&template)),
+        false => ProgressBar::hidden(),
+    };
     bar.set_position(before);
     bar.reset_eta();
     Progress { bar, lines }
 }
 
-/// A bar in the style of `template`, without a length if the number of `parts` is not known; hidden as well
-/// where standard error is no terminal.
-pub fn bar_on_terminal(parts: Option<u64>, template: &str, hidden: bool) -> ProgressBar {
-    if hidden || !std::io::stderr().is_terminal() {
-        return ProgressBar::hidden();
-    }
+/// The style of a bar, in which `rate` is the parts done in a second.
+fn style(template: &str) -> ProgressStyle {
     let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
     let rate = |state: &ProgressState, text: &mut dyn std::fmt::Write| {
         let _ = write!(text, "{:.0}/s", state.per_sec());
     };
-    parts.map_or_else(ProgressBar::no_length, ProgressBar::new).with_style(style.with_key("rate", rate))
+    style.with_key("rate", rate)
 }
 
 impl Progress {

@@ -55,13 +55,15 @@ pub fn load(spec: &str, common: &Common) -> Result<(Document, Vec<String>), Scen
 }
 
 /// Loads the scene with its grid: the values of the fields of `--over`, or without `--over` the scene alone,
-/// whose sweep is ignored.
+/// whose sweep is ignored. `prepare` changes the scene before it is checked.
 pub fn load_over(
     spec: &str,
     over: &[String],
+    prepare: impl FnOnce(&mut Document) -> Result<(), Error>,
     common: &Common,
 ) -> Result<(Document, Vec<String>, Grid), Failure> {
     let (mut document, is_one) = (read(spec, common)?, over.is_empty());
+    prepare(&mut document)?;
     let warnings = check(&mut document, (!is_one).then_some(over))?;
     let grid = if is_one { Grid::of_one() } else { Grid::new(document.axes(over)?)? };
     Ok((document, warnings, grid))

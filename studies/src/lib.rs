@@ -26,6 +26,7 @@ mod escape;
 mod exponents;
 mod identify;
 mod lesson;
+mod orbit;
 pub mod questions;
 mod section;
 mod simulate;

@@ -18,7 +18,7 @@ const CRATES: [&str; 3] = ["kernel/src", "studies/src", "src"];
 
 /// The folders of the studies, which stand side by side: a room a study, and what all share.
 const STUDIES: &str = "study questions output accuracy basins best compare curve distance escape exponents \
-                       identify lesson section simulate spectrum sweep threshold";
+                       identify lesson orbit section simulate spectrum sweep threshold";
 
 /// The orders that hold. The binary may name all. That of the crates is held by the compiler.
 const ORDERS: [Order; 3] = [

@@ -83,7 +83,6 @@
 mod error;
 mod grid;
 mod motion;
-mod orbits;
 mod parts;
 mod progress;
 mod simulation;
@@ -103,6 +102,9 @@ pub use crate::identify::columns_read;
 pub use crate::identify::{Identify, IdentifyAnswer, WhatToIdentify};
 #[doc(hidden)]
 pub use crate::lesson::{JudgedStep, check_lessons};
+pub use crate::orbit::Orbits;
+pub(crate) use crate::orbit::phase;
+pub use crate::orbit::{Branch, BranchesAnswer, Locus, LocusAnswer, Orbit};
 pub use crate::section::{Section, SectionKind};
 pub use crate::spectrum::{Signal, Spectrum, SpectrumAnswer};
 pub use crate::sweep::Sweep;
@@ -114,8 +116,6 @@ pub use error::longest_wait;
 pub use error::{Error, FaultAt};
 pub(crate) use grid::{all_rows, check_until, drive_alone, settles};
 pub(crate) use motion::may_have_circuit;
-pub(crate) use orbits::phase;
-pub use orbits::{Branch, BranchesAnswer, Locus, LocusAnswer, Orbit};
 #[doc(hidden)]
 pub use parts::{stops_that_cross, thresholds, walks};
 pub use progress::Progress;

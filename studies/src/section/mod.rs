@@ -236,7 +236,7 @@ pub const MAX_SECTION: u64 = 1 << 22;
 const KEPT: u64 = 1 << 21;
 
 /// Extra column of the table of states: the number of impacts in the settled window.
-pub const IMPACTS: &str = "impacts";
+pub const IMPACTS: &str = "impacts_in_window";
 
 /// Where a section is taken.
 ///

@@ -48,6 +48,11 @@ pub trait Study: clap::Args + serde::de::DeserializeOwned + Clone + Default + Se
         Self::PARTS
     }
 
+    /// Gives the fields of the scene that it covers their first values, before the scene is checked.
+    fn prepare(&self, _document: &mut Document) -> Result<(), Error> {
+        Ok(())
+    }
+
     /// Checks the arguments, before anything is run.
     fn check(&self, scenes: &Scenes) -> Result<(), Error>;
 

@@ -57,7 +57,6 @@ pub(crate) mod grid_study;
 mod inspect;
 mod measured;
 mod models;
-pub(crate) mod orbit;
 mod said;
 pub(crate) mod settled;
 mod slice;
@@ -94,6 +93,11 @@ pub use crate::identify::{
 pub use crate::lesson::{
     Lack, LessonFinding, LessonReport, Subject, Value, check_lesson, goal_lack, result_fields,
 };
+pub(crate) use crate::orbit;
+pub use crate::orbit::{
+    Begin, BranchAnswer, BranchEnd, BranchEvent, BranchOptions, FieldRange, LocusEnd, LocusEvent, NoOrbit,
+    OneLocus, OrbitAnswer, begun, branch, branches_table, loci, loci_table, orbit, orbit_near, switched,
+};
 pub use crate::section::{IMPACTS, MAX_SECTION, SectionAt, SectionOptions, Sections, section};
 pub use crate::simulate::{
     Keep, Recorded, Sampling, Trace, between, ended_remedy, events_table, sample_times, samples_table,
@@ -122,10 +126,6 @@ pub use grid_study::{Cells, GridStudy, Question};
 pub use inspect::inspect;
 pub use measured::{Comparison, ForceComparison, MeasuredMotion, NoComparison, compare, compare_force};
 pub(crate) use models::ModelUse;
-pub use orbit::{
-    Begin, BranchAnswer, BranchEnd, BranchEvent, BranchOptions, FieldRange, LocusEnd, LocusEvent, NoOrbit,
-    OneLocus, OrbitAnswer, begun, branch, branches_table, loci, loci_table, orbit, orbit_near, switched,
-};
 pub(crate) use said::named;
 pub use said::{Said, Spelling};
 pub(crate) use settled::followed_until;
@@ -160,7 +160,10 @@ impl Task<'_> {
 
     /// The result of `work`, or an error if the study was cancelled meanwhile: a run that was cut short looks
     /// like one that ends early.
-    fn unless_cancelled<T, E: From<Cancelled>>(&self, work: impl FnOnce() -> Result<T, E>) -> Result<T, E> {
+    pub(crate) fn unless_cancelled<T, E: From<Cancelled>>(
+        &self,
+        work: impl FnOnce() -> Result<T, E>,
+    ) -> Result<T, E> {
         let found = work();
         self.check_cancelled()?;
         found

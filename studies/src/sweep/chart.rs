@@ -30,6 +30,9 @@ pub enum NoPicture {
          give `over` a field"
     )]
     SingleThreshold,
+    /// One periodic motion.
+    #[error("a picture shows a branch of motions, and there is one motion: give `branch` a field")]
+    SingleMotion,
     /// Exponents or escapes of a single motion, or over several fields.
     #[error("a picture shows {0} over one field, not over {1}: give `over` one field")]
     OneField(&'static str, usize),
@@ -384,6 +387,7 @@ mod tests {
         for error in [
             NoPicture::Fields(3),
             NoPicture::SingleThreshold,
+            NoPicture::SingleMotion,
             NoPicture::OneField("escapes", 2),
             NoPicture::Cells(1_000_000),
             NoPicture::Starts(1_000_000),

@@ -7,7 +7,6 @@
 mod assembly;
 mod axis;
 mod beside;
-mod branch;
 mod cells;
 mod chart;
 mod drawn;
@@ -51,6 +50,7 @@ pub use crate::compare::{compared_name, comparison_chart, comparison_title, thre
 pub use crate::curve::{contact_chart, curve_chart, force_panel, shapes_chart, zero_of_energy};
 pub use crate::distance::distance_chart;
 pub use crate::identify::{identified_chart, measured_chart, measured_force_chart};
+pub use crate::orbit::{branch_chart, loci_chart};
 pub use crate::simulate::{RunPanel, RunPicture, run_chart};
 pub use crate::spectrum::{SpectrumQuantity, spectrum_chart};
 pub use crate::sweep::{
@@ -63,7 +63,6 @@ pub(crate) use crate::sweep::{
 pub use assembly::{Assembly, MagnetPair};
 pub(crate) use axis::superscript;
 pub use axis::{PlotAxis, Ranges};
-pub use branch::{branch_chart, loci_chart};
 pub use cells::{Colours, Shade, Shades};
 pub use chart::{Chart, Layer, Marks, Note, Panel, PanelColumn, Side};
 pub(crate) use drawn::{Drawn, as_numbers, of_rows};

@@ -6,33 +6,22 @@
 //! the motion no longer depends on the state before it, so that all are 0, except one beside a circuit, whose
 //! state continues.
 //!
-//! [`orbit`] finds the orbit near the settled motion of a run, [`orbit_near`] the one near a state;
-//! [`branch()`] follows it over a field.
-
-mod begin;
-mod corrector;
-mod events;
-mod grazing;
-mod locus;
-mod switch;
-mod walk;
+//! [`orbit_near`] finds the orbit near a state, [`branch()`] follows it over a field.
 
 use std::sync::atomic::AtomicBool;
 
 use nalgebra::Vector4;
 
-use super::{Cancelled, Family, Table, Task, Values};
+use super::begin::{Begin, begun};
+use super::corrector::{Corrector, Units};
+use super::events::{self, BranchEvent};
+use super::grazing;
+use super::walk::Walk;
 use crate::dynamics::{
     CircuitState, Event, EventKind, Jacobian, MapState, Model, Multiplier, Outcome, Passage, StroboscopicMap,
 };
 use crate::scene::column_names;
-pub use begin::{Begin, begun, orbit};
-use corrector::Corrector;
-pub(crate) use corrector::Units;
-pub use events::BranchEvent;
-pub use locus::{FieldRange, LocusEnd, LocusEvent, OneLocus, loci, loci_table};
-pub use switch::switched;
-use walk::Walk;
+use crate::study::{Cancelled, Family, Table, Task, Values};
 
 const MAX_STEPS: usize = 40;
 
@@ -45,7 +34,7 @@ const CLOSE: f64 = 1e-9;
 const SMALLEST_STEP: f64 = 1e-13;
 
 /// Distance below which two states belong to the same orbit, as a share of the scales.
-const SAME: f64 = 1e-6;
+pub(super) const SAME: f64 = 1e-6;
 
 /// Largest distance of a motion from its state after its period, as a share of the scales, per stretching of
 /// the map by the state: a hundred times that at which the points of a branch are accepted.
@@ -124,7 +113,7 @@ impl From<Cancelled> for NoOrbit {
 }
 
 /// Why there is no orbit where the motion ends early.
-fn ended(outcome: Outcome) -> NoOrbit {
+pub(super) fn ended(outcome: Outcome) -> NoOrbit {
     match outcome {
         Outcome::Cancelled { .. } => NoOrbit::Cancelled,
         outcome => NoOrbit::Ended(outcome),
@@ -151,7 +140,7 @@ impl OrbitAnswer {
         self.passage.determinant.unwrap_or_else(|| self.jacobian.determinant())
     }
 
-    fn events_at_stops(&self) -> impl Iterator<Item = &Event> {
+    pub(super) fn events_at_stops(&self) -> impl Iterator<Item = &Event> {
         self.passage.events.iter().filter(|event| event.kind != EventKind::Crossing)
     }
 
@@ -185,7 +174,7 @@ impl OrbitAnswer {
 
     /// Whether the motion from the state comes back to it after the period, with the contacts that the orbit
     /// has. The map is that of the phase of its state.
-    fn comes_back(&self, map: &StroboscopicMap) -> bool {
+    pub(super) fn comes_back(&self, map: &StroboscopicMap) -> bool {
         let passage = map.pass(self.state, self.period);
         let units = Units::of(map.model(), 1.0);
         let rows = self.jacobian.in_units(units.of_state());
@@ -299,7 +288,7 @@ fn shortest(map: &StroboscopicMap, orbit: OrbitAnswer) -> Result<OrbitAnswer, No
 }
 
 /// The table with the columns of [`OrbitAnswer::table`], one row per orbit.
-fn with_orbits(table: Table, orbits: &[OrbitAnswer]) -> Table {
+pub(super) fn with_orbits(table: Table, orbits: &[OrbitAnswer]) -> Table {
     let part = |number: usize, of: fn(&Multiplier) -> f64| {
         move |orbit: &OrbitAnswer| orbit.multipliers().get(number).map(of)
     };

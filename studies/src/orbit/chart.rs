@@ -1,20 +1,9 @@
 //! Pictures of periodic motions: of a branch, displacement at the strobe over the field, unstable motions
 //! dashed, events marked; of loci, lines over two fields.
 
-use super::axis::{PlotAxis, Ranges};
-use super::chart::{Chart, Marks, Panel};
-use super::drawn::Drawn;
-use super::figure::Point;
-use super::role::Role;
+use super::{BranchAnswer, BranchEvent, LocusEvent, OneLocus, OrbitAnswer, branches_table, loci_table};
 use crate::numeric::short;
-use crate::study::{
-    BranchAnswer, BranchEvent, LocusEvent, OneLocus, OrbitAnswer, branches_table, loci_table,
-};
-use crate::sweep::swept_axis;
-
-/// The kinds of events in the order of their markers.
-const EVENTS: [BranchEvent; 4] =
-    [BranchEvent::Fold, BranchEvent::Flip, BranchEvent::Symmetry, BranchEvent::Grazing];
+use crate::output::{Chart, Drawn, Marks, Panel, PlotAxis, Point, Ranges, Role, swept_axis};
 
 /// The picture of a branch, and of those that begin on it; `phase_deg` is the phase of their strobe in
 /// degrees.
@@ -45,7 +34,7 @@ pub fn branch_chart(branches: &[BranchAnswer], phase_deg: f64, ranges: Ranges) -
             panel.layer(role, name, Marks::Path(line));
         }
     }
-    for (place, event) in EVENTS.into_iter().enumerate() {
+    for (place, event) in BranchEvent::ALL.into_iter().enumerate() {
         let marked = rows().filter(|(_, found)| **found == Some(event));
         let marked = marked.map(|((orbit, value), _)| point(orbit, *value)).collect();
         panel.layer_if_any(Role::Event(place), event.name(), Marks::Points(marked));

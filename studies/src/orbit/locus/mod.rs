@@ -9,9 +9,13 @@
 mod curve;
 mod walk;
 
-use super::{BranchAnswer, BranchEvent, BranchOptions, NoOrbit, OrbitAnswer, SAME, Table, with_orbits};
+use std::str::FromStr;
+
+use serde::Deserialize;
+
+use super::{BranchAnswer, BranchEvent, BranchOptions, NoOrbit, OrbitAnswer, SAME, with_orbits};
 use crate::scene::column_names;
-use crate::study::{Family, Task};
+use crate::study::{Family, Table, Task, number};
 use curve::Curve;
 use walk::Walk;
 
@@ -93,12 +97,24 @@ pub fn loci_table(loci: &[OneLocus]) -> Table {
 /// A field, and the value from which it is followed towards another.
 ///
 /// The values are in the unit of the field, which is given by its dotted path.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct FieldRange {
     /// The field.
     pub field: String,
     /// The values.
     pub range: (f64, f64),
+}
+
+impl FromStr for FieldRange {
+    type Err = String;
+
+    /// Reads `FIELD=FROM:TO`; the error says so.
+    fn from_str(text: &str) -> Result<Self, String> {
+        let end = number("write FIELD=FROM:TO, such as excitation.amplitude_g=0.5:2");
+        let (field, range) = text.split_once('=').unwrap_or((text, ""));
+        let (from, to) = range.split_once(':').unwrap_or((range, ""));
+        Ok(Self { field: field.trim().to_owned(), range: (end(from)?, end(to)?) })
+    }
 }
 
 /// The loci that begin at the events `of` of a branch, which was followed over `range` at the first value of

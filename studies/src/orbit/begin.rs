@@ -1,12 +1,14 @@
 //! Which of the periodic motions of a scene is meant: that of its run, that near a state, or one of a kind.
 
+use std::str::FromStr;
 use std::sync::atomic::AtomicBool;
 
 use nalgebra::Vector3;
+use serde::Deserialize;
 
 use super::{NoOrbit, OrbitAnswer, Units, allowed, ended, map_of, orbit_near};
 use crate::dynamics::{MapState, Model, Outcome, Regime, StroboscopicMap};
-use crate::study::settled;
+use crate::study::{number, settled};
 
 /// Number of strobes of a motion without a period that are searched for a near return.
 const STROBES: usize = 400;
@@ -22,7 +24,7 @@ const EXTENT: f64 = 2.0;
 const PERIODS: u32 = 50;
 
 /// Which of the periodic motions of a scene is meant.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Deserialize)]
 pub enum Begin {
     /// That near the settled motion of the scene's run.
     #[default]
@@ -31,6 +33,25 @@ pub enum Begin {
     State(MapState),
     /// One with this many impacts in its period, stable or not.
     Impacts(u64),
+}
+
+impl FromStr for Begin {
+    type Err = String;
+
+    /// Reads `X_MM,V_M_PER_S`, with A or V of a circuit as a third number, or `impacts=N`; the error says so.
+    fn from_str(text: &str) -> Result<Self, String> {
+        const FORM: &str = "write X_MM,V_M_PER_S, such as 1.5,0.02, with A or V of a circuit as a third \
+                            number, or impacts=N, such as impacts=1";
+        if let Some(impacts) = text.strip_prefix("impacts=") {
+            return impacts.trim().parse().map(Self::Impacts).map_err(|_| FORM.to_owned());
+        }
+        let numbers = text.split(',').map(number(FORM)).collect::<Result<Vec<f64>, String>>()?;
+        match numbers[..] {
+            [x_mm, v] => Ok(Self::State((x_mm * 1e-3, v).into())),
+            [x_mm, v, electrical] => Ok(Self::State(MapState { x: x_mm * 1e-3, v, electrical })),
+            _ => Err(FORM.to_owned()),
+        }
+    }
 }
 
 /// The periodic orbit that is meant, at a phase of the drive in forcing periods; with the period `period`, if

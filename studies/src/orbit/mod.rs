@@ -1,13 +1,167 @@
-//! Questions about periodic motions: orbits, their branches over a field, and loci over two.
+//! Periodic motions: orbits, their branches over a field, and loci over two.
 
-use super::{Error, Progress, Simulation};
+mod begin;
+mod chart;
+mod corrector;
+mod events;
+mod grazing;
+mod locus;
+mod newton;
+mod switch;
+mod walk;
+
+use clap::Args;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use serde::Deserialize;
+
 use crate::dynamics::Model;
 use crate::numeric::number_text;
+use crate::output::NoPicture;
+use crate::questions::{Error, Progress, Simulation};
 use crate::scene::{Axis, Document, FieldPath, Scene, is_whole};
-use crate::study::{
-    Begin, BranchAnswer, BranchEnd, BranchEvent, BranchOptions, Family, FieldRange, NoBasins, NoOrbit,
-    OneLocus, OrbitAnswer, Table, begun, branch, branches_table, loci, loci_table, named, switched,
+use crate::study::{Answered, Family, Grid, Heading, NoBasins, Scenes, Study, Table, named, number, whole};
+pub use begin::{Begin, begun, orbit};
+pub use chart::{branch_chart, loci_chart};
+pub(crate) use corrector::Units;
+pub use events::BranchEvent;
+pub use locus::{FieldRange, LocusEnd, LocusEvent, OneLocus, loci, loci_table};
+pub(crate) use newton::newton_step;
+pub use newton::{
+    BranchAnswer, BranchEnd, BranchOptions, NoOrbit, OrbitAnswer, branch, branches_table, orbit_near,
 };
+use newton::{SAME, allowed, ended, map_of, with_orbits};
+pub use switch::switched;
+
+/// The periodic motion near that of a run, with its multipliers; or a branch of motions over a field.
+///
+/// What `orbit` asks on the command line: an [`Orbit`], a [`Branch`], or a [`Locus`].
+#[derive(Debug, Clone, PartialEq, Default, Args, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+#[command(after_help = EXAMPLES)]
+#[group(skip)]
+pub struct Orbits {
+    /// Forcing periods after which the motion repeats [default: those of the run's settled motion]
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
+    #[arg(value_parser = whole::<u32>(1..=MAX_PERIOD.into()))]
+    pub period: Option<u32>,
+    /// The motion to take in place of that of the run: its state at that phase, X_MM,V_M_PER_S (with A or V
+    /// of a circuit as a third number), or impacts=N for one with N impacts in the period, stable or not
+    #[arg(long, value_name = "STATE", allow_hyphen_values = true)]
+    pub from: Option<Begin>,
+    /// Phase of the drive at which states are taken, in degrees
+    #[arg(long, value_name = "P", allow_hyphen_values = true, default_value = "0")]
+    #[arg(value_parser = number(PHASE))]
+    pub phase_deg: f64,
+    /// Follow the motion over a field from A, in place of its value in the scene, to B, through folds; a row
+    /// a motion
+    #[arg(long, value_name = "FIELD=A:B", allow_hyphen_values = true)]
+    pub branch: Option<FieldRange>,
+    /// Longest step of a branch, as a share of the range and of the scales of the state, 0.0001 to 0.05
+    /// [default: 0.01]
+    #[arg(long, value_name = "S", allow_hyphen_values = true, requires = "branch")]
+    #[arg(value_parser = number("give a share, such as 0.01"))]
+    pub step: Option<f64>,
+    /// Largest number of motions of a branch [default: 5000]
+    #[arg(long, value_name = "N", allow_hyphen_values = true, requires = "branch")]
+    #[arg(value_parser = whole::<usize>(1..=1_000_000))]
+    pub count: Option<usize>,
+    /// Follow also the branches that begin at flips and breakings of the symmetry, those that begin on them,
+    /// and so on to this number of levels [default without a number: 1]
+    #[arg(long, value_name = "LEVELS", num_args = 0..=1, default_missing_value = "1", requires = "branch")]
+    #[arg(conflicts_with = "locus", value_parser = whole::<u32>(1..=MAX_LEVELS.into()))]
+    pub switch: Option<u32>,
+    /// Follow each event of this kind on the branch over a second field too: grazing, fold, flip or symmetry
+    /// (where a symmetric motion loses its symmetry)
+    #[arg(long, value_name = "EVENT", requires_all = ["branch", "and"], value_parser = events())]
+    pub locus: Option<BranchEvent>,
+    /// With --locus: the second field, from C, in place of its value in the scene, to D
+    #[arg(long, value_name = "FIELD=C:D", allow_hyphen_values = true, requires = "locus")]
+    pub and: Option<FieldRange>,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  interwell --headless orbit paper
+  interwell --headless orbit duffing-chaos --period 1
+  interwell --headless orbit impact-oscillator --from impacts=1
+  interwell --headless orbit paper-unconstrained --set run.duration_s=200 \\
+      --branch excitation.amplitude_g=1.3:1.1 --out branch.csv --plot branch.png
+  interwell --headless orbit impact-oscillator --branch excitation.amplitude_g=0.056:0.0545 --switch 3
+  interwell --headless orbit impact-oscillator --branch excitation.amplitude_g=0.05:0.07 \\
+      --locus grazing --and excitation.frequency_hz=0.1:0.116 --plot grazings.png";
+
+const PHASE: &str = "give a phase in degrees, such as 90";
+
+/// Reads an event; a breaking of the symmetry has another name too.
+fn events() -> impl TypedValueParser<Value = BranchEvent> {
+    let [fold, flip, symmetry, grazing] = BranchEvent::ALL.map(|event| PossibleValue::new(event.name()));
+    let words = PossibleValuesParser::from([grazing, fold, flip, symmetry.alias("symmetry-breaking")]);
+    words.map(|word| BranchEvent::named(&word).unwrap_or(BranchEvent::Symmetry))
+}
+
+impl Study for Orbits {
+    const NAME: &'static str = "orbit";
+    const PARTS: &'static str = "motions";
+    const GRID: bool = false;
+    const ROW_A_CELL: bool = false;
+    const PYTHON: &'static str = "";
+
+    fn prepare(&self, document: &mut Document) -> Result<(), Error> {
+        let given = || self.fields([["branch"; 2], ["and"; 2]]);
+        check_fields(&document.scene, given())?;
+        for ([option, _], FieldRange { field, range: (from, _) }) in given() {
+            document.assign(field, &from.to_string(), &format!("--{option} {field}"))?;
+        }
+        Ok(())
+    }
+
+    /// Checks the fields, by their names in a program, where those of a branch alone are no pair.
+    fn check(&self, scenes: &Scenes) -> Result<(), Error> {
+        let of_branch = if self.and.is_none() { ["field", "end"] } else { FIRST };
+        check_fields(scenes.scene(), self.fields([of_branch, SECOND]))
+    }
+
+    fn answer(&self, scenes: &Scenes, progress: &Progress) -> Result<Answered, Error> {
+        let simulation = Simulation::of_model(scenes.document.clone(), scenes.model()?);
+        let Self { period, phase_deg, .. } = *self;
+        let begin = self.from.unwrap_or_default();
+        let Some(FieldRange { field, range }) = self.branch.clone() else {
+            let found = Orbit { period, phase_deg, begin }.run(&simulation, progress)?;
+            return Ok(Answered::new(found.table()));
+        };
+        let step = self.step.unwrap_or(BranchOptions::STEP);
+        let count = self.count.unwrap_or(BranchOptions::COUNT);
+        let branch = Branch { field, range, period, phase_deg, begin, step, count };
+        if let Some((of, second)) = self.locus.zip(self.and.clone()) {
+            let found = Locus { branch, of, second }.run(&simulation, progress)?;
+            let answer = Answered::new(found.table()).told(found.remarks());
+            return Ok(answer.drawn(move |_, framing| Ok(loci_chart(&found.loci, phase_deg, framing.ranges))));
+        }
+        let levels = self.switch.unwrap_or(0);
+        let found = branch.with_switches(levels, &simulation, progress)?;
+        let table = if levels > 0 { found.table() } else { found.branches[0].table() };
+        let answer = Answered::new(table).told(found.remarks());
+        Ok(answer.drawn(move |_, framing| Ok(branch_chart(&found.branches, phase_deg, framing.ranges))))
+    }
+
+    fn can_draw(&self, _: &Grid) -> Result<(), NoPicture> {
+        if self.branch.is_some() { Ok(()) } else { Err(NoPicture::SingleMotion) }
+    }
+
+    fn columns() -> Vec<Vec<Heading>> {
+        Vec::new()
+    }
+}
+
+impl Orbits {
+    /// The fields that it covers, each with the names of the arguments that give the field and its range.
+    fn fields<'a>(
+        &'a self,
+        names: [[&'a str; 2]; 2],
+    ) -> impl Iterator<Item = ([&'a str; 2], &'a FieldRange)> {
+        names.into_iter().zip(self.branch.iter().chain(&self.and))
+    }
+}
 
 /// The periodic orbit near the settled motion of a run, stable or not, with its Floquet multipliers.
 ///
@@ -207,17 +361,22 @@ const COUNTS: std::ops::RangeInclusive<usize> = 1..=1_000_000;
 
 /// The arguments that give the field of a branch and its range.
 const FIRST: [&str; 2] = ["field", "range"];
+/// Those of the second field.
+const SECOND: [&str; 2] = ["second", "second_range"];
 
-/// Checks fields that take all values of a range, each with the arguments that give the field and the range.
+/// Checks fields that take all values of a range, each with the arguments that give the field and the range,
+/// which may be one.
 fn check_fields<'a>(
     scene: &Scene,
     fields: impl IntoIterator<Item = ([&'a str; 2], &'a FieldRange)>,
 ) -> Result<(), Error> {
     let mut known: Vec<&str> = Vec::new();
     for ([of_field, of_range], FieldRange { field, range: (from, to) }) in fields {
-        let ends = || format!("{}:{}", number_text(*from), number_text(*to));
-        let wrong_range = |problem: String| Error::argument(of_range, ends(), problem);
-        let wrong_field = |problem: String| Error::argument(of_field, field, problem);
+        let ends = format!("{}:{}", number_text(*from), number_text(*to));
+        let both = format!("{field}={ends}");
+        let [of_both, ends] = if of_field == of_range { [&both; 2] } else { [field, &ends] };
+        let wrong_range = |problem: String| Error::argument(of_range, ends, problem);
+        let wrong_field = |problem: String| Error::argument(of_field, of_both, problem);
         let is_known = FieldPath::new(field).get(scene).is_some();
         let found = Axis::listed(field, vec![*from, *to], scene);
         found.map_err(|problem| if is_known { wrong_range(problem) } else { wrong_field(problem) })?;
@@ -377,8 +536,7 @@ impl Locus {
     /// Follows the branch, and the loci from it.
     pub fn run(&self, simulation: &Simulation, progress: &Progress) -> Result<LocusAnswer, Error> {
         let Self { branch: over, of, second } = self;
-        let names = [FIRST, ["second", "second_range"]];
-        check_fields(simulation.scene(), names.into_iter().zip([&over.field_range(), second]))?;
+        check_fields(simulation.scene(), [FIRST, SECOND].into_iter().zip([&over.field_range(), second]))?;
         let begin = [(&second.field, second.range.0), (&over.field, over.range.0)];
         let begin = begin.map(|(field, value)| (field.clone(), value.to_string()));
         let first = simulation.with_changes(&begin, progress)?;
@@ -457,7 +615,7 @@ fn check_period(period: Option<u32>) -> Result<(), Error> {
 pub(crate) fn phase(degrees: f64) -> Result<f64, Error> {
     match degrees.is_finite() {
         true => Ok(degrees / 360.0),
-        false => Err(Error::number("phase_deg", degrees, "give a phase in degrees, such as 90")),
+        false => Err(Error::number("phase_deg", degrees, PHASE)),
     }
 }
 
