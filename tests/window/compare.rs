@@ -92,7 +92,7 @@ fn a_reference_keeps_its_scene_and_comes_back_in_one_step() {
     harness.run_steps(60);
     let session = &harness.state().session;
     let watch = &apart(session).watch;
-    assert_eq!((&session.reference.scene, watch.time()), (&before, session.player.watch().time()));
+    assert_eq!((&*session.reference.scene, watch.time()), (&before, session.player.watch().time()));
     assert!((watch.now().x - session.player.watch().now().x).abs() > 1e-4);
     assert_eq!(watch.model_at(watch.time()).stop_positions(), (None, None));
     frames_until(&mut harness, "what both settle to", |session| {
@@ -110,14 +110,14 @@ fn a_reference_keeps_its_scene_and_comes_back_in_one_step() {
     // a pinned one takes the place of the start
     press(&mut harness, Key::K);
     let session = &mut harness.state_mut().session;
-    assert!(session.reference.scene == changed && session.reference.apart().is_none());
+    assert!(*session.reference.scene == changed && session.reference.apart().is_none());
     session.edit_once(|scene| scene.mass_g = 16.0);
     harness.run_steps(3);
     harness.get_by_label("pinned");
     // another scene begins with its own start
     harness.state_mut().open_another("duffing");
     let session = &harness.state().session;
-    assert!(session.reference.scene == *session.scene() && !session.reference.is_pinned);
+    assert!(*session.reference.scene == *session.scene() && !session.reference.is_pinned);
 }
 
 #[test]

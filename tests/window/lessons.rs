@@ -128,7 +128,7 @@ fn solve(harness: &mut Shown) {
         match value.parse() {
             Ok(number) => drop(session.set_number(&field, number).unwrap()),
             Err(_) => {
-                let mut document = session.editor.runnable();
+                let mut document = session.editor.runnable().into_owned();
                 document.assign(&field, &value, &field).unwrap();
                 session.edit(|scene| *scene = document.scene);
             }

@@ -161,7 +161,7 @@ impl Subject {
     /// The scene beside the reference.
     pub fn compare(session: &Session) -> Result<Self, String> {
         let reference = &session.reference.scene;
-        if reference == session.scene() {
+        if **reference == *session.scene() {
             return Err("There is no other scene yet: change something.".to_owned());
         }
         Ok(Self::Compare(link(session, reference)?))

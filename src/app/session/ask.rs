@@ -22,8 +22,8 @@ const KEPT: usize = 64;
 
 /// Thresholds of earlier scenes, oldest first: a scene that comes back by an undo or in a lesson needs no
 /// search.
-fn earlier() -> MutexGuard<'static, Vec<(Scene, Arc<Mechanism>, Thresholds)>> {
-    static FOUND: Mutex<Vec<(Scene, Arc<Mechanism>, Thresholds)>> = Mutex::new(Vec::new());
+fn earlier() -> MutexGuard<'static, Vec<(Arc<Scene>, Arc<Mechanism>, Thresholds)>> {
+    static FOUND: Mutex<Vec<(Arc<Scene>, Arc<Mechanism>, Thresholds)>> = Mutex::new(Vec::new());
     FOUND.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
@@ -44,7 +44,7 @@ impl Question for ThresholdsQuestion {
             if all.len() == KEPT {
                 all.remove(0);
             }
-            all.push((scene.clone(), Arc::clone(mechanism), thresholds));
+            all.push((Arc::clone(scene), Arc::clone(mechanism), thresholds));
             Some(thresholds)
         })
     }

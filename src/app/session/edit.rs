@@ -1,5 +1,7 @@
 //! Changes of the scene: gestures, undo, and single numbers by drags, key presses or typing.
 
+use std::sync::Arc;
+
 use crate::app::words::fields::{in_words, name_and_unit};
 use crate::app::words::numbers::rounded;
 use crate::dynamics::STANDARD_GRAVITY;

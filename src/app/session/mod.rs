@@ -364,7 +364,7 @@ impl Session {
 
     pub fn now_card(&self) -> Card {
         Card {
-            scene: self.scene().clone(),
+            scene: Arc::clone(self.editor.shared()),
             settled: self.settled.answer().copied(),
             thresholds: self.thresholds.answer().copied().filter(|_| !self.keeps_remedy),
             ended: None,

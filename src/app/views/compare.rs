@@ -16,7 +16,7 @@ pub fn compare_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         true => ("pinned", "The scene and the motion as they were when they were pinned."),
         false => ("start", "The scene and the motion as they were opened."),
     };
-    let is_other = reference.scene != *context.session.scene();
+    let is_other = *reference.scene != *context.session.scene();
     let (mut pins, mut goes_back) = (false, false);
     page_ui(ui, |ui| {
         table_ui(ui, context, &cards, &mut |ui, column| match column {

@@ -92,7 +92,7 @@ pub(super) fn table_ui(
         (ui.spacing_mut().button_padding.x, ui.spacing_mut().interact_size.y) = (2.0, 0.0);
     }
     let now = columns.len() - 1;
-    let before = scene_rows(&columns.iter().map(|card| &card.scene).collect::<Vec<_>>());
+    let before = scene_rows(&columns.iter().map(|card| &*card.scene).collect::<Vec<_>>());
     let after = number_rows(columns, !context.session.keeps_remedy);
     // the headings and the row of the motion
     let count = (before.len() + after.len() + 2) as f32;

@@ -36,7 +36,7 @@ impl Judged {
 
     fn step(&self) -> JudgedStep<'_> {
         let Self { lesson, number, begin, scene, mechanism } = self;
-        let scenes = [begin, scene].map(|of| (&of.scene, &of.files));
+        let scenes = [begin, scene].map(|of| (&*of.scene, &of.files));
         JudgedStep { lesson, number: *number, scenes, mechanism: mechanism.as_ref() }
     }
 }

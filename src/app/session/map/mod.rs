@@ -403,7 +403,7 @@ impl Trail {
     fn places(&mut self, fields: [&str; 2]) -> &[[Option<f64>; 2]] {
         if self.places.is_empty() || self.fields != fields {
             let paths = fields.map(FieldPath::new);
-            let place = |scene: &Scene| paths.each_ref().map(|path| path.get(scene));
+            let place = |scene: &Arc<Scene>| paths.each_ref().map(|path| path.get(scene));
             self.places = self.scenes.iter().map(place).collect();
             self.places.dedup();
             self.fields = fields.map(str::to_owned);
