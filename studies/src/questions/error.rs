@@ -5,7 +5,7 @@ use std::fmt;
 use crate::dynamics::Model;
 use crate::mechanics::{BuildError, FunctionError};
 use crate::numeric::number_text;
-use crate::scene::{Document, DriveError, Fault, Origin, SceneError};
+use crate::scene::{ArgumentError, Document, DriveError, Fault, Origin, SceneError};
 use crate::study::{CellFaults, GridError, Said, Spelling, followed_until};
 
 /// Why a question has no answer.
@@ -151,19 +151,18 @@ impl Error {
 
     fn spelled(&self, spelling: Spelling) -> String {
         match self {
-            Self::Scene(error) => error.to_string(),
+            Self::Scene(error) => scene_text(error, spelling),
             Self::Cells(cells) => {
                 let lines = cells.iter().take(MAX_LISTED_CELLS).map(|(cell, error)| match cell.as_str() {
-                    "" => error.to_string(),
-                    cell => format!("in the cell {cell}:\n{error}"),
+                    "" => scene_text(error, spelling),
+                    cell => format!("in the cell {cell}:\n{}", scene_text(error, spelling)),
                 });
                 let more = cells.len().saturating_sub(MAX_LISTED_CELLS);
                 let more = (more > 0).then(|| format!("and {more} more cells are wrong"));
                 lines.chain(more).collect::<Vec<_>>().join("\n")
             }
             Self::Argument { name, value, problem } => {
-                let value = if value.is_empty() { String::new() } else { format!(" = {value}") };
-                format!("{name}{value}: {}", problem.spelled(spelling))
+                format!("{}: {}", with_value(name, value), problem.spelled(spelling))
             }
             Self::Unfit { scene, problem } | Self::Failed { scene, problem } => {
                 format!("{scene}: {}", problem.spelled(spelling))
@@ -233,12 +232,42 @@ fn scene_faults(error: &SceneError) -> Vec<FaultAt> {
             faults.iter().map(fault).collect()
         }
         SceneError::Argument(error) => {
-            let written = error.argument.trim_start_matches("--set ").trim_start_matches("--over ");
-            let (field, value) = written.split_once('=').unwrap_or((written, ""));
+            let (field, value) = written(error);
             let (field, value) = (field.to_owned(), value.to_owned());
             vec![FaultAt { field, value, ..FaultAt::new("", &error.problem) }]
         }
     }
+}
+
+/// An error of a scene; a program has given values of fields, and no options.
+fn scene_text(error: &SceneError, spelling: Spelling) -> String {
+    match (error, spelling) {
+        (_, Spelling::CommandLine) => error.to_string(),
+        (SceneError::Argument(error), _) => {
+            let (field, value) = written(error);
+            format!("{}: {}", with_value(field, value), error.problem)
+        }
+        _ => {
+            let mut error = error.clone();
+            if let SceneError::Faults { faults, .. } = &mut error {
+                let given = faults.iter_mut().filter(|fault| matches!(fault.origin, Origin::Argument(_)));
+                given.for_each(|fault| fault.origin = Origin::Unwritten);
+            }
+            error.to_string()
+        }
+    }
+}
+
+/// A name with its value, if it has one.
+fn with_value(name: &str, value: &str) -> String {
+    if value.is_empty() { name.to_owned() } else { format!("{name} = {value}") }
+}
+
+/// The field and the value of an argument `--option FIELD=VALUE`, or the option alone.
+fn written(error: &ArgumentError) -> (&str, &str) {
+    let argument = error.argument.trim_start_matches("--");
+    let written = argument.split_once(' ').map_or(argument, |(_, written)| written);
+    written.split_once('=').unwrap_or((written, ""))
 }
 
 impl fmt::Display for Error {
@@ -255,8 +284,8 @@ impl From<SceneError> for Error {
     }
 }
 
-impl From<crate::scene::ArgumentError> for Error {
-    fn from(error: crate::scene::ArgumentError) -> Self {
+impl From<ArgumentError> for Error {
+    fn from(error: ArgumentError) -> Self {
         Self::Scene(error.into())
     }
 }
