@@ -13,6 +13,7 @@ mod names;
 mod options;
 mod outputs;
 mod pages;
+mod refused;
 mod repeated;
 mod section;
 mod shards;
@@ -100,10 +101,6 @@ fn without_headless_it_says_what_to_write() {
     }
     let (last, others) = COMMANDS.split_last().unwrap();
     refused(plain("--headless"), &[&format!("{} or {last}", others.join(", "))]);
-    refused(headless("swep"), &["`swep`", "sweep"]);
-    refused(headless("sweep --bogus"), &["--bogus"]);
-    refused(headless("check --plot a.png"), &["--plot"]);
-    refused(plain("paper --headless sweep"), &["after"]);
 }
 
 #[test]
@@ -142,7 +139,6 @@ fn presets_are_copied_out_and_work_there() {
     assert_eq!(std::fs::read_to_string(&paper).unwrap(), "mine");
     write("--force").assert().success();
     assert_ne!(std::fs::read_to_string(&paper).unwrap(), "mine");
-    refused(headless("presets --write /no/such/folder"), &["/no/such/folder"]);
 }
 
 #[test]
@@ -174,7 +170,6 @@ fn check_says_what_is_modelled() {
     let check = headless("check elastic-box no-such-scene duffing also-none").assert().code(2);
     let check = check.stdout(contains("elastic-box").and(contains("duffing")));
     check.stderr(contains("no-such-scene").and(contains("also-none")));
-    refused(headless("check --set stops.restitution=1.2"), &["stops.restitution", "1.2"]);
 }
 
 #[test]

@@ -335,9 +335,6 @@ fn the_command_lists_prints_checks_and_begins_lessons() {
     let held = format!("{path}: holds (");
     headless(&format!("lesson {path} --check")).assert().success().stdout(contains(held)).stderr("");
     refused(headless(&format!("lesson --new {path}")), &["is there already", "name another"]);
-    refused(headless("lesson 3 --set mass_g=1"), &["--set", "leave it out"]);
-    refused(headless("lesson 3 --jobs 2"), &["--jobs"]);
-    refused(headless("lesson nothing"), &["nothing: no such file", "03-a-stop-that-helps"]);
     let spoiled = text("Do(ask: \"Do.\", goal: Above(\"result.impacts\", 20), solution: []),", "");
     let file = folder.path().join("spoiled.ron");
     std::fs::write(&file, spoiled).unwrap();

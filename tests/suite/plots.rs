@@ -1,4 +1,4 @@
-//! Pictures: what they show, what is refused, and their bytes.
+//! Pictures: what they show, and their bytes.
 
 mod asked;
 mod documented;
@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 use assert_cmd::Command;
 use predicates::str::contains;
 
-use super::cli::{column, headless, refused, stdout};
+use super::cli::{column, headless, stdout};
 
 /// Runs `line --plot FILE` with the rows thrown away; the picture's place.
 fn plot(line: &str, folder: &Path, name: &str) -> PathBuf {
@@ -110,7 +110,6 @@ fn every_command_draws_light_and_dark() {
         let inked = light.2.chunks(3).filter(|pixel| **pixel != light.2[..3]).count();
         assert!(inked > 50_000, "{line}: {inked}");
     }
-    refused(headless("curve --dark"), &["--plot"]);
 }
 
 #[test]
@@ -197,31 +196,6 @@ fn lines_over_a_map_stand_only_where_they_mean_something() {
         --over excitation.amplitude_g=0:2:0.25 \
                   --over stops.travel_limit_mm=1:7:1";
     says(turned, &["release: leaves the stop (closed form)", "first crossing"]);
-}
-
-#[test]
-fn bad_places_are_refused_before_any_work() {
-    let folder = tempfile::tempdir().unwrap();
-    let rows = folder.path().join("rows.csv");
-    for line in ["curve", "simulate", "sweep"] {
-        for bad in ["a.jpg", "a", "-", ".png", "a.png.gz", "/dev/null"] {
-            let mut command = headless(line);
-            command.args(["--plot", bad]).arg("--out").arg(&rows);
-            refused(command, &["--plot", ".png, .svg or .pdf"]);
-        }
-        let mut command = headless(line);
-        command.args(["--plot", "/no/such/folder/a.png"]).arg("--out").arg(&rows);
-        refused(command, &["/no/such/folder"]);
-    }
-    let mut command = headless("simulate --plot a.svg --events a.svg");
-    command.current_dir(folder.path());
-    refused(command, &["--plot", "--events"]);
-    let three = "--over mass_g=15,16 --over stops.travel_limit_mm=1,2 --over excitation.amplitude_g=0,1";
-    let path = folder.path().join("a.png");
-    refused(with_plot(&format!("sweep {three}"), &path), &["one field", "two", "3"]);
-    let fine = "--over stops.travel_limit_mm=1:2:0.001 --over excitation.amplitude_g=0:1:0.001";
-    refused(with_plot(&format!("sweep {fine}"), &path), &["500000", "1002001"]);
-    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
 }
 
 #[test]

@@ -7,7 +7,7 @@ use interwell::dynamics::{Model, Request, STANDARD_GRAVITY};
 use interwell::numeric::Taper;
 use interwell_studies::study::*;
 
-use super::cli::{column, headless, refused, stdout};
+use super::cli::{column, headless, stdout};
 use super::support::*;
 
 const PLAIN: SpectrumOptions =
@@ -191,19 +191,6 @@ fn the_command_writes_lines_and_says_what_is_wrong() {
     headless("spectrum paper --rate-hz 30 --out /dev/null").assert().success().stderr(
         "built-in paper: from 5 to 10 s, 15 forcing periods; repeats in each; no taper, sampled at 30 Hz\n",
     );
-    for (line, words) in [
-        ("spectrum paper --rate-hz 0", &["--rate-hz 0", "above 0"][..]),
-        ("spectrum paper --rate-hz fast", &["--rate-hz fast", "above 0"]),
-        ("spectrum paper --rate-hz 1e9", &["--rate-hz 1e9", "at most 10000000", "lower rate"]),
-        ("spectrum random-shaking --rate-hz 0.01", &["--rate-hz 0.01", "take at least"]),
-        ("spectrum paper --quiet --set run.settle_s=10", &["settled window", "run.settle_s"]),
-        ("spectrum paper --of force", &["x, v, accel"]),
-        ("spectrum paper-ramp --until-settled 400", &["does not repeat"]),
-        ("spectrum paper --plot a.png --plot-y 0:1", &["--plot-y 0:1", "logarithmic"]),
-        ("spectrum paper --quantity psd", &["--plot"]),
-    ] {
-        refused(headless(line), words);
-    }
     let left = "spectrum duffing --set mechanism=Table(path:\"force_dl2.7.csv\") --set start=Rest --set \
                 excitation.amplitude_g=30 --set mass_g=100 --set damping=None --set \
                 excitation.frequency_hz=3";

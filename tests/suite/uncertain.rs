@@ -1,5 +1,5 @@
 //! Uncertain inputs of a sweep: bands against closed forms, with draws that are made here once more by their
-//! documented method; edges of ranges, invalid draws, bytes, pictures, and what is refused.
+//! documented method; edges of ranges, invalid draws, bytes and pictures.
 
 use std::f64::consts::TAU;
 use std::fs;
@@ -8,7 +8,7 @@ use interwell::questions::{Progress, Simulation, Sweep, Uncertain};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
-use crate::cli::{column, headless, refused, stdout};
+use crate::cli::{column, headless, stdout};
 use crate::plots::texts;
 use crate::support::*;
 
@@ -349,41 +349,4 @@ fn a_band_is_drawn_about_a_line() {
         let words = draw(&format!("{map} --quantity {quantity}")).0;
         assert!(words.contains(label), "{words}");
     }
-}
-
-#[test]
-fn uncertain_inputs_that_cannot_be_are_refused() {
-    let refuse = |more: &str, words: &[&str]| {
-        refused(headless(&format!("sweep nominal-cubic --over excitation.amplitude_g=1,2 {more}")), words);
-    };
-    for (input, words) in [
-        ("stops.restitution", &["--uncertain stops.restitution", "FIELD=VALUE+-SIGMA"][..]),
-        ("stops.restitution=0.02", &["FIELD=VALUE+-SIGMA"]),
-        ("stops.restitution=+-x", &["FIELD=VALUE+-SIGMA"]),
-        ("stops.restitution=+-nan", &["not finite", "give a finite number"]),
-        ("stops.restitution=x+-0.1", &["--uncertain stops.restitution=x+-0.1", "`x` is not a number"]),
-        ("stops.restitution=1.2+-0.1", &["--uncertain stops.restitution=1.2+-0.1", "0 to 1"]),
-        ("stops.restitution=+--0.1", &["-0.1 is negative", "give 0 or more"]),
-        ("stops.restitution=0.5+-2", &["19.7 %", "0 to 1", "smaller"]),
-        ("stops.restitution=0+-1", &["34.1 %", "smaller"]),
-        ("stops.restitutoin=+-0.1", &["did you mean `stops.restitution`"]),
-        ("stops.restitutoin=0.3+-0.1", &["did you mean `stops.restitution`"]),
-        ("excitation.amplitude_g=1+-0.1", &["swept", "leave VALUE out"]),
-        ("excitation.phase_deg=0+-5%", &["a percentage of 0"]),
-        ("stops.restitution=+-0.1 --uncertain stops.restitution=+-0.2", &["given twice"]),
-        ("stops.restitution=+-0.1 --carry up", &["--uncertain", "--carry", "leave one of the two out"]),
-        ("stops.restitution=+-0.1 --draws 0", &["--draws", "whole number from 1 to 100000"]),
-        ("stops.restitution=+-0.1 --draws 1e3", &["--draws", "whole number from 1 to 100000"]),
-    ] {
-        refuse(&format!("--uncertain {input}"), words);
-    }
-    refuse("--draws 10", &["--draws 10", "nothing is uncertain", "--uncertain"]);
-    refuse("--seed 10", &["--seed 10", "nothing is uncertain"]);
-    let many = "sweep nominal-cubic --over mass_g=1:1000:0.1 --over excitation.amplitude_g=0:1:0.1 \
-        --uncertain stops.restitution=+-0.1 --draws 9999";
-    refused(headless(many), &["--draws 9999", "109901 cells of 10000 runs", "fewer draws"]);
-    refused(
-        headless("sweep random-shaking --over excitation.rms_g=1 --uncertain excitation.seed=+-1"),
-        &["excitation.seed", "whole numbers"],
-    );
 }

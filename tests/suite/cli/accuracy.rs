@@ -3,7 +3,7 @@
 use predicates::prelude::PredicateBooleanExt;
 use predicates::str::{contains, starts_with};
 
-use super::{column, headless, refused, stdout};
+use super::{column, headless, stdout};
 
 #[test]
 fn one_case_is_shown_as_a_table() {
@@ -106,15 +106,6 @@ fn the_cases_are_listed_with_their_reasons() {
 }
 
 #[test]
-fn a_wrong_argument_names_the_remedy() {
-    refused(headless("accuracy --case grasing"), &["`grasing`", "grazing", "p1, p2, flexures, separatrix"]);
-    refused(headless("accuracy --case grazing --plot a.png"), &["--plot", "--case p1 or p2 or flexures"]);
-    refused(headless("accuracy --case p1 --plot a.txt"), &["--plot", ".png, .svg or .pdf"]);
-    refused(headless("accuracy --case p1 --dark"), &["--plot"]);
-    refused(headless("accuracy --case grazing --out no/such/a.csv"), &["no folder"]);
-}
-
-#[test]
 fn a_scene_is_looked_at_in_words_and_numbers() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("scene.csv");
@@ -144,18 +135,4 @@ fn a_scene_is_looked_at_in_words_and_numbers() {
 /// A number as the CSV spells it.
 fn spelt(text: &str) -> String {
     text.parse::<f64>().map_or_else(|_| text.to_owned(), |number| format!("{number:e}"))
-}
-
-#[test]
-fn what_is_wrong_about_a_scene_is_named() {
-    refused(headless("accuracy --step-s 0.01"), &["SCENE"]);
-    refused(headless("accuracy --set mass_g=2"), &["SCENE"]);
-    refused(headless("accuracy paper --method rk4"), &["--step-s"]);
-    refused(headless("accuracy paper --step-s 0.01 --method rk5"), &["rk5", "euler, verlet, rk4"]);
-    refused(headless("accuracy paper --step-s 0"), &["--step-s 0", "1/60"]);
-    refused(headless("accuracy paper --step-s 1/0"), &["`1/0`"]);
-    refused(headless("accuracy paper --case p1"), &["--case"]);
-    refused(headless("accuracy no-such-scene"), &["no-such-scene"]);
-    let soft = "stops=Hertz(travel_limit_mm:1.5,stiffness_n_per_m1_5:1e7,loss_s_per_m:0.5)";
-    refused(headless(&format!("accuracy paper --set {soft} --step-s 0.01")), &["--step-s", "rigid stops"]);
 }

@@ -1,8 +1,8 @@
-//! The command `basins`: rows, attractors, random starts, manifest, picture, and starts that are refused.
+//! The command `basins`: rows, attractors, random starts, manifest and picture.
 
 use std::fs;
 
-use super::{column, headless, refused, stdout};
+use super::{column, headless, stdout};
 
 const PAPER: &str = "basins paper --set excitation.amplitude_g=0 --quiet";
 
@@ -98,33 +98,6 @@ fn what_stands_beside_the_rows() {
         .stdout
         .clone();
     assert_eq!(again, fs::read(place("rows.csv")).unwrap());
-}
-
-#[test]
-fn starts_that_cannot_be_are_refused() {
-    let with = |x_mm: &str, v: &str| headless(&format!("basins paper --x-mm {x_mm} --v {v}"));
-    refused(with("0:1:0", "0:0:1"), &["--x-mm 0:1:0", "no values"]);
-    refused(with("1:0:2", "0:0:1"), &["--x-mm 1:0:2", "reversed"]);
-    refused(with("0:1:2", "1:1:2"), &["--v 1:1:2", "A:A:1"]);
-    refused(with("0:1:1", "0:0:1"), &["--x-mm 0:1:1", "A:A:1"]);
-    refused(with("0:1", "0:0:1"), &["--x-mm 0:1", "A:B:N"]);
-    refused(with("0:1:2.5", "0:0:1"), &["--x-mm 0:1:2.5", "whole number"]);
-    refused(with("0:x:2", "0:0:1"), &["--x-mm 0:x:2", "`x`"]);
-    refused(with("0:inf:2", "0:0:1"), &["--x-mm", "finite"]);
-    refused(with("0:1:1000000000", "0:0:1"), &["1000000000 starts", "10000000"]);
-    refused(with("0:1:100000", "0:1:10000"), &["100000 x 10000 starts", "10000000"]);
-    refused(with("2:3:5", "0:0:1"), &["--x-mm 2:3:5", "right stop at 1.5 mm"]);
-    refused(with("0:1:2", "0:1:2 --seed 3"), &["--random"]);
-    refused(with("0:1:2", "0:1:2 --random 5"), &["--x-mm 0:1:2", "--random"]);
-    refused(with("0:1", "0:1 --random 0"), &["--random 0", "from 1 to 10000000"]);
-    refused(with("0:1", "0:1 --random 1e9"), &["--random 1e9", "whole"]);
-    refused(with("0:1", "0:1 --random 1000000000"), &["--random 1000000000", "from 1 to 10000000"]);
-    refused(with("1:0", "0:1 --random 5"), &["--x-mm 1:0", "reversed"]);
-    refused(with("0:1:1000", "0:1:1000 --plot map.png"), &["500000", "1000000"]);
-    refused(headless("basins paper-ramp --x-mm 0:1:2 --v 0:0:1"), &["does not repeat", "Sine"]);
-    let lossless = "basins elastic-box --set excitation=None --x-mm 0:1:2 --v 0:0:1";
-    refused(headless(lossless), &["no damping"]);
-    refused(headless("basins paper --v 0:0:1"), &["--x-mm"]);
 }
 
 #[test]

@@ -369,7 +369,6 @@ fn a_manifest_is_run_again_and_compared() {
     assert_eq!(names(folder.path()), ["map.csv", "map.csv.json"]);
     fs::remove_file(&path).unwrap();
     check().code(2).stderr(contains("map.csv"));
-    refused(headless("sweep paper --check"), &["--check", "manifest"]);
     refused(headless("sweep Cargo.toml --check"), &["--check Cargo.toml: give the manifest of a sweep"]);
 }
 

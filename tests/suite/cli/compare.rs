@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::{column, headless, refused, stdout};
+use super::{column, headless, stdout};
 use crate::plots::texts;
 
 /// The shaking and the run of all scenes here: 0.6 g at 3 Hz.
@@ -196,15 +196,6 @@ fn rows_picture_and_data_do_not_depend_on_the_threads() {
         }
     }
     assert!(count >= 15 && data.lines().count() == count + 1, "{count}");
-}
-
-#[test]
-fn what_a_comparison_cannot_be_made_of() {
-    refused(headless("compare paper no-such-scene"), &["no-such-scene", "no built-in scene", "balanced"]);
-    refused(headless("compare random-shaking paper"), &["random-shaking", "no Sine", "--environment"]);
-    refused(headless("compare paper --environment bouncing-ball"), &["bouncing-ball", "no Sine"]);
-    refused(headless("compare paper paper --plot a.gif"), &["--plot a.gif", ".png, .svg or .pdf"]);
-    refused(headless("compare paper paper --set mass_g=-1"), &["mass_g", "-1"]);
 }
 
 /// Whatever a scene is, each cell that is empty is named on standard error with its scene.

@@ -93,18 +93,7 @@ fn shapes_are_centre_lines_from_the_frame_to_the_shuttle() {
 }
 
 #[test]
-fn what_has_no_flexures_has_no_shapes() {
-    let folder = tempfile::tempdir().unwrap();
-    let out = folder.path().join("out.csv");
-    for scene in ["nominal-cubic", "paper-table"] {
-        let mut command = headless(&format!("curve {scene} --full --out"));
-        command.arg(&out);
-        refused(command, &["--full", scene, "no flexures", "Flexures(..)"]);
-        let mut command = headless(&format!("curve {scene} --out /dev/null --shapes"));
-        command.arg(&out);
-        refused(command, &["--shapes", scene, "no flexures", "Flexures(..)"]);
-    }
-    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+fn positions_beyond_the_curve_and_a_place_of_two_tables_are_refused() {
     let (_folder, path) = scene();
     for options in ["--full --at-mm 1000", "--shapes - --out /dev/null --at-mm 1000", "--shapes -"] {
         let mut command = headless("curve");

@@ -3,7 +3,7 @@
 use predicates::prelude::*;
 use predicates::str::{contains, starts_with};
 
-use super::{headless, plain, refused, stdout};
+use super::{headless, plain, stdout};
 
 #[test]
 fn options_stand_anywhere_and_values_may_be_negative() {
@@ -18,6 +18,7 @@ fn options_stand_anywhere_and_values_may_be_negative() {
     let shifted = "simulate elastic-box --set start.x_mm=-3 --at 0";
     headless(shifted).assert().success().stdout(contains("\n0,-0.003,").or(contains("\n0,-3e-3,")));
     headless("presets --out -").assert().success().stdout(starts_with("first-look"));
+    headless("--quiet presets").assert().success();
 }
 
 #[test]
@@ -38,18 +39,6 @@ fn common_options_may_stand_before_the_command() {
     // forgotten.
     let line = format!("--set mass_g=12 --tolerance 1e-6 --quiet --jobs 2 --set run.settle_s=0.5 | {over}");
     assert_eq!(rows(&line), right);
-    refused(headless("--jobs 2 curve --jobs 1"), &["--jobs", "before and after"]);
-    refused(headless("--out a curve --out b"), &["--out", "before and after"]);
-    refused(plain("--quiet"), &["--quiet", "command"]);
-    refused(plain("paper --set mass_g=1"), &["--set", "command"]);
-}
-
-#[test]
-fn presets_take_no_option_of_a_run() {
-    for line in ["presets --set a=b", "--tolerance 1e-6 presets", "presets --jobs 2"] {
-        refused(headless(line), &["presets"]);
-    }
-    headless("--quiet presets").assert().success();
 }
 
 #[test]
@@ -66,23 +55,6 @@ fn a_table_that_a_scene_reads_is_not_overwritten() {
     assert_eq!(out.status.code(), Some(2));
     assert!(String::from_utf8_lossy(&out.stderr).contains("would overwrite"));
     assert!(std::fs::read_to_string(folder.path().join("t.csv")).unwrap().ends_with("2,6\n"));
-}
-
-#[test]
-fn a_table_of_another_kind_is_not_csv_under_its_name() {
-    let folder = tempfile::tempdir().unwrap();
-    for ending in
-        ["parquet", "H5", "nc", "xlsx", "feather", "pq", "npz", "xls", "ods", "pkl", "netcdf", "nc4", "zarr"]
-    {
-        let path = folder.path().join(format!("map.{ending}"));
-        let line = format!("sweep paper --over mass_g=15,16 --out {}", path.display());
-        refused(headless(&line), &["--out", "CSV", "Python"]);
-        refused(headless(&format!("simulate paper --events {}", path.display())), &["--events", "CSV"]);
-    }
-    let to = |name: &str| format!("simulate paper --out {}", folder.path().join(name).display());
-    refused(headless(&to("run.json")), &["--out", "name a .csv"]);
-    refused(headless(&to("run.csv.gz")), &["--out", "not compressed", "run.csv, and take gzip"]);
-    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
 }
 
 #[test]
@@ -103,9 +75,6 @@ fn help_lists_no_option_that_a_command_does_not_use() {
             assert_eq!(line, !unused.contains(&option), "{command} {option}");
         }
     }
-    refused(headless("merge a.csv --set mass_g=1 --out b.csv"), &["--set", "`merge` takes no scene"]);
-    refused(headless("identify a.csv --of force --tolerance 1e-6"), &["--tolerance", "`identify`"]);
-    refused(headless("lesson --jobs 2"), &["--jobs", "--check"]);
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use predicates::str::contains;
 
-use super::{COMMANDS, headless, plain, refused, stdout};
+use super::{COMMANDS, plain, stdout};
 
 #[test]
 fn every_shell_completes_every_command() {
@@ -13,9 +13,6 @@ fn every_shell_completes_every_command() {
         }
         plain(&format!("completions {shell}")).assert().success().stdout(text);
     }
-    refused(plain("completions tcsh"), &["tcsh", "bash"]);
-    refused(plain("completions"), &["SHELL"]);
-    refused(plain("--out a completions bash"), &["--out", "completions"]);
 }
 
 /// Without the marks of roff.
@@ -46,8 +43,6 @@ fn the_manual_has_a_page_for_each_command_with_its_options() {
         assert_eq!(of(&command), of(&help), "{word}");
         assert!(!of(&command).is_empty(), "{word}");
     }
-    refused(plain("manual swep"), &["`swep`", "sweep"]);
-    refused(headless("manual completions"), &["`completions`", "sweep"]);
 }
 
 #[test]

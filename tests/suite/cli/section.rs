@@ -1,10 +1,10 @@
-//! The command `section` and walks of `sweep`: columns, the same bytes on any number of threads, refusals.
+//! The command `section` and walks of `sweep`: columns, the same bytes on any number of threads, remarks.
 
 use std::fs;
 
 use predicates::str::contains;
 
-use super::{column, headless, refused, stdout};
+use super::{column, headless, stdout};
 
 const SHORT: &str = "--set run.duration_s=4 --set run.settle_s=2 --quiet";
 
@@ -108,40 +108,9 @@ fn a_section_without_rows_says_why() {
     let mut command = headless("section paper-unconstrained --at impacts");
     command.assert().success().stderr(contains("no impact counts"));
     headless("section paper --at impacts").assert().success().stderr("");
-}
-
-#[test]
-fn sections_and_walks_that_cannot_be_are_refused() {
-    let chirp = "--set excitation=Chirp(from_hz:1,to_hz:2,over_s:3,amplitude_g:1)";
-    let over = "--over excitation.amplitude_g=0.5,1";
-    refused(headless(&format!("section paper {chirp}")), &["excitation = Chirp", "Sine"]);
-    refused(headless("section paper --set excitation=None"), &["excitation = None", "Sine"]);
-    refused(headless(&format!("section paper {chirp} {over}")), &["amplitude_g = 0.5", "Chirp", "Sine"]);
-    refused(headless(&format!("sweep paper {chirp} {over} --carry up")), &["Chirp", "common period"]);
-    let ramp = "--set excitation=AmplitudeRamp(frequency_hz:3,from_g:0,to_g:1,over_s:5)";
-    refused(headless(&format!("section paper {ramp}")), &["AmplitudeRamp", "Sine"]);
-    refused(headless("section paper --phase-deg north"), &["--phase-deg north", "degrees"]);
-    refused(headless("section paper --phase-deg inf"), &["--phase-deg inf"]);
-    refused(headless("section paper --phase-deg 9 --at impacts"), &["--phase-deg", "--at impacts"]);
-    refused(headless("section paper --at crossings"), &["--at", "impacts"]);
-    refused(headless("section paper --carry up"), &["--over"]);
-    refused(headless(&format!("section paper {over} --carry sideways")), &["sideways", "both"]);
-    refused(headless("section paper --over excitation.amplitude_g=1:0.5:0.1"), &["amplitude_g"]);
-    let many = "--over mass_g=1:100000:1 --over excitation.amplitude_g=0.0001:1:0.0001";
-    refused(headless(&format!("section paper {many}")), &["1000000000 cells"]);
-    refused(headless(&format!("sweep paper {many} --carry both")), &["1000000000 cells"]);
-    refused(headless("section paper --skip 5"), &["--keep"]);
-    refused(headless("section paper --skip 5 --keep 0"), &["--keep 0", "whole number from 1 to 4194304"]);
-    refused(headless("section paper --skip 5 --keep 1e9"), &["--keep 1e9", "whole number from 1 to"]);
-    refused(headless("section paper --skip -1 --keep 9"), &["--skip -1", "whole number from 0 to"]);
-    refused(headless("section paper --quiet --set run.settle_s=9.9"), &["run.duration_s", "forcing period"]);
-    refused(headless("section paper --quiet --set run.duration_s=9e6"), &["run.duration_s", "4194304"]);
-    let two = "--over stops.travel_limit_mm=1,2 --plot a.png";
-    refused(headless(&format!("section paper {over} {two}")), &["--plot", "one field"]);
-    refused(headless("section paper --until-settled 1"), &["--until-settled 1"]);
     // that a run ended early is said however quiet the command is
     let left = "section duffing --quiet --set mechanism=Table(path:\"force_dl2.7.csv\") --set mass_g=100 \
                 --set start=Rest --set excitation.amplitude_g=30 --set excitation.frequency_hz=3 \
                 --set damping=None";
-    headless(left).assert().success().stderr(predicates::str::contains("ended early"));
+    headless(left).assert().success().stderr(contains("ended early"));
 }

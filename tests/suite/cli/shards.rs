@@ -110,24 +110,11 @@ fn what_does_not_fit_together_is_refused() {
     }
     fs::write(path("p2.csv"), &rows).unwrap();
     refused(merge(folder, &["p1.csv", "p2.csv"], "p1.csv"), &["overwrite"]);
-    refused(headless("merge p1.csv --set mass_g=1"), &["--set"]);
     merge(folder, &["p1.csv", "p2.csv"], "map.csv").assert().success();
 }
 
 #[test]
-fn shards_are_numbered_by_hand_or_by_an_array_job() {
-    for (shard, word) in [
-        ("0/5", "no shard 0 of 5"),
-        ("6/5", "no shard 6 of 5"),
-        ("-1/5", "I/N"),
-        ("a/b", "I/N"),
-        ("5", "I/N"),
-        ("1/0", "0 shards"),
-        ("1/1000001", "1000001 shards"),
-    ] {
-        refused(headless(&format!("{MAP} --shard {shard}")), &["--shard", word]);
-    }
-    refused(headless(&format!("{MAP} --shard 1/2 --plot map.png")), &["--shard", "--plot"]);
+fn shards_are_numbered_by_an_array_job() {
     let folder = tempfile::tempdir().unwrap();
     let job = |options: &str| {
         let mut command = headless(&format!("{MAP} {options}"));
@@ -171,8 +158,4 @@ fn a_dry_run_has_commands_that_work() {
         super::plain("").args(words).arg("--quiet").current_dir(folder.path()).assert().success();
     }
     assert_eq!(fs::read_to_string(folder.path().join("a.csv")).unwrap(), stdout(MAP));
-    refused(
-        headless("sweep nominal-cubic --over mechanism.cubic_n_per_m3=1e5,-1e5,1e6 --dry-run"),
-        &["-100000"],
-    );
 }

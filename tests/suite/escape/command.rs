@@ -1,9 +1,9 @@
 //! The commands `escape` and `threshold --probability`: columns, ends, the same bytes for any number of
-//! threads, what a row means, and what is refused.
+//! threads, and what a row means.
 
 use std::path::Path;
 
-use crate::cli::{column, headless, refused, stdout};
+use crate::cli::{column, headless, stdout};
 
 const COLUMNS: &str = "runs,escaped,ended_early,observed_s,escape_rate_per_s,escape_rate_low_per_s,\
                        escape_rate_high_per_s,mean_first_passage_s,mean_first_passage_low_s,\
@@ -109,7 +109,6 @@ fn melnikovs_threshold_stands_beside_the_one_of_the_runs() {
             / (3.0 * 2_f64.sqrt() * std::f64::consts::PI * w);
         assert!((cell.parse::<f64>().unwrap() * 9.806_65 / exact - 1.0).abs() < 1e-8, "{cell}");
     }
-    refused(headless("threshold duffing --field mass_g=900:1100 --melnikov"), &["mass_g", "Sine"]);
 }
 
 #[test]
@@ -127,26 +126,4 @@ fn pictures_are_drawn() {
     let chance = format!("{chance} --runs 9 --probability 0.5 --over mass_g=15,20 --quiet");
     let chance = drawn(&chance, "chance.svg");
     assert!(chance.contains("50 % of the runs") && chance.contains("95 % interval"), "{chance}");
-    let fields = format!("{escape} --over excitation.rms_g=0.5,1 --over mass_g=15,20 --plot a.svg");
-    refused(headless(&fields), &["--plot", "one field"]);
-}
-
-#[test]
-fn what_cannot_escape_is_refused() {
-    refused(headless("escape nominal-cubic"), &["excitation", "no noise", "Noise("]);
-    refused(
-        headless(&format!("escape {} --set mechanism=Linear(n_per_m:40)", scene(1.0))),
-        &["mechanism", "barrier"],
-    );
-    let top = format!("escape {} --set start=At(x_mm:0,v_m_per_s:0)", scene(1.0));
-    refused(headless(&top), &["start.x_mm", "barrier"]);
-    refused(headless(&format!("escape {} --runs 0", scene(1.0))), &["--runs", "1 to 1000000"]);
-    refused(headless(&format!("escape {} --within -1", scene(1.0))), &["--within", "-1"]);
-    refused(headless(&format!("escape {} --over mass_g=-1,2", scene(1.0))), &["mass_g"]);
-    refused(headless("threshold nominal-cubic --probability 0.5"), &["--field", "no noise"]);
-    let chance =
-        |share: &str| format!("threshold {} --field excitation.rms_g=0:2 --probability {share}", scene(1.0));
-    refused(headless(&chance("1")), &["--probability", "above 0 and below 1"]);
-    refused(headless(&chance("0.5 --of release")), &["--of"]);
-    refused(headless("threshold nominal-cubic --runs 5"), &["--probability"]);
 }

@@ -1,6 +1,6 @@
-//! The command `exponents`: columns, cells, the same bytes for any number of threads, and what is refused.
+//! The command `exponents`: columns, cells, the same bytes for any number of threads.
 
-use crate::cli::{headless, plain, refused, stdout};
+use crate::cli::{headless, stdout};
 
 const COLUMNS: &str =
     "exponent_1_per_s,exponent_1_se,exponent_2_per_s,exponent_2_se,sum_per_s,exact_sum_per_s,dimension";
@@ -76,34 +76,7 @@ fn cells_have_a_manifest_beside_their_file() {
 }
 
 #[test]
-fn what_cannot_be_measured_is_refused() {
-    for scene in ["paper-ramp", "random-shaking", "walking"] {
-        refused(headless(&format!("exponents {scene} --quiet")), &["excitation", "period", "Sine"]);
-    }
-    let tones = "Sum([Sine(frequency_hz:1,amplitude_g:1),Sine(frequency_hz:1.4142135623,amplitude_g:1)])";
-    refused(
-        headless(&format!("exponents paper --quiet --set excitation={tones}")),
-        &["excitation", "common"],
-    );
-    let cells = "exponents random-shaking --quiet --over mass_g=10,20";
-    refused(headless(cells), &["mass_g = 10", "excitation", "Noise"]);
-    for (option, words) in [
-        ("--periods 0", &["--periods", "0"][..]),
-        ("--periods many", &["--periods", "many"]),
-        ("--periods 1e9", &["--periods", "1e9"]),
-        ("--until-settled soon", &["--until-settled soon"]),
-        ("--until-settled 1", &["--until-settled 1"]),
-        ("--over mass_g=1:1e9:1", &["mass_g", "1000000000"]),
-        ("--over mass_g=1:10000:1 --over stops.restitution=0:1:0.00001", &["1000010000", "cells"]),
-        ("--over mass_g=0,1", &["mass_g", "0"]),
-        ("--over stops.none=1:2:1", &["stops.none"]),
-        ("--plot a.png", &["--over", "one field"]),
-        ("--plot a.png --over mass_g=1,2 --over stops.restitution=0.1,0.2", &["one field", "2"]),
-    ] {
-        refused(headless(&format!("exponents paper --quiet {option}")), words);
-    }
-    refused(plain("exponents"), &["--headless", "exponents"]);
-    // the motion ends: a failed run and no wrong argument
+fn a_motion_that_ends_is_a_failed_run_and_no_wrong_argument() {
     let mut far = headless("exponents paper --quiet --set stops=None --set excitation.amplitude_g=40");
     let told = far.assert().code(1).stdout("");
     assert!(String::from_utf8_lossy(&told.get_output().stderr).contains("ended early (left_table)"));

@@ -157,19 +157,6 @@ fn the_commands_say_what_is_wrong() {
     };
     refused(line("simulate paper --out /dev/null --measured"), &["r.csv: line 3", "x_mm", "`nan`"]);
     refused(line("identify --of damping"), &["r.csv: line 3", "x_mm", "`nan`"]);
-    refused(line("identify --of damping --points 9"), &["--points", "--of force"]);
-    refused(line("identify --of force --from 1"), &["--from"]);
-    refused(line("identify --of damping --set mass_g=1"), &["--set", "identify"]);
-    refused(headless("simulate paper --shift-s auto"), &["--measured"]);
-    refused(headless("simulate paper --time t_s"), &["--time", "--measured"]);
-    refused(line("simulate paper --offset-mm much --measured"), &["--offset-mm much"]);
-    refused(line("simulate paper --shift-s soon --measured"), &["--shift-s soon", "auto"]);
-    refused(line("simulate paper --time-scale 0 --measured"), &["--time-scale 0", "above 0"]);
-    refused(headless("identify nothere.csv --of damping"), &["nothere.csv", "no such file", "give the path"]);
-    for command in ["simulate", "curve"] {
-        let missing = headless(&format!("{command} paper --measured nothere.csv"));
-        refused(missing, &["--measured nothere.csv", "no such file", "give the path"]);
-    }
 }
 
 #[test]

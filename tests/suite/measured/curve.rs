@@ -74,7 +74,6 @@ fn the_command_compares_and_says_what_is_wrong() {
         command.arg(&file);
         command
     };
-    refused(headless("curve --position x"), &["--position", "--measured"]);
     refused(line("curve --out /dev/null --position Place --measured"), &["pull.csv", "no column Place"]);
     let meters = "curve paper-table --out /dev/null --position-unit m --unit N --measured";
     refused(line(meters), &["pull.csv", "1 of 121 positions", "unit"]);

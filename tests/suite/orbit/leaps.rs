@@ -4,7 +4,7 @@ use interwell::dynamics::{EventKind, MapState, Side};
 use interwell_studies::study::{BranchEnd, BranchEvent, OrbitAnswer};
 
 use super::{at, over_amplitude};
-use crate::cli::{headless, refused, stdout};
+use crate::cli::stdout;
 use crate::support::{changed, near};
 
 /// The mass is released as ever, and from some amplitude down fails to pass the barrier: its state once a
@@ -116,14 +116,4 @@ fn a_branch_begins_at_its_own_value_of_the_field() {
     let of =
         |more: &str| stdout(&format!("orbit paper --branch excitation.amplitude_g=1:0.95 --quiet {more}"));
     assert_eq!(of("--set excitation.amplitude_g=0"), of(""));
-    let still = headless("orbit paper --branch excitation.amplitude_g=0:0.5");
-    refused(still, &["excitation", "not 0"]);
-    let wrong = headless("orbit paper --set stops.travel_limit_mm=-1 --branch excitation.amplitude_g=1:0.5");
-    refused(wrong, &["stops.travel_limit_mm", "-1"]);
-}
-
-#[test]
-fn a_branch_over_a_field_of_whole_numbers_is_refused() {
-    let count = headless("orbit paper --branch mechanism.buckling.count=1:3");
-    refused(count, &["mechanism.buckling.count", "whole numbers", "`sweep` over it with --carry"]);
 }

@@ -1,7 +1,6 @@
 //! Options of a picture: quantity, ranges, times, size, title.
 
-use super::super::cli::{headless, refused};
-use super::{SMALL_MAP, pixels, plot, says, texts, with_plot};
+use super::{SMALL_MAP, pixels, plot, says, texts};
 
 const SHORT: &str = "--set run.settle_s=None --set run.duration_s=1";
 
@@ -35,16 +34,6 @@ fn any_column_of_numbers_can_be_shown_and_the_regime() {
     }
     says(&format!("{SMALL_MAP} --quantity side"), &["right", "both", "first crossing"]);
     says(&format!("{line} --quantity travel_m"), &["travel (mm)"]);
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("a.png");
-    for (name, words) in [
-        ("speed", &["--quantity speed", "rms_velocity_m_per_s", "regime"][..]),
-        ("amplitude_g", &["amplitude_g"]),
-    ] {
-        refused(with_plot(&format!("{line} --quantity {name}"), &path), words);
-    }
-    refused(headless(&format!("{line} --quantity impacts")), &["--plot"]);
-    assert!(!path.exists());
 }
 
 #[test]
@@ -127,11 +116,6 @@ fn a_picture_has_the_size_that_was_asked_for() {
         bare.iter().any(|text| text == "displacement (mm)") && bare.iter().any(|text| text == "stop"),
         "{bare:?}"
     );
-    let path = folder.path().join("e.png");
-    for bad in ["800", "0x0", "800x99", "9000x500", "-1x500", "800x500x2"] {
-        refused(with_plot(&format!("curve --plot-size {bad}"), &path), &["--plot-size", bad, "WxH"]);
-    }
-    refused(headless("curve --no-title"), &["--plot"]);
 }
 
 #[test]
@@ -140,12 +124,6 @@ fn axes_have_the_ranges_that_were_asked_for() {
     assert!(!texts.iter().any(|text| text == "5" || text == "\u{2212}5"), "{texts:?}");
     let texts = says(&format!("{SMALL_MAP} --plot-x 2:3 --plot-y 0.5:1"), &["2.2", "3.0", "0.6", "1.0"]);
     assert!(!texts.iter().any(|text| text == "7" || text == "2.0 "), "{texts:?}");
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("e.png");
-    for bad in ["1", "2:1", "1:1", "nan:1", "0:inf", "a:b"] {
-        refused(with_plot(&format!("curve --plot-x {bad}"), &path), &["--plot-x", bad]);
-    }
-    refused(headless("curve --plot-x 0:1"), &["--plot"]);
 }
 
 #[test]
@@ -162,18 +140,6 @@ fn a_run_is_drawn_over_the_times_that_were_asked_for() {
     // The times that are listed span it; the steps of --dt are those of the rows.
     assert!(window == bytes(&format!("{line} --at 1.5,2,1")));
     assert!(window == bytes(&format!("{line} --plot-time 1:2 --dt 0.5")));
-    let path = folder.path().join("e.png");
-    for bad in ["3:5", "-1:2"] {
-        refused(with_plot(&format!("{line} --plot-time {bad}"), &path), &["--plot-time", bad, "4 s"]);
-    }
-    // the option is named as it was given
-    for option in ["--plot-x", "--plot-time"] {
-        refused(with_plot(&format!("{line} {option} a:b"), &path), &[&format!("{option} a:b: `a`")]);
-        refused(
-            with_plot(&format!("{line} {option}=3:5"), &path),
-            &[&format!("{option} 3:5: the run lasts")],
-        );
-    }
     // A run that ends before its window shows what there is.
     let early = "simulate --set stops=None --set start=At(x_mm:7,v_m_per_s:900) --plot-time 1:2";
     says(early, &["ended early"]);

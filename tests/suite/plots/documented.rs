@@ -121,12 +121,6 @@ fn panels_of_a_run_are_drawn_alone_or_one_under_the_other() {
     // all of them is the picture with its numbers
     let whole = says(&format!("{run} --panels portrait,velocity,acceleration,displacement"), &["crossings"]);
     assert_eq!(whole, says(run, &["crossings"]));
-    let path = folder.path().join("c.svg");
-    refused(with_plot(&format!("{run} --panels force"), &path), &["--panels", "force", "displacement"]);
-    refused(headless(&format!("{run} --panels velocity")), &["--plot"]);
-    for twice in ["power,power", "velocity,energy,velocity"] {
-        refused(with_plot(&format!("{run} --panels {twice}"), &path), &["--panels", "named twice"]);
-    }
 }
 
 #[test]
