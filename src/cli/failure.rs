@@ -7,7 +7,7 @@ use interwell::output::OpenError;
 use interwell::questions::Error;
 use interwell::scene::lesson::LessonError;
 use interwell::scene::{ArgumentError, SceneError};
-use interwell_studies::study::{GridError, Said, Spelling, SweepEnd};
+use interwell_studies::study::{GridError, Spelling, SweepEnd};
 
 /// Returns the error of a wrong argument from the function; the message is formatted as by `format!`.
 macro_rules! refuse {
@@ -94,7 +94,7 @@ arguments_are_wrong! {
 
 impl From<GridError> for Failure {
     fn from(error: GridError) -> Self {
-        Self::argument(Said::new(error).spelled(Spelling::CommandLine))
+        Self::argument(format!("--over: {error}"))
     }
 }
 

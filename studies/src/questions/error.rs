@@ -185,8 +185,7 @@ impl Error {
         }
     }
 
-    /// The same error for a surface that has other names for some arguments: the first of each pair is the name
-    /// here.
+    /// The same error for a surface with other names of some arguments; the first of each pair is that here.
     #[must_use]
     pub fn renamed(self, names: &[[&'static str; 2]]) -> Self {
         let named = |problem: &Said| names.iter().fold(problem.clone(), |text, [a, b]| text.renamed(a, b));

@@ -2,7 +2,6 @@
 
 use super::Table;
 use crate::scene::{Axis, Scene, column_names};
-use crate::study::named;
 
 /// Largest number of cells of one sweep: a day on one core at 1 ms per cell.
 pub const MAX_CELLS: u64 = 100_000_000;
@@ -11,10 +10,7 @@ pub const MAX_CELLS: u64 = 100_000_000;
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum GridError {
     /// No axis at all.
-    #[error(
-        "there is nothing to sweep: the scene has no `sweep`; name a field with {} FIELD=FROM:TO:STEP",
-        named!("over")
-    )]
+    #[error("there is nothing to sweep: the scene has no `sweep`; name a field, as FIELD=FROM:TO:STEP")]
     NoAxes,
     /// More cells than [`MAX_CELLS`].
     #[error("the sweep has {0} cells; at most {MAX_CELLS} fit in one: take longer steps or shorter ranges")]
