@@ -94,7 +94,10 @@ arguments_are_wrong! {
 
 impl From<GridError> for Failure {
     fn from(error: GridError) -> Self {
-        Self::argument(format!("--over: {error}"))
+        match error {
+            GridError::NoAxes => Self::argument(format!("--over: {error}")),
+            error => Self::argument(error),
+        }
     }
 }
 

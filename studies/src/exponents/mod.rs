@@ -27,8 +27,8 @@ use serde::{Deserialize, Serialize};
 use crate::dynamics::{MapState, Model, Outcome, Request, Run};
 use crate::numeric::elementary;
 use crate::output::{NoPicture, can_show_over_field};
-use crate::questions::{Error, Progress, Simulation, check_until, may_have_circuit, settles};
-use crate::scene::{Document, Fault, Scene};
+use crate::questions::{Error, Progress, Simulation, check_until, settles};
+use crate::scene::{Axis, Document, Fault, Scene, Transducer};
 use crate::study::grid_study::fields;
 use crate::study::settled::PATIENCE;
 use crate::study::walk::without_a_period;
@@ -466,4 +466,17 @@ pub enum NoExponents {
     /// The mass has touched a stop at exactly zero speed, where the map has no derivatives.
     #[error("the mass touched a stop without speed, where a small change has no rate")]
     Grazing,
+}
+
+/// Whether the transducer has an electrical state, in the scene or in a cell over `axes`.
+fn may_have_circuit(document: &Document, axes: &[Axis]) -> bool {
+    let swept = |name: &str| axes.iter().any(|axis| axis.field == format!("transducer.{name}"));
+    let cells_may_have = match document.scene.transducer {
+        Transducer::None => false,
+        Transducer::Electromagnetic { inductance_mh, .. } => {
+            swept("inductance_mh") || inductance_mh > 0.0 && swept("load_ohm")
+        }
+        Transducer::Piezoelectric { .. } => swept("load_kohm"),
+    };
+    cells_may_have || document.scene.transducer.has_state()
 }

@@ -82,7 +82,6 @@
 
 mod error;
 mod grid;
-mod motion;
 mod parts;
 mod progress;
 mod simulation;
@@ -115,7 +114,6 @@ pub use crate::threshold::{Found, Onset, Threshold};
 pub use error::longest_wait;
 pub use error::{Error, FaultAt};
 pub(crate) use grid::{all_rows, check_until, drive_alone, settles};
-pub(crate) use motion::may_have_circuit;
 #[doc(hidden)]
 pub use parts::{stops_that_cross, thresholds, walks};
 pub use progress::Progress;
