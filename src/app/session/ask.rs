@@ -20,10 +20,13 @@ use super::prepared::{Prepared, SceneWithFiles};
 /// Number of thresholds that are kept.
 const KEPT: usize = 64;
 
+/// Thresholds that were found, with their scene and its mechanism.
+type Earlier = (Arc<Scene>, Arc<Mechanism>, Thresholds);
+
 /// Thresholds of earlier scenes, oldest first: a scene that comes back by an undo or in a lesson needs no
 /// search.
-fn earlier() -> MutexGuard<'static, Vec<(Arc<Scene>, Arc<Mechanism>, Thresholds)>> {
-    static FOUND: Mutex<Vec<(Arc<Scene>, Arc<Mechanism>, Thresholds)>> = Mutex::new(Vec::new());
+fn earlier() -> MutexGuard<'static, Vec<Earlier>> {
+    static FOUND: Mutex<Vec<Earlier>> = Mutex::new(Vec::new());
     FOUND.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
