@@ -47,20 +47,17 @@ impl From<&Passage> for MapState {
 }
 
 /// Equation, clock and drive in numbers with derivatives: with respect to displacement and velocity, or to
-/// the state of the circuit as well, which only scenes with one need. The drive has the general type, which
-/// takes the same steps as that of a sine and is compiled once.
+/// the state of the circuit as well, which only scenes with one need.
 #[derive(Debug)]
 enum DualKernel {
-    Motion(Box<OfDuals<2>>),
-    WithCircuit(Box<OfDuals<3>>),
+    Motion(Box<Kernel<Dual<2>>>),
+    WithCircuit(Box<(Equation<Dual<3>>, Clock<Dual<3>>, General<Dual<3>>)>),
 }
-
-type OfDuals<const N: usize> = (Equation<Dual<N>>, Clock<Dual<N>>, General<Dual<N>>);
 
 impl DualKernel {
     fn new(model: &Model) -> Self {
         if !model.has_electrical_state() {
-            return Self::Motion(Box::new(general(model)));
+            return Self::Motion(Box::new(Kernel::new(model)));
         }
         Self::WithCircuit(Box::new(general(model)))
     }
@@ -194,12 +191,13 @@ impl StroboscopicMap<'_> {
         let MapState { x, v, electrical } = state.into();
         match self.dual.get_or_init(|| DualKernel::new(&self.model)) {
             DualKernel::Motion(kernel) => {
-                let (equation, clock, drive) = &**kernel;
+                let Kernel { equation, clock, drive } = &**kernel;
                 let [x, v] = self.variables([x, v]);
                 let (start, span) = ([x, v, Dual::of(0.0)], self.span(clock, span));
-                let Traced { passage, end: [x, v, _] } = self.trace(equation, *clock, drive, start, span);
-                let [by_x, by_v] = self.slopes([x, v], passage.rested);
-                (passage, Jacobian::mechanical([by_x, by_v]))
+                let traced = with_drive!(drive, drive => self.trace(equation, *clock, drive, start, span));
+                let [x, v, _] = traced.end;
+                let [by_x, by_v] = self.slopes([x, v], traced.passage.rested);
+                (traced.passage, Jacobian::mechanical([by_x, by_v]))
             }
             DualKernel::WithCircuit(kernel) => {
                 let (equation, clock, drive) = &**kernel;
