@@ -1,5 +1,6 @@
 //! The reference, with which the present motion is compared: the scene as it was opened, or as it was pinned.
 
+use std::sync::Arc;
 use std::time::Duration;
 
 use crate::app::task::{Background, Wake};
@@ -7,7 +8,6 @@ use crate::dynamics::Summary;
 use crate::scene::Scene;
 use crate::system::clock::WallClock;
 use interwell_studies::study::{Thresholds, Watch};
-use std::sync::Arc;
 
 use super::accuracy::LiveRun;
 use super::ask::unshaken;

@@ -31,7 +31,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use clap::Args;
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
 
 use crate::mechanics::Mechanism;
 use crate::numeric::short;
@@ -78,7 +78,7 @@ pub use starts::{EvenRange, Starts};
 /// assert_eq!(found.attractors().words("side"), ["left", "right"]);
 /// # Ok::<(), interwell::questions::Error>(())
 /// ```
-#[derive(Debug, Clone, Default, PartialEq, Args, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Args, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 #[command(after_help = EXAMPLES)]
 #[group(skip)]

@@ -5,8 +5,7 @@ use std::str::FromStr;
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
-
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
 
 use crate::numeric::Decimal;
 use crate::scene::read_number;
@@ -32,8 +31,8 @@ pub enum StartsError {
 /// The values of one axis of a grid: `count` even values from `from` to `to` inclusive.
 ///
 /// Both ends are values themselves: -5 to 5 with a count of 101 has steps of 0.1.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(from = "Ends", into = "(f64, f64, u64)")]
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+#[serde(from = "Ends")]
 pub struct EvenRange {
     /// First value, in mm or m/s.
     pub from: f64,
@@ -63,12 +62,6 @@ impl From<Ends> for EvenRange {
 impl From<(f64, f64, u64)> for EvenRange {
     fn from((from, to, count): (f64, f64, u64)) -> Self {
         Self { from, to, count }
-    }
-}
-
-impl From<EvenRange> for (f64, f64, u64) {
-    fn from(range: EvenRange) -> Self {
-        (range.from, range.to, range.count)
     }
 }
 
