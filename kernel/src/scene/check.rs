@@ -8,7 +8,7 @@ use super::axis::{Axis, MAX_AXES, repeated};
 use super::data::*;
 use super::error::Fault;
 use super::field_table::{MAX_COEFFICIENTS, row};
-use super::fields::{Field, FieldPath, for_each, in_range};
+use super::fields::{FieldPath, Seen, for_each, in_range};
 use super::harmonic::Harmonic;
 use super::mechanism::Mechanism;
 use super::pieces;
@@ -60,7 +60,17 @@ pub fn check(scene: &Scene) -> Checked {
 /// Whether the numbers of a scene, except those of its mechanism, pass its check. It is faster than [`check`]
 /// because it writes no messages; a sweep calls it for each cell.
 pub(crate) fn is_sound(scene: &Scene) -> bool {
-    let mut numbers = Scene {
+    let numbers = numbers_of(scene);
+    let mut checked = Checked::default();
+    stops("stops", &numbers.stops, &mut checked);
+    transducer(&numbers, &mut checked);
+    drive(&numbers.excitation, "excitation", numbers.mass_g, &mut checked);
+    checked.faults.is_empty() && in_range(&numbers)
+}
+
+/// A scene without its texts, hints and mechanism, which take long to copy.
+fn numbers_of(scene: &Scene) -> Scene {
+    Scene {
         title: String::new(),
         notes: String::new(),
         mechanism: Mechanism::Linear { n_per_m: 0.0 },
@@ -68,12 +78,7 @@ pub(crate) fn is_sound(scene: &Scene) -> bool {
         sweep: Vec::new(),
         app: None,
         ..*scene
-    };
-    let mut checked = Checked::default();
-    stops("stops", &numbers.stops, &mut checked);
-    transducer(&numbers, &mut checked);
-    drive(&numbers.excitation, "excitation", numbers.mass_g, &mut checked);
-    checked.faults.is_empty() && in_range(&mut numbers)
+    }
 }
 
 impl Checked {
@@ -88,9 +93,9 @@ impl Checked {
 }
 
 fn ranges(scene: &Scene, checked: &mut Checked) {
-    for_each(&mut scene.clone(), |path, field| {
-        let Field::Number(spec, slot) = field else { return };
-        if let Some(value) = slot.get()
+    for_each(scene, |path, field| {
+        let Seen::Number(spec, number) = field else { return };
+        if let Some(value) = number
             && !spec.range.contains(value)
         {
             checked.fault(path, number_text(value), format!("must be {}; {}", spec.range, spec.remedy));
@@ -430,7 +435,7 @@ fn sweep(scene: &Scene, checked: &mut Checked) {
 pub fn corners(scene: &Scene, axes: &[Axis]) -> Vec<Fault> {
     let ends: Vec<[usize; 2]> = axes.iter().map(extremes).collect();
     let corners = 1_usize << axes.len().min(MAX_AXES);
-    let mut cell = Scene { sweep: Vec::new(), ..scene.clone() };
+    let mut cell = Scene { mechanism: scene.mechanism.clone(), app: scene.app.clone(), ..numbers_of(scene) };
     for corner in 0..corners {
         for (i, axis) in axes.iter().enumerate() {
             axis.apply(&mut cell, ends[i][(corner >> i.min(MAX_AXES)) & 1]);

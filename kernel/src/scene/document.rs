@@ -239,7 +239,7 @@ impl Document {
             return error("the value is longer than a scene may be".to_owned());
         }
         let is_excitation = field.starts_with("excitation");
-        match FieldPath::new(field).follow(&mut self.scene, |found| replace(found, value)) {
+        match FieldPath::new(field).at(&mut self.scene).map(|found| replace(found, value)) {
             Some(Ok(())) => {
                 let (field, argument) = (field.to_owned(), clip(argument));
                 self.written.update(&field, value);
@@ -257,7 +257,7 @@ impl Document {
 
     /// The files that the scene names (its table and its records), as written.
     pub(super) fn paths(&self) -> Vec<String> {
-        named_paths(&mut self.scene.clone()).into_iter().map(|path| path.clone()).collect()
+        paths(&self.scene)
     }
 
     /// The changes by `--set` arguments, as `FIELD=VALUE`; only the last one of each field.
@@ -472,6 +472,13 @@ pub fn named_paths(scene: &mut Scene) -> Vec<&mut String> {
     scene.mechanism.paths_mut().into_iter().chain(record::paths_mut(&mut scene.excitation)).collect()
 }
 
+/// The same, to be read.
+fn paths(scene: &Scene) -> Vec<String> {
+    let (mut mechanism, mut excitation) = (scene.mechanism.clone(), scene.excitation.clone());
+    let paths = mechanism.paths_mut().into_iter().chain(record::paths_mut(&mut excitation));
+    paths.map(|path| path.clone()).collect()
+}
+
 /// Whether the file at `path` is a scene: its name ends in `.ron`, or its text parses as a scene.
 #[doc(hidden)]
 pub fn is_scene_file(path: &Path) -> bool {
@@ -483,9 +490,7 @@ pub fn is_scene_file(path: &Path) -> bool {
 /// The texts of the files that a scene names, by their paths in it, as far as they can be read.
 #[doc(hidden)]
 pub fn named_texts(scene: &Scene, files: &Files) -> BTreeMap<String, String> {
-    let mut scene = scene.clone();
-    let paths = named_paths(&mut scene).into_iter();
-    paths.filter_map(|path| Some((path.clone(), files.read(path).ok()?))).collect()
+    paths(scene).into_iter().filter_map(|path| files.read(&path).ok().map(|text| (path, text))).collect()
 }
 
 /// Reads the records that a scene names. One that cannot be read is missing.

@@ -9,18 +9,18 @@ use super::error::clip;
 use super::field_table::FieldInfo;
 use super::scanner::{Part, overflows};
 use super::text::{self, ParseError, TOO_LARGE};
-pub(super) use super::walk::{Field, Slot};
+pub(super) use super::walk::{Field, Seen, Slot};
 use super::walk::{Fields, Segment, Visitor};
 use crate::numeric::number_text;
 
 /// Calls `each` for every field with its path, in the order in which a scene is written.
-pub(super) fn for_each(scene: &mut Scene, each: impl FnMut(&str, Field<'_>)) {
+pub(super) fn for_each(scene: &Scene, each: impl FnMut(&str, Seen<'_>)) {
     struct Each<F> {
         path: String,
         each: F,
     }
-    impl<F: FnMut(&str, Field<'_>)> Visitor for Each<F> {
-        fn field(&mut self, segment: Segment, inner: bool, field: Field<'_>) -> bool {
+    impl<'a, F: FnMut(&str, Seen<'a>)> Visitor<'a> for Each<F> {
+        fn field(&mut self, segment: Segment, inner: bool, field: Seen<'a>) -> bool {
             let length = self.path.len();
             let dot = if length == 0 { "" } else { "." };
             self.path.push_str(&format!("{dot}{segment}"));
@@ -34,23 +34,23 @@ pub(super) fn for_each(scene: &mut Scene, each: impl FnMut(&str, Field<'_>)) {
             self.path.truncate(self.path.rfind('.').unwrap_or(0));
         }
     }
-    scene.visit_fields(&mut Each { path: String::new(), each });
+    scene.show(&mut Each { path: String::new(), each });
 }
 
 /// Whether every number of a scene is within its range. Unlike [`for_each`] it builds no paths.
-pub(super) fn in_range(scene: &mut Scene) -> bool {
+pub(super) fn in_range(scene: &Scene) -> bool {
     struct InRange(bool);
-    impl Visitor for InRange {
-        fn field(&mut self, _: Segment, inner: bool, field: Field<'_>) -> bool {
-            if let Field::Number(spec, slot) = field {
-                self.0 &= slot.get().is_none_or(|value| spec.range.contains(value));
+    impl Visitor<'_> for InRange {
+        fn field(&mut self, _: Segment, inner: bool, field: Seen<'_>) -> bool {
+            if let Seen::Number(spec, number) = field {
+                self.0 &= number.is_none_or(|value| spec.range.contains(value));
             }
             inner
         }
         fn leave(&mut self) {}
     }
     let mut all = InRange(true);
-    scene.visit_fields(&mut all);
+    scene.show(&mut all);
     all.0
 }
 
@@ -92,47 +92,43 @@ impl FieldPath {
     /// no such number.
     #[must_use]
     pub fn set(&self, scene: &mut Scene, value: f64) -> bool {
-        self.follow(scene, |field| match field {
-            Field::Number(_, slot) => {
-                slot.set(value);
-                true
-            }
-            _ => false,
-        })
-        .unwrap_or(false)
+        let Some(Field::Number(_, slot)) = self.at(scene) else { return false };
+        slot.set(value);
+        true
     }
 
     /// The number at this path; `None` if the scene does not have it or leaves it out.
     pub fn get(&self, scene: &Scene) -> Option<f64> {
-        // The traversal needs a mutable scene; a clone is cheap enough since reading is rare.
-        self.follow(&mut scene.clone(), |field| match field {
-            Field::Number(_, slot) => slot.get(),
+        match self.seen(scene)? {
+            Seen::Number(_, number) => number,
             _ => None,
-        })
-        .flatten()
+        }
     }
 
     /// The value at this path as one word: a number, a text, or the name of a choice; `None` if the scene
     /// does not have it, leaves it out, or has the choice `None`.
     pub fn word(&self, scene: &Scene) -> Option<String> {
-        self.follow(&mut scene.clone(), |field| match field {
-            Field::Number(_, slot) => slot.get().map(number_text),
-            Field::Text(text) => Some(text.clone()).filter(|text| !text.is_empty()),
-            Field::Value(value) => value.word(),
-        })
-        .flatten()
+        match self.seen(scene)? {
+            Seen::Number(_, number) => number.map(number_text),
+            Seen::Text(text) => Some(text.to_owned()).filter(|text| !text.is_empty()),
+            Seen::Value(value) => value.word(),
+        }
     }
 
-    /// Calls `found` with the field at this path; returns `None` if the scene has no such field.
-    pub(super) fn follow<R>(&self, scene: &mut Scene, found: impl FnOnce(Field<'_>) -> R) -> Option<R> {
-        struct Seek<'p, F, R> {
+    /// The field at this path, to be set; `None` if the scene has no such field.
+    pub(super) fn at<'a>(&self, scene: &'a mut Scene) -> Option<Field<'a>> {
+        scene.at(&self.parts)
+    }
+
+    /// The field at this path, to be read; `None` if the scene has no such field.
+    fn seen<'a>(&self, scene: &'a Scene) -> Option<Seen<'a>> {
+        struct Seek<'p, 'a> {
             parts: &'p [Part],
             depth: usize,
-            found: Option<F>,
-            result: Option<R>,
+            found: Option<Seen<'a>>,
         }
-        impl<R, F: FnOnce(Field<'_>) -> R> Visitor for Seek<'_, F, R> {
-            fn field(&mut self, segment: Segment, inner: bool, field: Field<'_>) -> bool {
+        impl<'a> Visitor<'a> for Seek<'_, 'a> {
+            fn field(&mut self, segment: Segment, inner: bool, field: Seen<'a>) -> bool {
                 if !self.parts.get(self.depth).is_some_and(|part| is_same(part, segment)) {
                     return false;
                 }
@@ -140,28 +136,25 @@ impl FieldPath {
                     self.depth += usize::from(inner);
                     return inner;
                 }
-                if let Some(found) = self.found.take() {
-                    self.result = Some(found(field));
-                }
+                self.found = Some(field);
                 false
             }
             fn leave(&mut self) {
                 self.depth -= 1;
             }
         }
-        let mut seek = Seek { parts: &self.parts, depth: 0, found: Some(found), result: None };
-        scene.visit_fields(&mut seek);
-        seek.result
+        let mut seek = Seek { parts: &self.parts, depth: 0, found: None };
+        scene.show(&mut seek);
+        seek.found
     }
 }
 
 /// The row in the table of fields of the number at this path; `None` if the scene does not have it.
 pub(super) fn info_of(scene: &Scene, path: &str) -> Option<&'static FieldInfo> {
-    let info = |field: Field<'_>| match field {
-        Field::Number(info, _) => Some(info),
+    match FieldPath::new(path).seen(scene)? {
+        Seen::Number(info, _) => Some(info),
         _ => None,
-    };
-    FieldPath::new(path).follow(&mut scene.clone(), info).flatten()
+    }
 }
 
 /// Whether the number at this path is whole, such as a count or a seed; false if the scene does not have it.
@@ -172,7 +165,7 @@ pub fn is_whole(scene: &Scene, path: &str) -> bool {
 /// The paths of all numbers of a scene, as `--over` takes them. They include optional numbers that are left
 /// out, but not the numbers of the scene's `sweep`.
 pub fn numeric_fields(scene: &Scene) -> Vec<String> {
-    paths(scene, |path, field| matches!(field, Field::Number(..)) && !path.starts_with("sweep."))
+    paths(scene, |path, field| matches!(field, Seen::Number(..)) && !path.starts_with("sweep."))
 }
 
 /// The paths of all fields of a scene, numbers and other values, as `--set` takes them.
@@ -180,9 +173,9 @@ pub fn all_fields(scene: &Scene) -> Vec<String> {
     paths(scene, |_, _| true)
 }
 
-fn paths(scene: &Scene, is_listed: fn(&str, Field<'_>) -> bool) -> Vec<String> {
+fn paths(scene: &Scene, is_listed: fn(&str, Seen<'_>) -> bool) -> Vec<String> {
     let mut paths = Vec::new();
-    for_each(&mut scene.clone(), |path, field| {
+    for_each(scene, |path, field| {
         if is_listed(path, field) {
             paths.push(path.to_owned());
         }

@@ -1,8 +1,9 @@
 //! Traversal of a scene's fields.
 //!
-//! One traversal of the typed scene visits every field with its dotted path (without variant names:
-//! `stops.travel_limit_mm`) and a mutable reference. Checking, `--set`, `--over`, the cells of a sweep and
-//! the lists in error messages all use it, so that all of them know the same fields.
+//! One list of the fields of each type, under their dotted paths (without variant names:
+//! `stops.travel_limit_mm`), makes the walk that shows every field and the search for the one that is set.
+//! Checking, `--set`, `--over`, the cells of a sweep and the lists in error messages all use them, so that all
+//! know the same fields.
 
 use std::fmt;
 
@@ -12,6 +13,7 @@ use serde::de::DeserializeOwned;
 use super::data::*;
 use super::field_table::{FieldInfo, row};
 use super::mechanism::{FlexureGroup, Mechanism};
+use super::scanner::Part;
 use super::stops::Stops;
 use super::text::{self, ParseError};
 use super::transducer::Transducer;
@@ -31,7 +33,7 @@ impl fmt::Display for Segment {
     }
 }
 
-/// Reference to a number; an optional number may be left out.
+/// A number that can be set; an optional number may be left out.
 pub(super) enum Slot<'a> {
     Required(&'a mut f64),
     Optional(&'a mut Option<f64>),
@@ -39,14 +41,6 @@ pub(super) enum Slot<'a> {
 }
 
 impl Slot<'_> {
-    pub(super) fn get(&self) -> Option<f64> {
-        match self {
-            Self::Required(number) => Some(**number),
-            Self::Optional(number) => **number,
-            Self::Whole(number) => Some(**number as f64),
-        }
-    }
-
     pub(super) fn set(self, value: f64) {
         match self {
             Self::Required(number) => *number = value,
@@ -78,84 +72,169 @@ impl<T: DeserializeOwned + Serialize> Assign for T {
     }
 }
 
+/// A field to be set.
 pub(super) enum Field<'a> {
     Number(&'static FieldInfo, Slot<'a>),
     Text(&'a mut String),
     Value(&'a mut dyn Assign),
 }
 
-pub(super) trait Visitor {
+/// A field as it is read; a number that is left out is `None`.
+pub(super) enum Seen<'a> {
+    Number(&'static FieldInfo, Option<f64>),
+    Text(&'a str),
+    Value(&'a dyn Assign),
+}
+
+pub(super) trait Visitor<'a> {
     /// Visits a field; returns whether to visit the fields inside it. If so and `inner` is set, `leave` is
     /// called after them.
-    fn field(&mut self, segment: Segment, inner: bool, field: Field<'_>) -> bool;
+    fn field(&mut self, segment: Segment, inner: bool, field: Seen<'a>) -> bool;
     fn leave(&mut self);
 }
 
 pub(super) trait Fields {
     /// Visits every field, in the order in which a scene is written.
-    fn visit_fields<V: Visitor>(&mut self, v: &mut V);
-}
+    fn show<'a>(&'a self, v: &mut dyn Visitor<'a>);
 
-fn leaf(v: &mut impl Visitor, segment: Segment, value: &mut dyn Assign) {
-    v.field(segment, false, Field::Value(value));
+    /// The field at a path that begins with the name of a field of this value.
+    fn at(&mut self, path: &[Part]) -> Option<Field<'_>>;
 }
-
-fn text(v: &mut impl Visitor, segment: Segment, value: &mut String) {
-    v.field(segment, false, Field::Text(value));
-}
-
-/// Visits a value and then the fields inside it.
-fn part<V: Visitor>(v: &mut V, segment: Segment, value: &mut (impl Fields + Assign)) {
-    if v.field(segment, true, Field::Value(value)) {
-        value.visit_fields(v);
-        v.leave();
-    }
-}
-
-/// Visits the fields inside a value whose own name is not part of their path.
-fn inside<V: Visitor>(v: &mut V, _: Segment, value: &mut impl Fields) {
-    value.visit_fields(v);
-}
-
-/// Visits nothing: the field is not written in the text of a scene.
-fn hidden<T>(_: &mut impl Visitor, _: Segment, _: &mut T) {}
 
 /// A number, an optional number or a list of numbers.
 trait Number {
-    fn visit(&mut self, segment: Segment, info: &'static FieldInfo, v: &mut impl Visitor);
+    fn show<'a>(&'a self, segment: Segment, info: &'static FieldInfo, v: &mut dyn Visitor<'a>);
+
+    /// The number at a path below its own.
+    fn at(&mut self, path: &[Part], info: &'static FieldInfo) -> Option<Field<'_>>;
 }
 
 macro_rules! numbers {
-    ($($type:ty: $slot:ident),*) => {
+    ($($type:ty: $slot:ident, $number:ident => $value:expr;)*) => {
         $(impl Number for $type {
-            fn visit(&mut self, segment: Segment, info: &'static FieldInfo, v: &mut impl Visitor) {
-                v.field(segment, false, Field::Number(info, Slot::$slot(self)));
+            fn show<'a>(&'a self, segment: Segment, info: &'static FieldInfo, v: &mut dyn Visitor<'a>) {
+                let $number = *self;
+                v.field(segment, false, Seen::Number(info, $value));
+            }
+
+            fn at(&mut self, path: &[Part], info: &'static FieldInfo) -> Option<Field<'_>> {
+                path.is_empty().then_some(Field::Number(info, Slot::$slot(self)))
             }
         })*
     };
 }
 
-numbers!(f64: Required, Option<f64>: Optional, u64: Whole);
+numbers! {
+    f64: Required, number => Some(number);
+    Option<f64>: Optional, number => number;
+    u64: Whole, number => Some(number as f64);
+}
 
 impl Number for Vec<f64> {
-    fn visit(&mut self, segment: Segment, info: &'static FieldInfo, v: &mut impl Visitor) {
-        if v.field(segment, true, Field::Value(self)) {
-            for (i, value) in self.iter_mut().enumerate() {
-                value.visit(Segment::Index(i), info, v);
+    fn show<'a>(&'a self, segment: Segment, info: &'static FieldInfo, v: &mut dyn Visitor<'a>) {
+        if v.field(segment, true, Seen::Value(self)) {
+            for (i, value) in self.iter().enumerate() {
+                value.show(Segment::Index(i), info, v);
             }
             v.leave();
         }
+    }
+
+    fn at(&mut self, path: &[Part], info: &'static FieldInfo) -> Option<Field<'_>> {
+        match path {
+            [] => Some(Field::Value(self)),
+            [Part::Index(i), rest @ ..] => self.get_mut(*i)?.at(rest, info),
+            _ => None,
+        }
+    }
+}
+
+/// How fields of each kind that is no number are visited.
+mod show {
+    use super::{Assign, Fields, Seen, Segment, Visitor};
+
+    pub fn text<'a>(v: &mut dyn Visitor<'a>, segment: Segment, value: &'a str) {
+        v.field(segment, false, Seen::Text(value));
+    }
+
+    pub fn leaf<'a>(v: &mut dyn Visitor<'a>, segment: Segment, value: &'a dyn Assign) {
+        v.field(segment, false, Seen::Value(value));
+    }
+
+    /// A value and then the fields inside it.
+    pub fn part<'a>(v: &mut dyn Visitor<'a>, segment: Segment, value: &'a (impl Fields + Assign)) {
+        if v.field(segment, true, Seen::Value(value)) {
+            value.show(v);
+            v.leave();
+        }
+    }
+
+    /// The fields inside a value whose own name is not part of their path.
+    pub fn inside<'a>(v: &mut dyn Visitor<'a>, _: Segment, value: &'a impl Fields) {
+        value.show(v);
+    }
+
+    /// Nothing: the field is not written in the text of a scene.
+    pub fn hidden<T>(_: &mut dyn Visitor<'_>, _: Segment, _: &T) {}
+}
+
+/// Where a path leads in fields of each kind that is no number.
+mod at {
+    use super::{Assign, Field, Fields, Part, below};
+
+    pub fn text<'a>(path: &[Part], name: &str, value: &'a mut String) -> Option<Field<'a>> {
+        below(path, name)?.is_empty().then_some(Field::Text(value))
+    }
+
+    pub fn leaf<'a>(path: &[Part], name: &str, value: &'a mut dyn Assign) -> Option<Field<'a>> {
+        below(path, name)?.is_empty().then_some(Field::Value(value))
+    }
+
+    pub fn part<'a>(path: &[Part], name: &str, value: &'a mut (impl Fields + Assign)) -> Option<Field<'a>> {
+        match below(path, name)? {
+            [] => Some(Field::Value(value)),
+            rest => value.at(rest),
+        }
+    }
+
+    pub fn inside<'a>(path: &[Part], _: &str, value: &'a mut impl Fields) -> Option<Field<'a>> {
+        value.at(path)
+    }
+
+    pub fn hidden<'a, T>(_: &[Part], _: &str, _: &mut T) -> Option<Field<'a>> {
+        None
+    }
+}
+
+/// The rest of a path that begins with this name.
+fn below<'p>(path: &'p [Part], name: &str) -> Option<&'p [Part]> {
+    match path {
+        [Part::Name(first), rest @ ..] if first == name => Some(rest),
+        _ => None,
     }
 }
 
 /// Visits one field: by the function after `as`, or as a number, which needs a row in the table of fields
 /// under the path `$root` and its name.
-macro_rules! visit {
+macro_rules! show {
     ($v:ident, $root:literal, $field:ident as $kind:ident) => {
-        $kind($v, Segment::Name(stringify!($field)), $field)
+        show::$kind($v, Segment::Name(stringify!($field)), $field)
     };
     ($v:ident, $root:literal, $field:ident) => {
-        $field.visit(Segment::Name(stringify!($field)), const { row(concat!($root, stringify!($field))) }, $v)
+        $field.show(Segment::Name(stringify!($field)), const { row(concat!($root, stringify!($field))) }, $v)
+    };
+}
+
+/// The field at a path if it is this one or inside it.
+macro_rules! at {
+    ($path:ident, $root:literal, $field:ident as $kind:ident) => {
+        at::$kind($path, stringify!($field), $field)
+    };
+    ($path:ident, $root:literal, $field:ident) => {
+        match below($path, stringify!($field)) {
+            Some(rest) => $field.at(rest, const { row(concat!($root, stringify!($field))) }),
+            None => None,
+        }
     };
 }
 
@@ -166,10 +245,22 @@ macro_rules! fields {
         $(; $tuple:path [ $value:ident $(as $value_kind:ident)? ])*
     })*) => {
         $(impl Fields for $type {
-            fn visit_fields<V: Visitor>(&mut self, v: &mut V) {
+            fn show<'a>(&'a self, v: &mut dyn Visitor<'a>) {
                 match self {
-                    $($shape { $($field),* } => { $(visit!(v, $root, $field $(as $kind)?);)* })*
-                    $($tuple($value) => visit!(v, $root, $value $(as $value_kind)?),)*
+                    $($shape { $($field),* } => { $(show!(v, $root, $field $(as $kind)?);)* })*
+                    $($tuple($value) => show!(v, $root, $value $(as $value_kind)?),)*
+                }
+            }
+
+            fn at(&mut self, path: &[Part]) -> Option<Field<'_>> {
+                match self {
+                    $($shape { $($field),* } => {
+                        $(if let Some(found) = at!(path, $root, $field $(as $kind)?) {
+                            return Some(found);
+                        })*
+                        None
+                    })*
+                    $($tuple($value) => at!(path, $root, $value $(as $value_kind)?),)*
                 }
             }
         })*
@@ -267,31 +358,54 @@ fields! {
 }
 
 impl Fields for SweepAxis {
-    fn visit_fields<V: Visitor>(&mut self, v: &mut V) {
+    fn show<'a>(&'a self, v: &mut dyn Visitor<'a>) {
         let Self { field, from, to, step, values } = self;
-        visit!(v, "sweep.", field as text);
+        show!(v, "sweep.", field as text);
         if values.is_empty() {
-            visit!(v, "sweep.", from);
-            visit!(v, "sweep.", to);
-            visit!(v, "sweep.", step);
+            show!(v, "sweep.", from);
+            show!(v, "sweep.", to);
+            show!(v, "sweep.", step);
         } else {
-            visit!(v, "sweep.", values);
+            show!(v, "sweep.", values);
         }
+    }
+
+    fn at(&mut self, path: &[Part]) -> Option<Field<'_>> {
+        let Self { field, from, to, step, values } = self;
+        if !values.is_empty() {
+            return at!(path, "sweep.", field as text).or(at!(path, "sweep.", values));
+        }
+        at!(path, "sweep.", field as text)
+            .or(at!(path, "sweep.", from))
+            .or(at!(path, "sweep.", to))
+            .or(at!(path, "sweep.", step))
     }
 }
 
 impl<T: Fields + Assign> Fields for Vec<T> {
-    fn visit_fields<V: Visitor>(&mut self, v: &mut V) {
-        for (i, value) in self.iter_mut().enumerate() {
-            part(v, Segment::Index(i), value);
+    fn show<'a>(&'a self, v: &mut dyn Visitor<'a>) {
+        for (i, value) in self.iter().enumerate() {
+            show::part(v, Segment::Index(i), value);
+        }
+    }
+
+    fn at(&mut self, path: &[Part]) -> Option<Field<'_>> {
+        match path {
+            [Part::Index(i)] => self.get_mut(*i).map(|value| Field::Value(value)),
+            [Part::Index(i), rest @ ..] => self.get_mut(*i)?.at(rest),
+            _ => None,
         }
     }
 }
 
 impl<T: Fields> Fields for Option<T> {
-    fn visit_fields<V: Visitor>(&mut self, v: &mut V) {
+    fn show<'a>(&'a self, v: &mut dyn Visitor<'a>) {
         if let Some(value) = self {
-            value.visit_fields(v);
+            value.show(v);
         }
+    }
+
+    fn at(&mut self, path: &[Part]) -> Option<Field<'_>> {
+        self.as_mut()?.at(path)
     }
 }
