@@ -38,17 +38,28 @@ impl<const W: usize, T> Lanes<W, T> {
     }
 }
 
+/// Calls `f` for each lane, written out: of thousands of loops in one function the compiler would take minutes.
+#[inline(always)]
+fn each<const W: usize>(mut f: impl FnMut(usize)) {
+    macro_rules! calls {
+        ($($lane:literal)*) => {{ $(f($lane);)* }};
+    }
+    match W {
+        4 => calls!(0 1 2 3),
+        8 => calls!(0 1 2 3 4 5 6 7),
+        16 => calls!(0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15),
+        _ => (0..W).for_each(f),
+    }
+}
+
 macro_rules! lane_by_lane {
     ($trait:ident, $method:ident, $operator:tt) => {
         impl<const W: usize, T: Number> $trait for Lanes<W, T> {
             type Output = Self;
             #[inline(always)]
             fn $method(self, other: Self) -> Self {
-                let (mut result, mut lane) = (self, 0);
-                while lane < W {
-                    result.0[lane] = self.0[lane] $operator other.0[lane];
-                    lane += 1;
-                }
+                let mut result = self;
+                each::<W>(|lane| result.0[lane] = self.0[lane] $operator other.0[lane]);
                 result
             }
         }
@@ -64,11 +75,8 @@ impl<const W: usize, T: Number> Neg for Lanes<W, T> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
-        let (mut result, mut lane) = (self, 0);
-        while lane < W {
-            result.0[lane] = -self.0[lane];
-            lane += 1;
-        }
+        let mut result = self;
+        each::<W>(|lane| result.0[lane] = -self.0[lane]);
         result
     }
 }
@@ -88,11 +96,8 @@ impl<const W: usize, T: Number> Number for Lanes<W, T> {
     }
     #[inline(always)]
     fn abs(self) -> Self {
-        let (mut result, mut lane) = (self, 0);
-        while lane < W {
-            result.0[lane] = self.0[lane].abs();
-            lane += 1;
-        }
+        let mut result = self;
+        each::<W>(|lane| result.0[lane] = self.0[lane].abs());
         result
     }
 }
