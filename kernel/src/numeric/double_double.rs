@@ -129,6 +129,8 @@ impl PartialOrd for DoubleDouble {
 }
 
 impl Number for DoubleDouble {
+    const WIDE: bool = false;
+
     fn of(value: f64) -> Self {
         Self { high: value, low: 0.0 }
     }

@@ -26,6 +26,8 @@ pub trait Number:
 {
     /// Whether one operation costs no more than the overhead of a short loop.
     const QUICK: bool = false;
+    /// Whether its arithmetic is worth compiling for each width of registers.
+    const WIDE: bool = true;
 
     /// The number nearest to `value`.
     fn of(value: f64) -> Self;

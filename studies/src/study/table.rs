@@ -171,6 +171,14 @@ impl Table {
     where
         Values: FromIterator<V>,
     {
+        self.each_by(name, rows, &of)
+    }
+
+    /// The same, compiled once for each type of values, not for each column.
+    fn each_by<R, V>(self, name: &str, rows: &[R], of: &dyn Fn(&R) -> V) -> Self
+    where
+        Values: FromIterator<V>,
+    {
         self.with(name, rows.iter().map(of).collect())
     }
 

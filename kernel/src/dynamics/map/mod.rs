@@ -155,7 +155,11 @@ impl StroboscopicMap<'_> {
 
     /// The same between two times after a strobe, in forcing periods.
     pub fn pass_between(&self, state: impl Into<MapState>, span: (f64, f64)) -> Passage {
-        let MapState { x, v, electrical } = state.into();
+        self.motion(state.into(), span)
+    }
+
+    // not generic, so that callers do not compile the integrator again
+    fn motion(&self, MapState { x, v, electrical }: MapState, span: (f64, f64)) -> Passage {
         let [_, by_v, by_electrical] = self.kernel_units();
         let start = [x, v * by_v, electrical * by_electrical];
         let Kernel { equation, clock, drive } = &self.plain;
@@ -188,7 +192,14 @@ impl StroboscopicMap<'_> {
         state: impl Into<MapState>,
         span: (f64, f64),
     ) -> (Passage, Jacobian) {
-        let MapState { x, v, electrical } = state.into();
+        self.motion_with_jacobian(state.into(), span)
+    }
+
+    fn motion_with_jacobian(
+        &self,
+        MapState { x, v, electrical }: MapState,
+        span: (f64, f64),
+    ) -> (Passage, Jacobian) {
         match self.dual.get_or_init(|| DualKernel::new(&self.model)) {
             DualKernel::Motion(kernel) => {
                 let Kernel { equation, clock, drive } = &**kernel;

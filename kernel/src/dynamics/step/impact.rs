@@ -180,10 +180,13 @@ impl<T: Scalar> Impact<T> {
         if !(self.pressing < stiffness * cube * T::of(0.4 * MAX_PRESSED)) {
             return None;
         }
-        let (amplitude, time) = widest(
-            #[inline(always)]
-            || self.iterate(tolerance),
-        )?;
+        let (amplitude, time) = match T::WIDE {
+            true => widest(
+                #[inline(always)]
+                || self.iterate(tolerance),
+            )?,
+            false => self.iterate(tolerance)?,
+        };
         let share = |slopes: &Values<T>, of: T| self.rule.unresolved(slopes) / of;
         let unresolved = share(&self.time_slope, time).larger(share(&self.amplitude_slope, amplitude));
         if !(unresolved <= between && unresolved * unresolved <= tolerance) {
