@@ -254,8 +254,8 @@ fn lessons(pool: &Pool) {
     let documents: Vec<_> = all.iter().map(|lesson| load(lesson.name)).collect();
     let never = AtomicBool::new(false);
     let task = Task { tick: &|| (), cancel: &never };
-    let check = |(): &mut (), number: usize| check_lesson(&documents[number], Some(pool), &task);
-    pool.map(documents.len(), || (), check).unwrap();
+    let check = |number: usize| check_lesson(&documents[number], Some(pool), &task);
+    pool.map(documents.len(), check).unwrap();
 }
 
 /// Wall time, since that is what jobs are for, and beside it without the waits for a processor that others

@@ -6,6 +6,7 @@
 
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
+use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
@@ -52,7 +53,7 @@ pub fn sleep(time: Duration) {
 /// use interwell::system::threads::{Pool, processors};
 ///
 /// let pool = Pool::new(processors())?;
-/// let squares = pool.map(4, || (), |_, part| Ok::<_, std::convert::Infallible>(part * part));
+/// let squares = pool.map(4, |part| Ok::<_, std::convert::Infallible>(part * part));
 /// assert_eq!(squares, Ok(vec![0, 1, 4, 9]));
 /// # Ok::<(), interwell::system::threads::NoThreads>(())
 /// ```
@@ -108,34 +109,48 @@ impl Pool {
         self.process == process()
     }
 
-    /// The results of parts 0 to `parts` (exclusive) in order, or an error of one of them, after which no
-    /// further part begins. `state` creates data that a thread reuses from part to part.
-    pub fn map<S, R: Send, E: Send>(
+    /// The results of parts 0 to `parts` (exclusive) in order, or the first error, after which no later part
+    /// begins.
+    pub fn map<R: Send, E: Send>(
+        &self,
+        parts: usize,
+        part: impl Fn(usize) -> Result<R, E> + Sync,
+    ) -> Result<Vec<R>, E> {
+        let Some(threads) = &self.threads else { return (0..parts).map(part).collect() };
+        let done = Mutex::new(Vec::with_capacity(parts));
+        let errors = Mutex::new(BTreeMap::new());
+        let fails = |number| match part(number) {
+            Ok(result) => {
+                lock(&done).push((number, result));
+                false
+            }
+            Err(error) => lock(&errors).insert(number, error).is_none(),
+        };
+        let error = first(threads, parts, &fails).and_then(|number| lock(&errors).remove(&number));
+        error.map_or_else(|| Ok(in_order(done.into_inner().unwrap_or_else(PoisonError::into_inner))), Err)
+    }
+
+    /// The result of the first of parts 0 to `parts` (exclusive) that has one. `state` creates data that is
+    /// reused from part to part.
+    pub fn find_first<S, R: Send>(
         &self,
         parts: usize,
         state: impl Fn() -> S + Sync,
-        part: impl Fn(&mut S, usize) -> Result<R, E> + Sync,
-    ) -> Result<Vec<R>, E> {
-        let Some(threads) = &self.threads else {
-            let mut state = state();
-            return (0..parts).map(|number| part(&mut state, number)).collect();
-        };
-        threads.install(|| (0..parts).into_par_iter().with_max_len(1).map_init(&state, &part).collect())
-    }
-
-    /// The result of the first of parts 0 to `parts` (exclusive) that has one.
-    pub fn find_first<S, R: Send>(
-        &self,
-        parts: u64,
-        state: impl Fn() -> S + Sync,
-        part: impl Fn(&mut S, u64) -> Option<R> + Sync,
+        part: impl Fn(&mut S, usize) -> Option<R> + Sync,
     ) -> Option<R> {
-        let Some(threads) = &self.threads else {
+        let within = |parts: Range<usize>| {
             let mut state = state();
-            return (0..parts).find_map(|number| part(&mut state, number));
+            parts.into_iter().find_map(|number| part(&mut state, number))
         };
-        let all = || (0..parts).into_par_iter().map_init(&state, &part);
-        threads.install(|| all().find_first(Option::is_some).flatten())
+        let Some(threads) = &self.threads else { return within(0..parts) };
+        let found = Mutex::new(BTreeMap::new());
+        let finds = |block: usize| {
+            let from = block * PARTS_WITH_A_STATE;
+            let result = within(from..parts.min(from + PARTS_WITH_A_STATE));
+            result.is_some_and(|result| lock(&found).insert(block, result).is_none())
+        };
+        let block = first(threads, parts.div_ceil(PARTS_WITH_A_STATE), &finds)?;
+        lock(&found).remove(&block)
     }
 
     /// Computes results on all threads and passes them in order to `receive` on this thread, while further
@@ -171,31 +186,31 @@ impl Pool {
             return work(&|under_way| queue.take(under_way), &done);
         };
         let (sender, receiver) = channel();
-        threads.in_place_scope(|scope| {
-            scope.spawn_broadcast(|_, _| {
-                let sender = EndNotice(sender.clone());
-                let pending = RefCell::new((Vec::new(), Instant::now()));
-                let send = || {
-                    let done = std::mem::take(&mut pending.borrow_mut().0);
-                    let _ = sender.0.send(Message::Done(done));
-                    pending.borrow_mut().1 = Instant::now();
-                };
-                let take = |under_way: UnderWay| {
-                    queue.take(under_way).or_else(|| {
-                        let idle = under_way.runs == 0;
-                        idle.then(&send)?;
-                        queue.wait()
-                    })
-                };
-                let done = |index, result| {
-                    pending.borrow_mut().0.push((index, result));
-                    if pending.borrow().1.elapsed() > SEND_INTERVAL {
-                        send();
-                    }
-                };
-                work(&take, &done);
-                send();
-            });
+        let compute = || {
+            let sender = EndNotice(sender.clone());
+            let pending = RefCell::new((Vec::new(), Instant::now()));
+            let send = || {
+                let done = std::mem::take(&mut pending.borrow_mut().0);
+                let _ = sender.0.send(Message::Done(done));
+                pending.borrow_mut().1 = Instant::now();
+            };
+            let take = |under_way: UnderWay| {
+                queue.take(under_way).or_else(|| {
+                    let idle = under_way.runs == 0;
+                    idle.then(&send)?;
+                    queue.wait()
+                })
+            };
+            let done = |index, result| {
+                pending.borrow_mut().0.push((index, result));
+                if pending.borrow().1.elapsed() > SEND_INTERVAL {
+                    send();
+                }
+            };
+            work(&take, &done);
+            send();
+        };
+        on_all(threads, &compute, &mut || {
             // Stops the queue on every exit, including a panic of `receive`, so that no thread keeps waiting.
             let _stop = StopOnDrop(&queue);
             let mut working = self.count();
@@ -222,10 +237,35 @@ impl Pool {
     /// Runs `work` on each thread.
     pub fn everywhere(&self, work: impl Fn() + Sync) {
         match &self.threads {
-            Some(threads) => drop(threads.broadcast(|_| work())),
+            Some(threads) => on_all(threads, &work, &mut || ()),
             None => work(),
         }
     }
+}
+
+// What follows is not generic: rayon's code is compiled once, not for every study.
+
+/// The first of parts 0 to `parts` (exclusive) that `is_it`; no later part begins then.
+fn first(threads: &rayon::ThreadPool, parts: usize, is_it: &(dyn Fn(usize) -> bool + Sync)) -> Option<usize> {
+    threads.install(|| (0..parts).into_par_iter().with_max_len(1).find_first(|part| is_it(*part)))
+}
+
+/// Calls `each` on every thread of the pool while `here` runs on this one.
+fn on_all(threads: &rayon::ThreadPool, each: &(dyn Fn() + Sync), here: &mut dyn FnMut()) {
+    threads.in_place_scope(|scope| {
+        scope.spawn_broadcast(|_, _| each());
+        here();
+    });
+}
+
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// The numbered results in their order.
+fn in_order<R>(mut all: Vec<(usize, R)>) -> Vec<R> {
+    all.sort_unstable_by_key(|(number, _)| *number);
+    all.into_iter().map(|(_, result)| result).collect()
 }
 
 /// Results that wait for earlier ones, and their receiver.
@@ -286,16 +326,18 @@ pub fn share_from<R: Send, E: Send>(
     work: impl Fn(&dyn Fn(UnderWay) -> Option<usize>) -> Result<Vec<(usize, R)>, E> + Sync,
 ) -> Result<Vec<R>, E> {
     let part = || work(&take);
-    let mut all: Vec<(usize, R)> = match pool {
-        Some(pool) => pool.map(pool.count(), || (), |(), _| part())?.into_iter().flatten().collect(),
+    let all: Vec<(usize, R)> = match pool {
+        Some(pool) => pool.map(pool.count(), |_| part())?.into_iter().flatten().collect(),
         None => part()?,
     };
-    all.sort_unstable_by_key(|(number, _)| *number);
-    Ok(all.into_iter().map(|(_, result)| result).collect())
+    Ok(in_order(all))
 }
 
 /// Smallest time between two messages of a thread; faster results are sent several at a time.
 const SEND_INTERVAL: Duration = Duration::from_millis(1);
+
+/// Number of parts that share a state where the first of many is searched for.
+const PARTS_WITH_A_STATE: usize = 64;
 
 /// Largest number of results that are passed on at once.
 const MAX_BATCH: usize = 256;
@@ -385,7 +427,7 @@ impl Queue {
     }
 
     fn lock(&self) -> MutexGuard<'_, Progress> {
-        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+        lock(&self.state)
     }
 }
 

@@ -98,14 +98,14 @@ impl Stroboscope<'_> {
         let period = self.period();
         let times: Vec<f64> = (1..=periods).map(|number| f64::from(number) * period).collect();
         let last = f64::from(periods) * period;
-        let path = |(): &mut (), number: usize| {
+        let path = |number: usize| {
             let model = self.model.with_start(starts[number]).with_duration(last, last);
             let kept = &times[skipped.min(times.len())..];
             let request = Request { sample_times: kept, cancel: Some(self.cancel), ..Request::default() };
             let run = finished(model.run(&request)).ok_or(Cancelled)?;
             Ok((run.summary.outcome == Outcome::Done).then_some(run.samples))
         };
-        let all: Option<Vec<_>> = self.pool.map(starts.len(), || (), path)?.into_iter().collect();
+        let all: Option<Vec<_>> = self.pool.map(starts.len(), path)?.into_iter().collect();
         let state = |&Sample { x, v, electrical, .. }: &Sample| MapState { x, v, electrical };
         Ok(all.map(|paths| paths.iter().flatten().map(state).collect()))
     }

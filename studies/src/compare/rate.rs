@@ -102,7 +102,7 @@ pub fn alternatives(
     // progress is counted by parts, not by the searches within them
     let silent = Task { tick: &|| (), cancel: task.cancel };
     let rating = Rating { until_settled, pool, task: &silent };
-    let work = |_: &mut (), index: usize| {
+    let work = |index: usize| {
         let Part { scene, change } = &parts[index];
         let done = match change {
             None => rating.rate(&scenes[*scene]).map(|rated| (Some(Box::new(rated)), None)),
@@ -111,7 +111,7 @@ pub fn alternatives(
         (task.tick)();
         task.check_cancelled().and(done)
     };
-    let done = pool.map(parts.len(), || (), work).ok()?;
+    let done = pool.map(parts.len(), work).ok()?;
     let mut rated: Vec<Rated> = Vec::new();
     for (Part { scene, change }, (unchanged, threshold)) in parts.into_iter().zip(done) {
         rated.extend(unchanged.map(|unchanged| *unchanged));

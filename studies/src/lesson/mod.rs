@@ -21,9 +21,8 @@ pub use subject::Subject;
 #[doc(hidden)]
 pub fn check_lessons(lessons: &[LessonDocument], progress: &Progress) -> Result<Vec<LessonReport>, Error> {
     let task = progress.silent();
-    let reports = progress.pool(|pool| {
-        pool.map(lessons.len(), || (), |(), number| check_lesson(&lessons[number], Some(pool), &task))
-    })?;
+    let reports = progress
+        .pool(|pool| pool.map(lessons.len(), |number| check_lesson(&lessons[number], Some(pool), &task)))?;
     Ok(reports?)
 }
 

@@ -155,7 +155,7 @@ impl<'a> Subject<'a> {
         let mechanism = self.mechanism_of(self.scene)?;
         let family = Family::new(self.scene, self.files, &mechanism, field);
         let (task, request) = (self.task, Request { carry: true, ..self.request() });
-        let walk = |_: &mut (), row: usize| {
+        let walk = |row: usize| {
             let mut seen = S::default();
             let unfit = walk_over(&family, &rows[row], &request, |value, run| {
                 (task.tick)();
@@ -168,8 +168,8 @@ impl<'a> Subject<'a> {
             }
         };
         let seen = match self.pool {
-            Some(pool) => pool.map(2, || (), walk)?,
-            None => vec![walk(&mut (), 0)?, walk(&mut (), 1)?],
+            Some(pool) => pool.map(2, walk)?,
+            None => vec![walk(0)?, walk(1)?],
         };
         seen.try_into().map_err(|_| Unjudged::Cancelled)
     }

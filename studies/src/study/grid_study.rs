@@ -186,12 +186,13 @@ impl Cells {
         task: &Task,
         answer: impl Fn(&Scene, Built, u64) -> Result<R, Cancelled> + Sync,
     ) -> Result<Vec<R>, Cancelled> {
-        let part = |scene: &mut Scene, number: usize| {
+        let part = |number: usize| {
             task.check_cancelled()?;
-            let built = self.mechanism((number / parts) as u64, 0, scene, task.cancel).ok_or(Cancelled)?;
-            answer(scene, built, (number % parts) as u64)
+            let (cell, mut scene) = ((number / parts) as u64, self.base.clone());
+            let built = self.mechanism(cell, 0, &mut scene, task.cancel).ok_or(Cancelled)?;
+            answer(&scene, built, (number % parts) as u64)
         };
-        pool.map(self.grid.cells() as usize * parts, || self.base.clone(), part)
+        pool.map(self.grid.cells() as usize * parts, part)
     }
 
     /// The model of a cell with a draw, or its faults; `None` without a solved mechanism, or if cancelled.
@@ -327,16 +328,16 @@ impl<Q: Question> GridStudy<Q> {
 
     /// Like [`validate`](Self::validate), for the cells of a slice from its row `from` on.
     pub fn validate_rows(&self, part: &Slice, from: u64, pool: &Pool, task: &Task) -> Result<(), CellFaults> {
-        let faults = |scene: &mut Scene, place: u64| {
+        let faults = |scene: &mut Scene, place: usize| {
             task.check_cancelled().ok()?;
-            let index = self.cell(part.row(from + place));
+            let index = self.cell(part.row(from + place as u64));
             let faults = match self.cells.model(index, 0, scene, task)? {
                 Ok(model) => vec![self.question.fault(&self.question.model(model), scene)?],
                 Err(faults) => faults,
             };
             Some(CellFaults { cell: self.grid().describe(index), faults })
         };
-        pool.find_first(part.rows() - from, || self.cells.base.clone(), faults).map_or(Ok(()), Err)
+        pool.find_first((part.rows() - from) as usize, || self.cells.base.clone(), faults).map_or(Ok(()), Err)
     }
 
     /// Replaces a mechanism that would be built.

@@ -191,7 +191,7 @@ pub fn up_and_down(
 ) -> bool {
     let request =
         Request { section: Some(0.0), carry: true, cancel: Some(task.cancel), ..Request::default() };
-    let walk = |_: &mut (), number: usize| {
+    let walk = |number: usize| {
         let direction = directions[number];
         let mut values: Vec<f64> = values.to_vec();
         if direction == Direction::Down {
@@ -208,7 +208,7 @@ pub fn up_and_down(
         });
         if task.is_cancelled() { Err(()) } else { Ok(()) }
     };
-    pool.map(directions.len(), || (), walk).is_ok()
+    pool.map(directions.len(), walk).is_ok()
 }
 
 /// Runs the family at one value after the other, each run from the final state of the one before, until

@@ -125,9 +125,16 @@ fn results_of_a_task_are_received_together_unless_they_are_too_many() {
 #[test]
 fn shared_results_come_in_order_and_an_error_is_returned() {
     let here = Pool::calling_thread();
-    assert_eq!(here.map(3, || 1, |_, part| if part < 2 { Ok(part) } else { Err("third") }), Err("third"));
+    assert_eq!(here.map(3, |part| if part < 2 { Ok(part) } else { Err("third") }), Err("third"));
     assert_eq!(here.find_first(9, || 1, |_, part| (part > 4).then_some(part)), Some(5));
     let pool = Pool::new(3).unwrap();
+    for first in [0, 1, 63, 64, 65, 321, 999] {
+        let fails = |part: usize| if part < first { Ok(part) } else { Err(part) };
+        assert_eq!(pool.map(1000, fails), Err(first));
+        assert_eq!(pool.map(first, fails), Ok((0..first).collect()));
+        assert_eq!(pool.find_first(1000, || (), |(), part| (part >= first).then_some(part)), Some(first));
+        assert_eq!(pool.find_first(first, || (), |(), part| fails(part).err()), None);
+    }
     let squares = |next: &dyn Fn(UnderWay) -> Option<usize>| {
         Ok::<_, ()>(std::iter::from_fn(|| next(not_full(0))).map(|i| (i, i * i)).collect())
     };
@@ -175,6 +182,6 @@ fn deep(depth: u64) -> u64 {
 fn threads_of_studies_have_room_for_large_frames() {
     let sum = 300 * 301 / 2;
     assert_eq!(ends(|| deep(300)), sum);
-    let all = Pool::new(2).unwrap().map(4, || (), |(), _| Ok::<_, ()>(deep(300)));
+    let all = Pool::new(2).unwrap().map(4, |_| Ok::<_, ()>(deep(300)));
     assert_eq!(all, Ok(vec![sum; 4]));
 }
