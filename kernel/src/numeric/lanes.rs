@@ -1,9 +1,9 @@
 //! Vectors of numbers for the same arithmetic on each lane.
 //!
-//! The loops have a fixed width and no branch, so that the compiler turns them into vector instructions, as
+//! The arithmetic has a fixed width and no branch, so that the compiler turns it into vector instructions, as
 //! wide as the target features of the caller allow. Each lane gets the bits that it would get alone: nothing
-//! is fused or reordered. They have no iterators: a batch inlines thousands of these loops into one function,
-//! which would take minutes to compile if each had the basic blocks of an iterator.
+//! is fused or reordered. It is written out for each lane: a batch inlines thousands of these operations into
+//! one function, which would take minutes to compile if each were a loop.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -38,7 +38,7 @@ impl<const W: usize, T> Lanes<W, T> {
     }
 }
 
-/// Calls `f` for each lane, written out: of thousands of loops in one function the compiler would take minutes.
+/// Calls `f` for each lane, written out.
 #[inline(always)]
 fn each<const W: usize>(mut f: impl FnMut(usize)) {
     macro_rules! calls {

@@ -1,9 +1,9 @@
 //! Traversal of a scene's fields.
 //!
 //! One list of the fields of each type, under their dotted paths (without variant names:
-//! `stops.travel_limit_mm`), makes the walk that shows every field and the search for the one that is set.
-//! Checking, `--set`, `--over`, the cells of a sweep and the lists in error messages all use them, so that all
-//! know the same fields.
+//! `stops.travel_limit_mm`), makes the walk that shows every field and the search for the one that is
+//! set. Checking, `--set`, `--over`, the cells of a sweep and the lists in error messages all use them,
+//! so that all know the same fields.
 
 use std::fmt;
 
