@@ -38,13 +38,21 @@ impl<const W: usize, T> Lanes<W, T> {
     }
 }
 
-/// Calls `f` for each lane, written out.
+/// Calls `f` for each lane; written out for numbers that are quick, except in a page, which is to be small.
 #[inline(always)]
-fn each<const W: usize>(mut f: impl FnMut(usize)) {
+fn each<const W: usize, T: Number>(mut f: impl FnMut(usize)) {
     macro_rules! calls {
         ($($lane:literal)*) => {{ $(f($lane);)* }};
     }
+    let is_loop = !T::QUICK || cfg!(target_arch = "wasm32");
     match W {
+        _ if is_loop => {
+            let mut lane = 0;
+            while lane < W {
+                f(lane);
+                lane += 1;
+            }
+        }
         4 => calls!(0 1 2 3),
         8 => calls!(0 1 2 3 4 5 6 7),
         16 => calls!(0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15),
@@ -59,7 +67,7 @@ macro_rules! lane_by_lane {
             #[inline(always)]
             fn $method(self, other: Self) -> Self {
                 let mut result = self;
-                each::<W>(|lane| result.0[lane] = self.0[lane] $operator other.0[lane]);
+                each::<W, T>(|lane| result.0[lane] = self.0[lane] $operator other.0[lane]);
                 result
             }
         }
@@ -76,7 +84,7 @@ impl<const W: usize, T: Number> Neg for Lanes<W, T> {
     #[inline(always)]
     fn neg(self) -> Self {
         let mut result = self;
-        each::<W>(|lane| result.0[lane] = -self.0[lane]);
+        each::<W, T>(|lane| result.0[lane] = -self.0[lane]);
         result
     }
 }
@@ -97,7 +105,7 @@ impl<const W: usize, T: Number> Number for Lanes<W, T> {
     #[inline(always)]
     fn abs(self) -> Self {
         let mut result = self;
-        each::<W>(|lane| result.0[lane] = self.0[lane].abs());
+        each::<W, T>(|lane| result.0[lane] = self.0[lane].abs());
         result
     }
 }
