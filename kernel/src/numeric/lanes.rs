@@ -2,8 +2,8 @@
 //!
 //! The arithmetic has a fixed width and no branch, so that the compiler turns it into vector instructions, as
 //! wide as the target features of the caller allow. Each lane gets the bits that it would get alone: nothing
-//! is fused or reordered. It is written out for each lane: a batch inlines thousands of these operations into
-//! one function, which would take minutes to compile if each were a loop.
+//! is fused or reordered. Doubles have no loops: a batch inlines thousands of these operations into one
+//! function, which takes minutes to compile if each is a loop.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -44,19 +44,18 @@ fn each<const W: usize, T: Number>(mut f: impl FnMut(usize)) {
     macro_rules! calls {
         ($($lane:literal)*) => {{ $(f($lane);)* }};
     }
-    let is_loop = !T::QUICK || cfg!(target_arch = "wasm32");
+    let written_out = T::QUICK && !cfg!(target_arch = "wasm32");
     match W {
-        _ if is_loop => {
+        4 if written_out => calls!(0 1 2 3),
+        8 if written_out => calls!(0 1 2 3 4 5 6 7),
+        16 if written_out => calls!(0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15),
+        _ => {
             let mut lane = 0;
             while lane < W {
                 f(lane);
                 lane += 1;
             }
         }
-        4 => calls!(0 1 2 3),
-        8 => calls!(0 1 2 3 4 5 6 7),
-        16 => calls!(0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15),
-        _ => (0..W).for_each(f),
     }
 }
 

@@ -60,25 +60,11 @@ pub fn check(scene: &Scene) -> Checked {
 /// Whether the numbers of a scene, except those of its mechanism, pass its check. It is faster than [`check`]
 /// because it writes no messages; a sweep calls it for each cell.
 pub(crate) fn is_sound(scene: &Scene) -> bool {
-    let numbers = numbers_of(scene);
     let mut checked = Checked::default();
-    stops("stops", &numbers.stops, &mut checked);
-    transducer(&numbers, &mut checked);
-    drive(&numbers.excitation, "excitation", numbers.mass_g, &mut checked);
-    checked.faults.is_empty() && in_range(&numbers)
-}
-
-/// A scene without its texts, hints and mechanism, which take long to copy.
-fn numbers_of(scene: &Scene) -> Scene {
-    Scene {
-        title: String::new(),
-        notes: String::new(),
-        mechanism: Mechanism::Linear { n_per_m: 0.0 },
-        excitation: scene.excitation.clone(),
-        sweep: Vec::new(),
-        app: None,
-        ..*scene
-    }
+    stops("stops", &scene.stops, &mut checked);
+    transducer(scene, &mut checked);
+    drive(&scene.excitation, "excitation", scene.mass_g, &mut checked);
+    checked.faults.is_empty() && in_range(scene)
 }
 
 impl Checked {
@@ -435,7 +421,15 @@ fn sweep(scene: &Scene, checked: &mut Checked) {
 pub fn corners(scene: &Scene, axes: &[Axis]) -> Vec<Fault> {
     let ends: Vec<[usize; 2]> = axes.iter().map(extremes).collect();
     let corners = 1_usize << axes.len().min(MAX_AXES);
-    let mut cell = Scene { mechanism: scene.mechanism.clone(), app: scene.app.clone(), ..numbers_of(scene) };
+    let mut cell = Scene {
+        title: String::new(),
+        notes: String::new(),
+        mechanism: scene.mechanism.clone(),
+        excitation: scene.excitation.clone(),
+        sweep: Vec::new(),
+        app: scene.app.clone(),
+        ..*scene
+    };
     for corner in 0..corners {
         for (i, axis) in axes.iter().enumerate() {
             axis.apply(&mut cell, ends[i][(corner >> i.min(MAX_AXES)) & 1]);

@@ -37,15 +37,16 @@ pub(super) fn for_each(scene: &Scene, each: impl FnMut(&str, Seen<'_>)) {
     scene.show(&mut Each { path: String::new(), each });
 }
 
-/// Whether every number of a scene is within its range. Unlike [`for_each`] it builds no paths.
+/// Whether every number of a scene is within its range, except those of its mechanism, sweep and hints. Unlike
+/// [`for_each`] it builds no paths.
 pub(super) fn in_range(scene: &Scene) -> bool {
     struct InRange(bool);
     impl Visitor<'_> for InRange {
-        fn field(&mut self, _: Segment, inner: bool, field: Seen<'_>) -> bool {
+        fn field(&mut self, segment: Segment, inner: bool, field: Seen<'_>) -> bool {
             if let Seen::Number(spec, number) = field {
                 self.0 &= number.is_none_or(|value| spec.range.contains(value));
             }
-            inner
+            inner && !matches!(segment, Segment::Name("mechanism" | "sweep" | "app"))
         }
         fn leave(&mut self) {}
     }

@@ -134,22 +134,22 @@ impl Pool {
     /// reused from part to part.
     pub fn find_first<S, R: Send>(
         &self,
-        parts: usize,
+        parts: u64,
         state: impl Fn() -> S + Sync,
-        part: impl Fn(&mut S, usize) -> Option<R> + Sync,
+        part: impl Fn(&mut S, u64) -> Option<R> + Sync,
     ) -> Option<R> {
-        let within = |parts: Range<usize>| {
+        let within = |mut parts: Range<u64>| {
             let mut state = state();
-            parts.into_iter().find_map(|number| part(&mut state, number))
+            parts.find_map(|number| part(&mut state, number))
         };
         let Some(threads) = &self.threads else { return within(0..parts) };
         let found = Mutex::new(BTreeMap::new());
         let finds = |block: usize| {
-            let from = block * PARTS_WITH_A_STATE;
+            let from = block as u64 * PARTS_WITH_A_STATE;
             let result = within(from..parts.min(from + PARTS_WITH_A_STATE));
             result.is_some_and(|result| lock(&found).insert(block, result).is_none())
         };
-        let block = first(threads, parts.div_ceil(PARTS_WITH_A_STATE), &finds)?;
+        let block = first(threads, parts.div_ceil(PARTS_WITH_A_STATE) as usize, &finds)?;
         lock(&found).remove(&block)
     }
 
@@ -337,7 +337,7 @@ pub fn share_from<R: Send, E: Send>(
 const SEND_INTERVAL: Duration = Duration::from_millis(1);
 
 /// Number of parts that share a state where the first of many is searched for.
-const PARTS_WITH_A_STATE: usize = 64;
+const PARTS_WITH_A_STATE: u64 = 64;
 
 /// Largest number of results that are passed on at once.
 const MAX_BATCH: usize = 256;

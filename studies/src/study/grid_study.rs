@@ -328,16 +328,16 @@ impl<Q: Question> GridStudy<Q> {
 
     /// Like [`validate`](Self::validate), for the cells of a slice from its row `from` on.
     pub fn validate_rows(&self, part: &Slice, from: u64, pool: &Pool, task: &Task) -> Result<(), CellFaults> {
-        let faults = |scene: &mut Scene, place: usize| {
+        let faults = |scene: &mut Scene, place: u64| {
             task.check_cancelled().ok()?;
-            let index = self.cell(part.row(from + place as u64));
+            let index = self.cell(part.row(from + place));
             let faults = match self.cells.model(index, 0, scene, task)? {
                 Ok(model) => vec![self.question.fault(&self.question.model(model), scene)?],
                 Err(faults) => faults,
             };
             Some(CellFaults { cell: self.grid().describe(index), faults })
         };
-        pool.find_first((part.rows() - from) as usize, || self.cells.base.clone(), faults).map_or(Ok(()), Err)
+        pool.find_first(part.rows() - from, || self.cells.base.clone(), faults).map_or(Ok(()), Err)
     }
 
     /// Replaces a mechanism that would be built.

@@ -132,8 +132,8 @@ fn shared_results_come_in_order_and_an_error_is_returned() {
         let fails = |part: usize| if part < first { Ok(part) } else { Err(part) };
         assert_eq!(pool.map(1000, fails), Err(first));
         assert_eq!(pool.map(first, fails), Ok((0..first).collect()));
-        assert_eq!(pool.find_first(1000, || (), |(), part| (part >= first).then_some(part)), Some(first));
-        assert_eq!(pool.find_first(first, || (), |(), part| fails(part).err()), None);
+        let found = |parts| pool.find_first(parts, || (), |(), part| fails(part as usize).err());
+        assert_eq!((found(1000), found(first as u64)), (Some(first), None));
     }
     let squares = |next: &dyn Fn(UnderWay) -> Option<usize>| {
         Ok::<_, ()>(std::iter::from_fn(|| next(not_full(0))).map(|i| (i, i * i)).collect())
