@@ -37,8 +37,8 @@ pub(super) fn for_each(scene: &Scene, each: impl FnMut(&str, Seen<'_>)) {
     scene.show(&mut Each { path: String::new(), each });
 }
 
-/// Whether every number of a scene is within its range, except those of its mechanism, sweep and hints. Unlike
-/// [`for_each`] it builds no paths.
+/// Whether every number of a scene is within its range, except those of its mechanism, sweep and hints.
+/// Unlike [`for_each`] it builds no paths.
 pub(super) fn in_range(scene: &Scene) -> bool {
     struct InRange(bool);
     impl Visitor<'_> for InRange {
